@@ -100,7 +100,7 @@ def test_run_writes_tables_drawings_and_results(shaper):
     for name in drawings:
         assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert (folder / f"{name}.svg").read_text(encoding="utf-8").rstrip().endswith("</svg>")
-    assert "I(0,1) -> II(2,3) -> II(4,5)" in done.stdout
+    assert "I(0,1) → II(2,3) → II(4,5)" in done.stdout
     assert not [n for n in names if n.startswith(".")]
 
 

@@ -219,7 +219,7 @@ def test_a_rod_without_its_bolt_lets_the_crank_turn_beside_a_slider_that_stands(
     assert np.ptp(between) > 20
     assert any(
         name.startswith("lever") for name in drawn("settings/safety-rod-broken")
-    )  # what holds it acts in the pole
+    )
 
 
 # gear-lever

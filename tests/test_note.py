@@ -26,6 +26,7 @@ from tmm_cli.quantities import KINDS
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.text import json_text
 
+LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 FIGURES = r"(?<![\w.,′'])[−-]?\d+(?:\.\d+)?(?![\w.]*\w)"
 COUNTED = 100  # whole numbers below it count or name something
 
@@ -121,6 +122,7 @@ def printed(text: str) -> list[str]:
     body = text.partition("<body>")[2]
     for apart in ("nav", "header", "ol", "h1", "h2", "svg", "caption", "figcaption", 'math display="block"'):
         body = re.sub(rf"<{apart}[ >].*?</{apart.partition(' ')[0]}>", " ", body, flags=re.S)
+    body = re.sub(r"·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda power: f"e{power[1].translate(LOWERED)}", body)
     return re.findall(FIGURES, re.sub(r"<[^>]+>", " ", body))
 
 

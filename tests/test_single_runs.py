@@ -48,6 +48,14 @@ def test_a_motor_of_direct_current_comes_to_its_speed_exponentially():
     assert found.speed == pytest.approx(10 * (1 - np.exp(-50 / (2 * 10) * found.time)), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("times", [10, 1e3, 1e5])
+def test_a_motor_too_strong_brings_its_machine_to_its_speed_without_load(times):
+    found = run(machine(load=-80.0, ripple=0.6), RunTask(motor=Linear(500.0 * times, 12.0)))
+    assert found.ending == "way" and found.balance < 1e-10
+    assert found.speed[-1] == pytest.approx(12.0, rel=0.1 / times)
+    assert found.time[-1] == pytest.approx(TURN / 12.0, rel=1 / times)
+
+
 @pytest.mark.parametrize("task", [
     RunTask(motor=Linear(500.0, 12.0)), RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
     RunTask(speed=10.0, brake=200.0), RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
@@ -92,7 +100,7 @@ def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
     results = solve(load(PROBLEMS / "press-single-run.yaml"))
     found = results.running
     assert found.run.balance < 1e-10
-    motor = found.task.motor.moment(np.abs(results.motion.rate))[0]
+    motor = found.task.motor.moment(np.abs(results.motion.rate))
     speeding = found.task.flywheel * results.motion.acceleration
     assert results.reactions.balance.moment == pytest.approx(motor - speeding, rel=1e-7, abs=1e-4)
 

@@ -99,7 +99,7 @@ def test_every_kind_has_its_article_and_an_example() -> None:
 def test_defaults_of_bare_numbers() -> None:
     units = UnitSystem()
     symbols = ["", "mm", "deg", "s", "kg", "N", "N*m", "kg*m^2", "m/s", "m/s^2", "rad/s", "rad/s^2", "N/m", "N*m/rad",
-               "N*s/m", "N*m*s/rad", "MPa"]  # fmt: skip
+               "N*s/m", "N*m*s/rad", "MPa", "kg/m^3"]  # fmt: skip
     assert [units.symbol(kind.dimension) for kind in KINDS.values()] == symbols
     assert units.factor(LENGTH) == 0.001
     assert units.factor(NUMBER) == 1
@@ -136,7 +136,7 @@ def test_a_file_chooses() -> None:
         ({"lenght": "mm"}, "lenght: unknown key\n  found:   'lenght'"
          "\n  allowed: length, angle, time, mass, force, moment, "
          "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
-         "torsional stiffness, damping, torsional damping, pressure"
+         "torsional stiffness, damping, torsional damping, pressure, density"
           "\n  did you mean 'length'?"),
     ],
 )  # fmt: skip

@@ -161,6 +161,14 @@ class StandstillError(LinkageError):
         self.place = place
 
 
+class WeakMotorError(LinkageError):
+    """A motor gives `most` (N m, or N) at its best, and the loads of a cycle want `wanted` in the mean."""
+
+    def __init__(self, wanted: float, most: float) -> None:
+        super().__init__(wanted, most)
+        self.wanted, self.most = wanted, most
+
+
 class NoFlywheelError(LinkageError):
     """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
 

@@ -25,6 +25,10 @@ DOMAIN: Final = "tmm"
 CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by language
 
 Found = TypeVar("Found")
+TIE: Final = 1e-13  # relative: far more than rounding, far less than what is printed
+MINUS: Final = re.compile(r"(?<![\w)\]}'°.,–—-])-(?=\d)")  # of a number
+FORMULA: Final = re.compile(r" = |\d\*\d")
+PAIR: Final = re.compile(r"(?<=^\d) - (?=\d$)")  # 0 - 1: the links of a pair
 
 _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
@@ -63,8 +67,31 @@ def _(message: str) -> str:
 
 def numeral(value: float, form: str) -> str:
     """A number for people in this format, with a comma where the language has one. What may be typed has points."""
-    text = f"{value:{form}}"
+    text = f"{half_up(value):{form}}"
     return text if _spoken.get() == ENGLISH else text.replace(".", ",")
+
+
+def half_up(value: float) -> float:
+    """The same, so little larger that what ends in a five is rounded away from zero, whatever its last bits are."""
+    return value * (1 + TIE)
+
+
+def signed(text: str) -> str:
+    """A text whose numbers have a minus sign for their hyphen."""
+    return MINUS.sub("−", text)
+
+
+def typeset(text: str) -> str:
+    """A text with the signs that are printed for those of a keyboard: 3·5 − 2·7 = 1 for 3*5 - 2*7 = 1, → for ->.
+
+    Hyphens are minus signs in formulas, and dashes between the two links of a pair; else they stay, so that a number
+    may be taken over.
+    """
+    text = text.replace("->", "→")
+    if FORMULA.search(text):
+        text = signed(text.replace(" - ", " − "))
+    text = re.sub(r"(?<=\d)\*(?=\d)", "·", PAIR.sub(" – ", text))
+    return re.sub(r"(?<=\d) °(?!/)", "°", text)
 
 
 def spelt(unit: str) -> str:

@@ -72,7 +72,15 @@ class Dimension:
     def example(self) -> str:
         """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
         name = self.name
-        return _("{kind}, e.g. {example}").format(kind=self, example=KINDS[name].example) if name else str(self)
+        return (
+            _("{kind}, e.g. {example}").format(kind=self, example=_either(KINDS[name].example)) if name else str(self)
+        )
+
+
+def _either(examples: str) -> str:
+    """An example, or two of them."""
+    one, __, other = examples.partition(" or ")
+    return _("{one} or {other}").format(one=one, other=other) if other else one
 
 
 class Kind(NamedTuple):
@@ -93,6 +101,7 @@ MOMENT: Final = Dimension(2, 1, -2)
 INERTIA: Final = Dimension(2, 1)
 AREA: Final = Dimension(2)
 PRESSURE: Final = Dimension(-1, 1, -2)
+DENSITY: Final = Dimension(-3, 1)
 SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
@@ -120,6 +129,7 @@ KINDS: Final[Mapping[str, Kind]] = {
     "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
     "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
     "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
+    "density": Kind(DENSITY, "kg/m^3", "7800 kg/m^3"),
 }
 
 
@@ -130,7 +140,7 @@ ARTICLED: Final[Mapping[str, str]] = {
     "pressure": N_("a pressure"), "angular speed": N_("an angular speed"),
     "angular acceleration": N_("an angular acceleration"),
     "stiffness": N_("a stiffness"), "torsional stiffness": N_("a torsional stiffness"), "damping": N_("a damping"),
-    "torsional damping": N_("a torsional damping"),
+    "torsional damping": N_("a torsional damping"), "density": N_("a density"),
 }  # fmt: skip
 
 

@@ -90,8 +90,11 @@ def sizes(results: Results) -> Mapping[Dimension, float]:
     }  # fmt: skip
     if results.reactions is not None:
         applied = results.reactions.applied
-        forces = _most(reaction.force for reaction in results.reactions.all)
-        couples = _most(load.moment for load in applied)
+        links = results.linkage.links.values()  # one that does not turn has the error of its couple all the same
+        inertia = found[ACCELERATION] * _most(link.mass for link in links)
+        forces = max(inertia, _most(reaction.force for reaction in results.reactions.all))
+        turning = found[ANGULAR_ACCELERATION] * _most(link.inertia for link in links)
+        couples = max(turning, _most(load.moment for load in applied))
         found[FORCE] = max(forces, _most(load.force for load in applied)) + couples / size
         found[MOMENT] = found[FORCE] * found[LENGTH]
     return found

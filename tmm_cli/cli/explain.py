@@ -9,6 +9,7 @@ import typer
 from tmm_cli.cli.common import Files, Settings, console, each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import OK
+from tmm_cli.language import typeset
 from tmm_cli.library import solve
 from tmm_cli.results.explain import explain as tables
 from tmm_cli.results.in_words import in_words
@@ -27,7 +28,7 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
         results = solve(opened(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
-        for sentence in in_words(results):
+        for sentence in map(typeset, in_words(results)):
             screen.print(sentence)
         for table in tables(results, verbose):
             show(table, results.problem.units, screen, most=None)  # there is no other place that has them all

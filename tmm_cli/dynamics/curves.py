@@ -45,6 +45,10 @@ class Curve:
         found: Real = chebyshev.chebval((2 * x - low - high) / (high - low), self.coefficients[:, panel], tensor=False)
         return found
 
+    def slope(self) -> Curve:
+        """Its derivative, panel by panel."""
+        return Curve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
+
     def summed(self) -> Curve:
         """Its integral from 0 on."""
         half = np.diff(self.edges) / 2

@@ -23,10 +23,9 @@ import numpy as np
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.roots import least, roots
-from tmm_cli.roots import top as place_of_extreme
 from tmm_cli.vectors import Real
 
-NEAR = 0.02  # rad (or m): about the point of a tangent the diagram is looked at that far
+NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
 
 
 @dataclass(frozen=True)
@@ -120,8 +119,13 @@ def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tange
         return found
 
     x, __ = lowest(height, work.places())
-    # values alone tell the place to half the digits only
-    x = float(place_of_extreme(lambda at: height(np.clip(at, 0.0, work.length)), x, NEAR))
+    rate = work.slope()
+
+    def steepness(x: Real) -> Real:
+        found: Real = sign * (rate(x) - slope * machine.slope(x))
+        return found
+
+    x = sharper(steepness, x, work.length)
     at = np.array([x])
     return Tangent(x, float(machine.inertia(at)[0]), float(work(at)[0]), slope)
 
@@ -134,6 +138,15 @@ def _square(machine: Reduced, work: Curve, inertia: float, energy: float, x: Rea
 
 def _minus(function: Callable[[Real], Real], x: Real) -> Real:
     return -function(x)
+
+
+def sharper(rate: Callable[[Real], Real], x: float, length: float) -> float:
+    """The place of a minimum that is near x, between 0 and a length, to all digits: where the rate changes its sign,
+    as it does where a load jumps too. Values alone tell it to half the digits only.
+    """
+    ends = np.clip([x - NEAR, x + NEAR], 0.0, np.nextafter(length, 0.0))
+    below, above = rate(ends)
+    return float(roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
 
 
 def lowest(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:

@@ -5,6 +5,7 @@ S. A. Popov, G. A. Timofeev, Course project in the theory of mechanisms (2017), 
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,36 +13,51 @@ from tmm_cli.vectors import Real
 
 
 class Motor(Protocol):
-    """A characteristic, reduced to the driving link."""
+    """A characteristic, reduced to the driving link, by the slip s = 1 - w / w0 under its speed without load w0.
 
-    def moment(self, speed: Real) -> tuple[Real, Real]:
-        """N m at speeds (rad/s), and its slope (N m s); of a slider N at m/s."""
+    Of a motor that is strong for its load the slip has all digits of the moment, the speed only a few.
+    """
+
+    @property
+    @abstractmethod
+    def idle(self) -> float:
+        """Its speed without load, rad/s, or m/s of a slider."""
+
+    @property
+    @abstractmethod
+    def most(self) -> float:
+        """Its largest moment from that speed down to rest, N m, or N."""
+
+    @abstractmethod
+    def at_slip(self, slip: Real) -> tuple[Real, Real]:
+        """N m (N of a slider), and its slope by the slip."""
+
+    def moment(self, speed: Real) -> Real:
+        """N m at speeds (rad/s); of a slider N at m/s."""
+        return self.at_slip(1 - speed / self.idle)[0]
 
 
 @dataclass(frozen=True)
-class Constant:
-    """The same moment at all speeds."""
-
-    value: float
-
-    def moment(self, speed: Real) -> tuple[Real, Real]:
-        return self.value + 0.0 * speed, 0.0 * speed
-
-
-@dataclass(frozen=True)
-class Linear:
+class Linear(Motor):
     """Direct current, shunt wound: from `stall` at rest down to nothing at `free` speed (rad/s)."""
 
     stall: float
     free: float
 
-    def moment(self, speed: Real) -> tuple[Real, Real]:
-        slope = -self.stall / self.free
-        return self.stall + slope * speed, slope + 0.0 * speed
+    @property
+    def idle(self) -> float:
+        return self.free
+
+    @property
+    def most(self) -> float:
+        return self.stall
+
+    def at_slip(self, slip: Real) -> tuple[Real, Real]:
+        return self.stall * slip, self.stall + 0.0 * slip
 
 
 @dataclass(frozen=True)
-class Kloss:
+class Kloss(Motor):
     """Asynchronous: M = 2 Mk / (s / sk + sk / s), s the slip under the synchronous speed (rad/s).
 
     M. Kloss, Archiv fuer Elektrotechnik 5 (1916). breakdown: Mk (N m) at the slip sk.
@@ -57,10 +73,16 @@ class Kloss:
         own = 1 - speed / synchronous
         return cls(synchronous, overload * moment, own * (overload + (overload**2 - 1) ** 0.5))
 
-    def moment(self, speed: Real) -> tuple[Real, Real]:
-        s = 1 - speed / self.synchronous
+    @property
+    def idle(self) -> float:
+        return self.synchronous
+
+    @property
+    def most(self) -> float:
+        return self.breakdown
+
+    def at_slip(self, slip: Real) -> tuple[Real, Real]:
         # 2 Mk s sk / (s^2 + sk^2): the same without a zero under the line at the synchronous speed
-        under = s**2 + self.slip**2
-        moment = 2 * self.breakdown * s * self.slip / under
-        slope = -2 * self.breakdown * self.slip * (self.slip**2 - s**2) / under**2 / self.synchronous
-        return moment, slope
+        under = slip**2 + self.slip**2
+        moment = 2 * self.breakdown * slip * self.slip / under
+        return moment, 2 * self.breakdown * self.slip * (self.slip**2 - slip**2) / under**2

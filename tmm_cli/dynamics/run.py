@@ -2,7 +2,8 @@
 
 J w' + J' w^2 / 2 = M + Md along the way x of the driver, by time, until that is gone or the machine stands. Works are
 integrated beside it. By the method of Dormand and Prince of order 8, in pieces at whose ends moments may jump:
-E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.10.
+E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.10; with a motor too strong
+for its load by that of Petzold and Hindmarsh (LSODA), which is stiff.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from tmm_cli.roots import roots
 from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
+STRONG = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
 INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
@@ -112,11 +114,21 @@ def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: t
     gone.direction, rests.direction = 1.0, -1.0  # type: ignore[attr-defined]
     scale = max(abs(state[1]), 1e-3)
     energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
+    method, error = ("LSODA", TOLERANCE / 10) if _stiff(machine, task) else ("DOP853", TOLERANCE)
     return solve_ivp(
-        lambda t, y: _rates(machine, task, piece, t, y), times, state, "DOP853", events=(gone, rests), rtol=TOLERANCE,
-        dense_output=True,
-        atol=[TOLERANCE * machine.length, TOLERANCE * scale, *[TOLERANCE * energy] * 3],
+        lambda t, y: _rates(machine, task, piece, t, y), times, state, method, events=(gone, rests),
+        rtol=error, dense_output=True,
+        atol=[error * machine.length, error * scale, *[error * energy] * 3],
     )  # fmt: skip
+
+
+def _stiff(machine: Reduced, task: RunTask) -> bool:
+    """Whether a motor changes the speed much more quickly than the machine goes its way."""
+    if task.motor is None:
+        return False
+    inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.places())))
+    steepest = float(task.motor.at_slip(np.zeros(1))[1][0]) / task.motor.idle
+    return steepest * machine.length > STRONG * inertia * task.motor.idle
 
 
 def _short_of(step: Any, way: Real, time: Real) -> Real:
@@ -145,7 +157,7 @@ def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float
 
 
 def _driving(task: RunTask, t: float, x: Real, speed: float) -> float:
-    found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0][0])
+    found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0])
     return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
 
 

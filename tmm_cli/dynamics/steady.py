@@ -7,9 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_cli.dynamics.by_motor import with_motor
 from tmm_cli.dynamics.curves import Curve, fitted
-from tmm_cli.dynamics.flywheel import Flywheel, Tangent, at_mean, exact, lowest, mertsalov, touching, wittenbauer
-from tmm_cli.dynamics.motion import Law, under_constant_moment, with_motor
+from tmm_cli.dynamics.flywheel import (
+    Flywheel,
+    Tangent,
+    at_mean,
+    exact,
+    lowest,
+    mertsalov,
+    sharper,
+    touching,
+    wittenbauer,
+)
+from tmm_cli.dynamics.motion import Law, under_constant_moment
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
@@ -105,8 +116,12 @@ def extremes(law: Law) -> tuple[float, float]:
 def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
     """Where on the way the speed is least and largest, each with that speed."""
     places = law.energy.places()
-    quickest, high = lowest(lambda x: -law.speed(x), places)
-    return lowest(law.speed, places), (quickest, -high)
+    (slowest, low), (quickest, high) = lowest(law.speed, places), lowest(lambda x: -law.speed(x), places)
+    length = law.energy.length
+    return (
+        (sharper(law.acceleration, slowest, length), low),
+        (sharper(lambda x: -law.acceleration(x), quickest, length), -high),
+    )
 
 
 def fluctuation(law: Law) -> float:
@@ -140,7 +155,7 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
 
     def delta_of(flywheel: float) -> float:
         try:
-            return fluctuation(with_motor(machine, flywheel, motor, task.mean))
+            return fluctuation(with_motor(machine, flywheel, motor))
         except StandstillError:
             return STANDS
 
@@ -152,9 +167,10 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
         flywheel = _searched(
             task.delta, delta_of, task.flywheel, float(np.max(machine.inertia(machine.inertia.places())))
         )
-    law = with_motor(machine, flywheel, motor, task.mean)
-    start = float(law.energy(np.zeros(1))[0])
-    work = fitted(lambda x: (law.energy(x) - start,), law.energy.edges)[0]
+    law = with_motor(machine, flywheel, motor)
+    gained = law.energy.coefficients.copy()
+    gained[0] -= law.energy(np.zeros(1))[0]
+    work = Curve(law.energy.edges, gained)
     return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
 
 

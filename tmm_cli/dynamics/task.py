@@ -18,7 +18,7 @@ from tmm_cli.vectors import Real
 class SteadyTask:
     """What is wanted. mean: of the largest and the least speed of the driver (rad/s, or m/s), under a constant moment.
 
-    delta: fluctuation that a flywheel is to keep. motor: in place of a constant moment; `mean` is then a guess only.
+    delta: fluctuation that a flywheel is to keep. motor: for a constant moment; the speed is then what it comes to.
     flywheel: a given one, reduced to the driver (kg m2, or kg); without a delta no other is sought. ratio: speed of the
     flywheel's shaft over the driver's; size: how its form is told.
     """

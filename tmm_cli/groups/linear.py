@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
 
 from tmm_cli.double_double import exactly, rounded
@@ -65,3 +69,24 @@ def signed_determinant(matrix: Real) -> Real:
         return np.ones(matrix.shape[:-2])
     sign: Real = np.linalg.slogdet(rounded(matrix))[0]
     return sign
+
+
+def margin_of(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
+    """Least singular value over the largest of as many rows {unknown: coefficient} as there are unknowns.
+
+    Without dimension: lengths tells which rows are in metres; of three unknowns two are. On a tape it is one operation.
+    """
+    scale = [1 / size if length else 1.0 for length in lengths]
+    columns = [1.0 if k % 3 == 2 else size for k in range(len(rows))]
+    entries = [
+        row[k] * (down * across) if k in row else 0.0
+        for row, down in zip(rows, scale, strict=True) for k, across in enumerate(columns)
+    ]  # fmt: skip
+    stand = next((entry for entry in entries if hasattr(entry, "called")), None)
+    return _margin(*entries) if stand is None else stand.called(_margin, *entries)
+
+
+def _margin(*entries: Any) -> Real:
+    many = math.isqrt(len(entries))
+    together = np.stack(np.broadcast_arrays(*entries), axis=-1)
+    return least_over_largest(together.reshape(*together.shape[:-1], many, many))

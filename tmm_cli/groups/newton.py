@@ -73,7 +73,7 @@ class Newton(Kernel):
         pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
         size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *group.known})])
-        size = size if np.all(size > 0) else reach(linkage)
+        size = size if np.any(size > 0) else reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
@@ -306,13 +306,19 @@ class Newton(Kernel):
         more = self._apart(everything, found)
         if more is not None:
             found = under([wrench + extra for wrench, extra in zip(applied, more, strict=True)])
-        reaction = [constraint.reaction(everything, here) for constraint, here in self._by_constraint(found)]
+        return self.given_by(everything, list(self._by_constraint(found)))
+
+    def given_by(self, everything: Poses, multipliers: Sequence[tuple[Constraint, list[Real]]]) -> GroupReactions:
+        """Reactions from the multipliers of each pair and driver."""
+        reaction = [constraint.reaction(everything, here) for constraint, here in multipliers]
         outer, inner = len(self.group.outer), len(self.group.inner)
         for k, pair in enumerate(self.group.outer):
             if pair.i in self.order:
                 reaction[k] = reaction[k].opposite
-        rows = found.shape[-1] - len(self.group.drivers)
-        drives = {driver.link: found[..., rows + k] for k, driver in enumerate(self.group.drivers)}
+        drives = {
+            driver.link: here[0]
+            for driver, (_, here) in zip(self.group.drivers, multipliers[outer + inner :], strict=True)
+        }
         return GroupReactions(tuple(reaction[:outer]), tuple(reaction[outer : outer + inner]), drives)
 
 

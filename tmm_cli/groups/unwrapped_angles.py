@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
@@ -27,16 +28,28 @@ class Winding:
 
     def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
         """The same poses with their angles followed through full turns."""
-        cycle = self.q[-1] - self.q[0]
-        whole = np.floor((q - self.q[0]) / cycle) if self.closed else np.zeros(np.shape(q))
-        within = q - whole * cycle
         found = []
         for link, pose in zip(links, poses, strict=True):
             if link not in self.angles:
                 found.append(pose)
                 continue
-            table = self.angles[link]
-            about = np.interp(within.astype(float), self.q, table) + whole * (table[-1] - table[0])
             angle = np.arctan2(pose.z.imag, pose.z.real)
-            found.append(replace(pose, unwrapped=angle + 2 * pi(angle) * np.round((about - angle) / TAU)))
+            turned = angle + 2 * pi(angle) * np.round((self._about(link, q) - angle) / TAU)
+            found.append(replace(pose, unwrapped=turned))
         return tuple(found)
+
+    def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
+        """Where the table tells the turns of such poses: it is less than a quarter of a turn off."""
+        off = [
+            np.abs(pose.turned - self._about(n, q)) for n, pose in zip(links, poses, strict=True) if n in self.angles
+        ]
+        sure: Real = reduce(np.maximum, off) < np.pi / 2
+        return sure
+
+    def _about(self, link: str, q: Real) -> Real:
+        """The angle of a link at places q, by the table."""
+        cycle = self.q[-1] - self.q[0]
+        whole = np.floor((q - self.q[0]) / cycle) if self.closed else np.zeros(np.shape(q))
+        table = self.angles[link]
+        about: Real = np.interp((q - whole * cycle).astype(float), self.q, table) + whole * (table[-1] - table[0])
+        return about

@@ -13,7 +13,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import Space, within
-from tmm_cli.draw.sheets import law_of_motion
+from tmm_cli.draw.sheets import centres, hodographs, law_of_motion
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -25,6 +25,7 @@ from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
+from tmm_cli.language import signed, typeset
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import plain, rounded
 from tmm_cli.plans.record import subscript
@@ -40,7 +41,7 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
     "law": (law_of_motion.over_cycle, 225), "energy-mass": (law_of_motion.diagram, 190),
-    "run": (single_run, 225),
+    "run": (single_run, 225), "centres": (centres.sheets, 130), "shaking": (hodographs.balancing, 110),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
@@ -113,7 +114,7 @@ class Subject:
             if only and stem != only and not stem.startswith(f"{only}-sheet-"):
                 continue
             yield said(sentence, figure=Ref(stem))
-            yield Figure(caption or getattr(drawing, "title", ""), drawing, stem)
+            yield Figure(caption or by_hand(getattr(drawing, "title", "")), drawing, stem)
             sentence = further or sentence
 
 
@@ -125,7 +126,8 @@ def edged(drawing: Drawing) -> Drawing:
 
 
 def figures(text: str, language: str) -> str:
-    """Figures with the decimal mark and the minus of a language."""
+    """Figures with the decimal mark, the minus and the power of ten of a language."""
+    text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
     return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
 
 
@@ -134,10 +136,14 @@ def with_degrees(text: str) -> str:
     return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
-GREEK = {"alpha": "α", "beta": "β", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π", "phi": "φ", "psi": "ψ"}
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+GREEK = {
+    "alpha": "α", "beta": "β", "delta": "δ", "epsilon": "ε", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π",
+    "phi": "φ", "psi": "ψ", "omega": "ω",
+}  # fmt: skip
 
 
 def by_hand(text: str) -> str:
     """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
-    return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), text).replace(" - ", " − ")
+    return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")

@@ -11,21 +11,24 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
+from tmm_cli.language import half_up
 from tmm_cli.note import math as paper
 from tmm_cli.plans.record import Symbol
 
 FIGURES = 4  # of a result, and of what is put in if that does
 MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
+WHOLE = 7  # figures before the point that are written out
 NOTHING = 1e-9  # of the largest term: a sum that is less is zero
 
 
 @dataclass(frozen=True)
 class Leaf:
-    """A quantity with its value, SI. angle: in radians, printed in degrees."""
+    """A quantity with its value, SI. angle: in radians, printed in degrees. of: what is put in instead, as 2·π."""
 
     symbol: Symbol
     value: float
     angle: bool = False
+    of: Expression | None = None
 
 
 @dataclass(frozen=True)
@@ -142,7 +145,9 @@ def evaluate(expression: Expression, figures: int) -> float:
     """With every leaf rounded to so many figures."""
     of = partial(evaluate, figures=figures)
     match expression:
-        case Leaf(_, value, angle):
+        case Leaf(_, value, angle, instead):
+            if instead is not None:
+                return of(instead)
             return math.radians(rounded(math.degrees(value), figures)) if angle else rounded(value, figures)
         case Constant(value):
             return value
@@ -184,6 +189,8 @@ def numbers(expression: Expression, figures: int, text: Callable[[str], str] = s
     """The expression with numbers put in; text: how the language writes figures."""
 
     def number(leaf: Leaf) -> paper.Node:
+        if leaf.of is not None:
+            return numbers(leaf.of, figures, text)
         value = math.degrees(leaf.value) if leaf.angle else leaf.value
         digits = plain(rounded(value, figures), figures)
         shown = _figures(digits, text)
@@ -213,8 +220,11 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Sum(terms):
             parts: list[paper.Node | str] = []
             for sign, term in terms:
+                node = of(term)
+                if not parts and sign > 0 and isinstance(term, Leaf) and isinstance(node, paper.Brackets):
+                    node = node.inside  # a minus at the beginning
                 parts += ["−"] if sign < 0 else ["+"] if parts else []
-                parts.append(of(term))
+                parts.append(node)
             return paper.row(*parts) if parts else paper.Number("0")
         case Product(factors):
             shown: list[paper.Node | str] = []
@@ -248,8 +258,9 @@ def _inside(factor: Expression, node: paper.Node) -> paper.Node:
 
 
 def rounded(value: float, figures: int) -> float:
-    """To so many significant figures."""
-    return float(f"{value:.{figures - 1}e}")
+    """To so many significant figures, and all those before the point of a number that people write so."""
+    text = f"{half_up(value):.{figures - 1}e}"
+    return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
 def plain(value: float, figures: int) -> str:
@@ -257,10 +268,10 @@ def plain(value: float, figures: int) -> str:
     if value == 0:
         return "0"
     power = math.floor(math.log10(abs(value)))
-    if -4 <= power < 7:
+    if -4 <= power < WHOLE:
         text = f"{value:.{max(figures - 1 - power, 0)}f}"
         return text.rstrip("0").rstrip(".") if "." in text else text
-    mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
+    mantissa, _, exponent = f"{half_up(value):.{figures - 1}e}".partition("e")
     return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
@@ -269,9 +280,9 @@ def fixed(value: float, figures: int, terms: float = 0.0) -> str:
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
     power = math.floor(math.log10(abs(rounded(value, figures))))
-    if -4 <= power < 7:
-        return f"{value:.{max(figures - 1 - power, 0)}f}"
-    mantissa, _, exponent = f"{value:.{figures - 1}e}".partition("e")
+    if -4 <= power < WHOLE:
+        return f"{half_up(value):.{max(figures - 1 - power, 0)}f}"
+    mantissa, _, exponent = f"{half_up(value):.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
 
 

@@ -57,6 +57,10 @@ class Constraint(ABC):
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         """Second derivative of each row when no link accelerates."""
 
+    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any | None:
+        """The angle of one of its links (rad) that its first row asks for, from those of the others; None for most."""
+        return None
+
     def asked(self, drives: Drives, order: int) -> Sequence[Real | float]:
         """First or second derivative that each row must have; zero but for drivers."""
         return [0.0] * len(self.lengths)

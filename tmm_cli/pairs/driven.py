@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from tmm_cli.linkage import Driver, Linkage, Slide
 from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.sliding import Guided
 from tmm_cli.structure.assur import Pair
-from tmm_cli.vectors import Real, dot
+from tmm_cli.vectors import Real, dot, unit
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Driven(Constraint):
         want = drives[self.driver.link].value
         if self.slide is None:
             turned = poses[self.driver.link].z * np.conj(poses[self.driver.base].z)
-            residual = turned * np.exp(-1j * want)
+            residual = turned * unit(-want)
             return (np.arctan2(residual.imag, residual.real),)
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)
@@ -56,6 +57,12 @@ class Driven(Constraint):
             return {self.driver.base: ((0j, -1.0),), self.driver.link: ((0j, 1.0),)}
         here = Guided.at(self.slide, poses)
         return {name: (row,) for name, row in here.jacobian_rows(self.slide, here.u).items()}
+
+    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any | None:
+        if self.slide is not None:
+            return None
+        place = drives[self.driver.link].value
+        return angles[self.driver.base] + place if link == self.driver.link else angles[self.driver.link] - place
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         if self.slide is None:

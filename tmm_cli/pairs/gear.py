@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -52,6 +53,15 @@ class Gear(Constraint):
         return {
             self.mesh.i: ((0j, -ratio),), self.mesh.j: ((0j, 1.0),), self.mesh.carrier: ((0j, ratio - 1.0),),
         }  # fmt: skip
+
+    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
+        mesh = self.mesh
+        if link == mesh.carrier:
+            return (angles[mesh.j] - mesh.ratio * angles[mesh.i] - mesh.offset) / (1 - mesh.ratio)
+        carrier = angles[mesh.carrier]
+        if link == mesh.j:
+            return carrier + mesh.ratio * (angles[mesh.i] - carrier) + mesh.offset
+        return carrier + (angles[mesh.j] - carrier - mesh.offset) / mesh.ratio
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         return (np.zeros(np.shape(rates[self.mesh.i].w)),)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -81,6 +82,11 @@ class Sliding(Constraint):
             self.slide.carrier: ((0j, -1.0), across[self.slide.carrier]),
             self.slide.runner: ((0j, 1.0), across[self.slide.runner]),
         }
+
+    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
+        if link == self.slide.runner:
+            return angles[self.slide.carrier] + self.slide.turned
+        return angles[self.slide.runner] - self.slide.turned
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         here = Guided.at(self.slide, poses)

@@ -130,7 +130,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
 def bare_speed(driver: schema.Driver, values: ValueReader) -> bool:
     """Whether the driver's speed has no unit."""
     speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
-    return any(values.bare(speed) for speed in speeds)
+    return any(values.bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
 
 
 def refuse_tables(shape: schema.File) -> None:

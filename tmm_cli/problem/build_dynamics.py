@@ -17,6 +17,7 @@ from tmm_cli.quantities import (
     ANGLE,
     ANGULAR_SPEED,
     AREA,
+    DENSITY,
     FORCE,
     INERTIA,
     LENGTH,
@@ -27,6 +28,7 @@ from tmm_cli.quantities import (
     Dimension,
 )  # fmt: skip
 
+NUMBERS = {"linear": ("stall", "free"), "asynchronous": ("synchronous", "speed", "moment", "overload")}  # of a motor
 MOST_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
@@ -45,7 +47,10 @@ def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> S
     ratio = wheel.positive("ratio", NUMBER)
     own = 0.0 if given.flywheel.inertia is None else wheel.positive("inertia", INERTIA)
     form = Disk if given.flywheel.shape == "disk" else Rim
-    size = form(wheel.positive("density", NUMBER), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
+    size = form(wheel.positive("density", DENSITY), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
+    if form is Rim and size.height >= 1:
+        raise wheel.refusal("height", _("a rim as high as that has no hole"), quote(given.flywheel.height),
+                            _("less than 1, the mean diameter"))  # fmt: skip
     motor = None if given.motor is None else _motor(Part(given.motor, ("dynamics", "motor"), values))
     if given.run is not None:
         return _run(part, Part(given.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
@@ -80,6 +85,9 @@ def _run(whole: Part, part: Part, driver: Driver, motor: Motor | None, flywheel:
 def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
     given: schema_dynamics.Profile = part.given
     area = 1.0
+    if given.area is not None and size == MOMENT:
+        raise part.refusal("area", _("a pressure is on a piston, and this driver is a crank"), quote(given.area),
+                           _("a table of moments, or a driver that slides"), at_key=True)  # fmt: skip
     if given.area is not None:
         size, area = PRESSURE, part.positive("area", AREA)
     argument = NUMBER if given.against == "time" else place
@@ -96,20 +104,31 @@ def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
     return Profile(given.against, tuple(x for x, __ in rows), tuple(y for __, y in rows))
 
 
+def _turns(speed: float) -> str:
+    """A bare speed is in rad/s, and is often meant in turns a minute."""
+    return f"{speed:.6g} rad/s = {speed * 30 / math.pi:.6g} rpm"
+
+
 def _motor(part: Part) -> Motor:
     """Reduced to the driver."""
     given: schema_dynamics.Motor = part.given
     ratio = part.positive("ratio", NUMBER)
-    wanted = ("stall", "free") if given.kind == "linear" else ("synchronous", "speed", "moment")
+    wanted = NUMBERS[given.kind]
     for key in wanted:
         if getattr(given, key) is None:
             raise part.refusal("", _("this motor is told by other numbers"), allowed=", ".join(wanted))
+    for key in given.model_fields_set - {"kind", "ratio", *wanted}:
+        raise part.refusal(key, _("this motor is told by other numbers"), quote(key), ", ".join(wanted), at_key=True)
     if given.kind == "linear":
         return Linear(ratio * part.positive("stall", MOMENT), part.positive("free", ANGULAR_SPEED) / ratio)
     synchronous, speed = part.positive("synchronous", ANGULAR_SPEED), part.positive("speed", ANGULAR_SPEED)
     if speed >= synchronous:
-        raise part.refusal("speed", _("the rated speed is below the synchronous one"), quote(given.speed))
+        raise part.refusal(
+            "speed", _("the rated speed is below the synchronous one"), f"{quote(given.speed)} = {_turns(speed)}",
+            _("less than {speed}").format(speed=_turns(synchronous)),
+        )  # fmt: skip
     overload = part.positive("overload", NUMBER)
     if overload < 1:
-        raise part.refusal("overload", _("the breakdown moment is not below the rated one"), quote(given.overload))
+        raise part.refusal("overload", _("the breakdown moment is not below the rated one"), quote(given.overload),
+                           _("1 or more"))  # fmt: skip
     return Kloss.rated(synchronous / ratio, speed / ratio, ratio * part.positive("moment", MOMENT), overload)

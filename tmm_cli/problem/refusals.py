@@ -26,11 +26,12 @@ from tmm_cli.errors import (
     UnknownNameError,
     UnknownPositionError,
     UnsettledError,
+    WeakMotorError,
 )
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.record import Problem
-from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.quantities import ANGLE, LENGTH, MOMENT
 from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
@@ -167,6 +168,15 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 path=("dynamics",), key=True,
                 found=_("at {place} of the driver's way").format(place=shown(place_of_rest)),
                 allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+            )  # fmt: skip
+        case WeakMotorError(wanted=mean, most=most):
+            unit = units.spelt(MOMENT)
+            return ProblemError(
+                _("the motor cannot carry the load: over the cycle this wants more than it gives at its best"),
+                path=("dynamics", "motor"), key=True,
+                found=_("{moment} {unit} on the driver").format(moment=f"{units.from_si(most, MOMENT):.4g}", unit=unit),
+                allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio")
+                .format(moment=f"{units.from_si(mean, MOMENT):.4g}", unit=unit),
             )  # fmt: skip
         case NoFlywheelError(wanted=delta, own=own):
             if math.isnan(own):

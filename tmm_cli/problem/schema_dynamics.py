@@ -34,7 +34,7 @@ class Flywheel(Strict):
     shape: Literal["disk", "rim"] = "disk"
     width: Value = Field(default="1/5", description="of the disk or the rim, over its mean diameter")
     height: Value = Field(default="1/8", description="of the rim, over its mean diameter")
-    density: Value = Field(default=7800, description="kg/m^3")
+    density: Value = Field(default=7800, description="of its material; a bare number: kg/m^3")
 
 
 class Profile(Strict):
@@ -61,7 +61,9 @@ class Dynamics(Strict):
     """Steady running, or a single run: the law of motion of the driver follows from what acts on the machine."""
 
     mean_speed: Value | None = Field(
-        default=None, alias="mean speed", description="mean of the largest and the least speed; the driver's"
+        default=None,
+        alias="mean speed",
+        description="mean of the largest and the least speed; the driver's",
     )
     delta: Value | None = Field(default=None, description="fluctuation of speed that a flywheel is to keep: 1/30")
     motor: Motor | None = Field(default=None, description="what drives; a constant moment when left out")

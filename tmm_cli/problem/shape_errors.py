@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -113,6 +113,8 @@ def _refusal(
             _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
         )
     if kind == "missing":
+        named = get_args(field.annotation) if field and get_origin(field.annotation) is Literal else ()
+        described = ", ".join(named) or described
         return ProblemError(_("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=described)
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
@@ -121,6 +123,8 @@ def _refusal(
             allowed=described if described and "[" in described else words,  # a list may stand here too
             near=nearest(str(value), words.split(", ")),
         )  # fmt: skip
+    if kind in ("model_type", "model_attributes_type") and field and (shape := _inside([field.annotation])):
+        described = ", ".join(inner.alias or name for name, inner in shape.model_fields.items())
     if kind == "too_short" and context["min_length"] == 1:
         kind = "empty"
     message = _(WORDS.get("int" if kind.startswith("int_") else kind, "{msg}")).format(

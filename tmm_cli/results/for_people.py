@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any, Literal
 
-from tmm_cli.language import _
+from tmm_cli.language import _, half_up, typeset
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.results.table import Column, Table
@@ -52,18 +52,18 @@ def cells(column: Column, units: UnitSystem) -> list[Cell]:
 def _of_word(text: str) -> Cell:
     if not text:
         return None
-    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else text
+    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else typeset(text)
 
 
 def _rounded(value: float, count: int) -> float | None:
     if count < 0:
         return None
-    return float(f"{value:.{count}g}") + 0.0 if count else 0.0
+    return float(f"{half_up(value):.{count}g}") + 0.0 if count else 0.0
 
 
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
-    yield "\ufeff" + ";".join(csv_cell(on_paper(column.heading(units))) for column in table.columns) + "\n"
+    yield "\ufeff" + ";".join(csv_cell(typeset(on_paper(column.heading(units)))) for column in table.columns) + "\n"
     for row in zip(*(cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_text, row)) + "\n"
 
@@ -102,7 +102,7 @@ def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 
 def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
     """Title, headings, rows, notes."""
-    heads = [on_paper(column.heading(units)) for column in table.columns]
+    heads = [typeset(on_paper(column.heading(units))) for column in table.columns]
     columns = [cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
         sheet.set_column(k, k, _width(head, column))
@@ -123,7 +123,7 @@ def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, An
             elif cell is not None:
                 sheet.write_string(n, k, cell, formats["words"])
     for n, note in enumerate(table.notes, 3 + min(table.rows, MOST_ROWS)):
-        sheet.write_string(n, 0, note, formats["note"])
+        sheet.write_string(n, 0, typeset(note), formats["note"])
 
 
 def _width(head: str, column: Sequence[Cell]) -> float:

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from tmm_cli.language import N_, _, numeral
+from tmm_cli.language import N_, _, numeral, typeset
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.table import Column, Table
 
@@ -23,9 +23,9 @@ MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
 
 
 def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
-    """Words as they are, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
+    """Words with printed signs, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
-        return [str(column.values[k]) for k in rows]
+        return [typeset(str(column.values[k])) for k in rows]
     values, count = column.numbers(units), figures(column, units)
     return [_number(float(values[k]), int(count[k])) for k in rows]
 
@@ -55,7 +55,7 @@ def show(
     """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
     printed = chosen[:most]
-    texts = [[column.heading(units), *cells(column, units, printed)] for column in table.columns]
+    texts = [[typeset(column.heading(units)), *cells(column, units, printed)] for column in table.columns]
     words = [column.dimension is None for column in table.columns]
     least = [_least(*column) for column in zip(texts, words, strict=True)]
     for number, part in enumerate(_parts(words, least, console.width)):
@@ -70,7 +70,7 @@ def show(
     if len(chosen) > len(printed):
         console.print(Text(_(more).format(rows=len(chosen) - len(printed)), style="dim"))
     for note in table.notes:
-        console.print(Text(note, style="dim"))
+        console.print(Text(typeset(note), style="dim"))
 
 
 def _least(texts: Sequence[str], words: bool) -> int:

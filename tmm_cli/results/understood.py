@@ -119,11 +119,12 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
     named = {key.replace("_", " ") for key in data.get("units", {})}
     if not problem.bare_speed or not driver.rate:
         return
+    fastest = driver.rate if driver.law is None else math.sqrt(max(driver.law.squares.values))  # that stands in a row
     if driver.kind == "turn" and units.factor(ANGLE) != 1 and "angular speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
             "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
-        ).format(motion=motion(driver), angle=units.spelt(ANGLE), speed=numeral(driver.rate, ".6g"))
+        ).format(motion=motion(driver), angle=units.spelt(ANGLE), speed=numeral(fastest, ".6g"))
     if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
@@ -207,5 +208,5 @@ def _farthest(link: Link, point: str) -> str:
 
 
 def _short(number: float) -> str:
-    """Three figures, and all those before the point of a number that people would write so."""
-    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".3g")
+    """Four figures, and all those before the point of a number that people would write so."""
+    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

@@ -47,6 +47,29 @@ class Outputs(Mapping[str, Array]):
             found = np.broadcast_to(found, self.shape)
         return (found.T if self.turned else found) if self.several else found.reshape(-1)
 
+    def without(self, name: str) -> Outputs:
+        """All but one."""
+        names = {one: parts for one, parts in self.names.items() if one != name}
+        return Outputs(names, self.planes, self.turned, self.several, self.shape)
+
+    @property
+    def several_shape(self) -> tuple[int, int]:
+        """Variants and positions."""
+        return self.shape[::-1] if self.turned else self.shape
+
+    def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> Outputs:
+        """With other values of a variant at the positions of a mask; there are as many as it has, in their order."""
+        planes = dict(self.planes)
+        for name, parts in self.names.items():
+            for imaginary, term in enumerate(parts):
+                if isinstance(term, Term):
+                    plane = planes[term.number]
+                    if plane.shape != self.shape or term.op == "input":
+                        plane = planes[term.number] = np.broadcast_to(plane, self.shape).copy()
+                    own = plane[:, variant] if self.turned else plane[variant]
+                    own[where] = values[name].imag if imaginary else values[name].real
+        return Outputs(self.names, planes, self.turned, self.several, self.shape)
+
     def __getitem__(self, name: str) -> Array:
         if self.names[name][1] is None:
             return self.part(name)
@@ -124,7 +147,7 @@ class _Code:
         writer = _Writer(full, self.slots)
         self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
         names: dict[str, Any] = {f"f_{name}": function for name, function in ONE_BY_ONE.items()}
-        names |= {"copy": np.copyto, "where": np.where, "read": _read} | writer.constants
+        names |= {"copy": np.copyto, "where": np.where, "read": _read, "call": _call} | writer.constants
         exec(compile(writer.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
@@ -174,8 +197,16 @@ def _worked_out(term: Term, known: Mapping[int, Array]) -> Array:
     args = [known[a.number] if isinstance(a, Term) else a for a in term.args]
     if term.op == "where":
         return np.where(*args)
-    found: Array = np.interp(args[0], *args[1]) if term.op == "table" else ONE_BY_ONE[term.op](*args)
+    if term.op == "table":
+        return np.asarray(np.interp(args[0], *args[1]))
+    (called,), given = (args[0], args[1:]) if term.op == "call" else ((ONE_BY_ONE[term.op],), args)
+    found: Array = called(*given)
     return found
+
+
+def _call(function: tuple[Any], *operands: Any) -> None:
+    *given, out = operands
+    out[...] = function[0](*given)
 
 
 def _read(x: Array, table: tuple[Any, Any], out: Array) -> None:
@@ -263,4 +294,5 @@ class _Writer:
             self._release(k, args)
         else:
             out = f"out={to}" if op in ("maximum", "minimum") else to
-            self.lines.append(f"{'read' if op == 'table' else 'f_' + op}({', '.join(read)}, {out})")
+            name = {"table": "read", "call": "call"}.get(op, f"f_{op}")
+            self.lines.append(f"{name}({', '.join(read)}, {out})")

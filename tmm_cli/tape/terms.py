@@ -23,7 +23,7 @@ ONE_BY_ONE: dict[str, Any] = {
     "less": np.less, "less_equal": np.less_equal, "greater": np.greater, "greater_equal": np.greater_equal,
     "equal": np.equal, "not_equal": np.not_equal, "bitwise_and": np.logical_and, "bitwise_or": np.logical_or,
     "invert": np.logical_not, "logical_and": np.logical_and, "logical_or": np.logical_or,
-    "logical_not": np.logical_not, "remainder": np.remainder,
+    "logical_not": np.logical_not, "remainder": np.remainder, "rint": np.rint,
 }  # fmt: skip
 SWAPPED = {"add", "multiply", "minimum", "maximum", "bitwise_and", "bitwise_or", "logical_and", "logical_or", "equal"}
 TRUTHS = {
@@ -36,8 +36,8 @@ TRUTHS = {
 class Term:
     """A number for every variant and position. axes: on which of the data's axes it depends, a bit each.
 
-    op: `input` (args: its number among the data), `where`, `table` (args: what it is read by, then the table) or the
-    name of a NumPy function.
+    op: `input` (args: its number among the data), `where`, `table` (args: what it is read by, then the table), `call`
+    (args: a function of whole arrays in a tuple, then its operands) or the name of a NumPy function.
     """
 
     number: int
@@ -93,7 +93,7 @@ class Tape:
             args = [self.value(a) if isinstance(a, Term) else a for a in term.args]
             if term.op == "input":
                 found = self.data.get(term.args[0])
-            elif any(a is None for a in args) or term.op == "table":
+            elif any(a is None for a in args) or term.op in ("table", "call"):
                 found = None
             else:
                 with np.errstate(all="ignore"):

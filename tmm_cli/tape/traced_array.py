@@ -50,6 +50,10 @@ class TracedArray(NDArrayOperatorsMixin):
     def imag(self) -> TracedArray:
         return TracedArray(self.tape, 0.0 if self.im is None else self.im)
 
+    def astype(self, _: Any) -> TracedArray:
+        """All numbers of a tape are of one type."""
+        return self
+
     def conjugate(self) -> TracedArray:
         return self if self.im is None else TracedArray(self.tape, self.re, self.tape.apply("negative", self.im))
 
@@ -106,6 +110,10 @@ class TracedArray(NDArrayOperatorsMixin):
         if one[1] is None and other[1] is None:
             return TracedArray(self.tape, re)
         return TracedArray(self.tape, re, self.tape.where(truth[0], _im(one), _im(other)))
+
+    def called(self, function: Any, *operands: Any) -> TracedArray:
+        """A function of whole real arrays, as one operation."""
+        return TracedArray(self.tape, self.tape.term("call", (function,), *(self._of(x)[0] for x in operands)))
 
     def interp(self, x: Any, at: Any, values: Any) -> TracedArray:
         """A piecewise linear table (np.interp)."""
@@ -181,5 +189,6 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.imag: lambda stand, value: value.imag,
     np.angle: lambda stand, value: np.arctan2(value.imag, value.real),
     np.interp: TracedArray.interp,
+    np.round: lambda stand, value: np.rint(value),
     np.any: lambda stand, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
 }

@@ -2,13 +2,14 @@
 
 The tape holds what the ordinary stages do for this linkage, without what its numbers and the wanted results make
 superfluous; it is worth its writing (some milliseconds) from thousands of positions on. Groups that are found by
-iteration cannot be written on a tape; linkages that have them are solved one after another by the ordinary stages.
+iteration take a fixed number of Newton's steps on it, from starts that are read from a table of their way; positions
+where these were not enough are solved by the ordinary stages.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import reduce
 from typing import Any
 
@@ -23,17 +24,21 @@ from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.sequence import DriverMotion, drives_at
 from tmm_cli.groups.state import Drive
+from tmm_cli.groups.unrolled import NotUnrolledError
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import ANGLE
 from tmm_cli.structure.assur import Structure
-from tmm_cli.tape import Outputs, Program, record
+from tmm_cli.tape import DependsOnData, Outputs, Program, record
+from tmm_cli.tape.terms import Term
 from tmm_cli.variants.stack import changed, parts, varying
+from tmm_cli.variants.starts import Starts, started, sure, unrolled, wants
 from tmm_cli.vectors import Real
 
 Wanted = Callable[[Motion, Reactions | None], Mapping[str, Any]]
 CHECKS = ("placed", "moving", "margin")
+SURE = "sure"  # name of what tells, among the outputs of a tape, where its Newton's steps were enough
 TIME = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
 
 
@@ -54,8 +59,8 @@ def everything(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]
 class Batch:
     """Linkages of one kind, ready to be solved at places of their driver; all assembled as the first one is.
 
-    program is None where the groups are found by iteration; checks tells where they can be assembled. columns: what
-    varies, (variants, 1).
+    program is None where they cannot be written on a tape; checks tells where they can be assembled. columns: what
+    varies, (variants, 1). starts: of Newton's steps at places of the driver.
     """
 
     linkages: tuple[Linkage, ...]
@@ -67,13 +72,15 @@ class Batch:
     program: Program | None
     checks: Program | None = None
     columns: tuple[Real, ...] = ()
+    starts: Starts | None = None
+    others: dict[int, tuple[Kernel, ...]] = field(default_factory=dict)  # groups of linkages that were looked at alone
 
     def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
         """What was wanted, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
 
         Results are (variants, positions), or (positions,) of one linkage. Where `sound` says no they mean nothing.
         """
-        return self._one_by_one(q) if self.program is None else self.program(*self.columns, q)
+        return self._one_by_one(q) if self.program is None else self._played(self.program, q)
 
     def sound(self, q: Real) -> Outputs | Mapping[str, Real]:
         """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`.
@@ -81,14 +88,29 @@ class Batch:
         `margin` is the least distance of a group from a dead position, 1 at best: a result has lost about as many of
         its 16 digits as it has zeros. What these results are in truth is told by `solve`, with bounds, not here.
         """
-        return self._one_by_one(q) if self.checks is None else self.checks(*self.columns, q)
+        return self._one_by_one(q) if self.checks is None else self._played(self.checks, q)
+
+    def _played(self, program: Program, q: Real) -> Outputs:
+        """What a program gives, and the rest of it by the ordinary stages."""
+        q = np.asarray(q, dtype=float)
+        found = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
+        if SURE not in found:
+            return found
+        sure, found = np.reshape(found.part(SURE), found.several_shape), found.without(SURE)
+        for k in np.flatnonzero(~np.all(sure, axis=1)).tolist():
+            found = found.put(k, ~sure[k], self._solved(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
+        return found
+
+    def _solved(self, k: int, q: Real) -> Mapping[str, Real]:
+        """One of the linkages by the ordinary stages."""
+        linkage = self.linkages[k]
+        if k not in self.others:
+            self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
+        found = solved(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
+        return {name: np.broadcast_to(value, np.shape(q)) for name, value in found.items() if name != SURE}
 
     def _one_by_one(self, q: Real) -> Mapping[str, Real]:
-        found = []
-        for k, linkage in enumerate(self.linkages):
-            kernels = self.kernels if k == 0 else assemble(linkage, self.structure)
-            here = q[k] if np.ndim(q) > 1 else q
-            found.append(solved(linkage, self.structure, kernels, here, self.wanted, self.forces, self.strokes))
+        found = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
         if len(found) == 1:
             return found[0]
         return {name: np.stack([one[name] for one in found]) for name in found[0]}
@@ -113,22 +135,41 @@ def prepare(
     kernels = assemble(first, structure)
     # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
-    if apart or first.friction or not all(isinstance(kernel, Closed) and kernel.plain for kernel in kernels):
-        return Batch(linkages, structure, kernels, wanted, forces, strokes, None)
+    alone = Batch(linkages, structure, kernels, wanted, forces, strokes, None)
+    lines = None if apart or first.friction else straight(first, kernels)
+    if lines is None or (len(linkages) > 1 and wants(lines)):
+        return alone
     columns, together = parts(varying(linkages))
     if len(linkages) > 1 and not columns:  # all the same
         columns = [np.zeros((len(linkages), 1))]
+    many = len(columns)
 
     def stages(*data: Any) -> Mapping[str, Any]:
-        linkage = changed(first, together(*data[:-1])) if columns else first
-        own = tuple(kernel.rebind(linkage) for kernel in kernels) if columns else kernels
-        return solved(linkage, structure, own, data[-1], wanted, forces, strokes, blank=False)
+        linkage = changed(first, together(*data[:many])) if columns else first
+        own = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
+        own = started(own, data[many + 1 :])
+        return solved(linkage, structure, own, data[many], wanted, forces, strokes, blank=False)
 
-    axes = (*[1] * len(columns), 3 if own_places else 2)
-    whole = record(stages, *axes, data=dict(enumerate(columns)))
-    checks = whole.only(*CHECKS)
-    program = whole.only(*(name for name in whole.outputs if name not in CHECKS))
-    return Batch(linkages, structure, kernels, wanted, forces, strokes, program, checks, tuple(columns))
+    axes = (*[1] * many, *[3 if own_places else 2] * (1 + wants(lines)))
+    try:
+        whole = record(stages, *axes, data=dict(enumerate(columns)))
+    except DependsOnData:  # laws of cams
+        return alone
+    starts = Starts(first, lines) if wants(lines) else None
+    own = (SURE,) if isinstance(whole.outputs[SURE][0], Term) else ()
+    checks = whole.only(*CHECKS, *own)
+    program = whole.only(*(name for name in whole.outputs if name not in (*CHECKS, SURE)), *own)
+    return replace(alone, program=program, checks=checks, columns=tuple(columns), starts=starts)
+
+
+def straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...] | None:
+    """The groups as a tape can hold them; None where it cannot."""
+    if any(kernel.way is not None for kernel in kernels if isinstance(kernel, Closed)):
+        return None
+    try:
+        return unrolled(linkage, kernels)
+    except NotUnrolledError:
+        return None
 
 
 def solved(
@@ -149,7 +190,13 @@ def solved(
     motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
     reactions = reactions_of(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
-    return {**wanted(motion, reactions), "placed": motion.placed, "moving": motion.moving, "margin": margin}
+    return {
+        **wanted(motion, reactions),
+        "placed": motion.placed,
+        "moving": motion.moving,
+        "margin": margin,
+        SURE: sure(motion),
+    }
 
 
 def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:

@@ -17,7 +17,7 @@ from tmm_cli.groups.base import Closed
 from tmm_cli.linkage import Sketch
 from tmm_cli.tape import Program, TracedArray, record
 from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.variants.batch import CHECKS, Wanted, solved
+from tmm_cli.variants.batch import CHECKS, SURE, Wanted, solved
 from tmm_cli.variants.stack import changed, numbers
 from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
 from tmm_cli.vectors import Real
@@ -60,7 +60,7 @@ class Taped:
             return solved(linkage, structure, kernels, data[-1], wanted, forces, None, blank=False, start=self.start)
 
         whole = record(stages, *[1] * len(self.first), 3 if own else 2)
-        return whole.only(*(name for name in whole.outputs if name not in CHECKS))
+        return whole.only(*(name for name in whole.outputs if name not in (*CHECKS, SURE)))
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
         """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""

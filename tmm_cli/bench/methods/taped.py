@@ -1,4 +1,4 @@
-"""The product's own way for many positions: the closed-form groups written on a tape and played back."""
+"""The product's own way for many positions: the groups written on a tape and played back."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def batch(case: Case, *, forces: bool = True) -> Batch:
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:
-    """Writes the tape. Raises Unable for groups that are found by iteration."""
+    """Writes the tape. Raises Unable for what cannot be written on one."""
     played = batch(case)
     if played.program is None:
-        raise Unable("groups that are found by iteration cannot be written on a tape")
+        raise Unable("laws of cams, friction and passive constraints cannot be written on a tape")
     kinds = ("positions", "velocities", "accelerations", "reactions")
     names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 from tmm_cli.draw.paper import fonts
+from tmm_cli.language import signed, typeset
 from tmm_cli.plans.record import Symbol
 
 Words = str | Symbol | tuple[str | Symbol, ...]
@@ -16,8 +17,9 @@ BELOW, ABOVE = -0.30, 0.36  # how far their middle is off that of the letter
 
 
 def parts(words: Words) -> tuple[str | Symbol, ...]:
-    """Texts and symbols, one after another."""
-    return words if isinstance(words, tuple) else (words,)
+    """Texts and symbols, one after another, with printed signs."""
+    several = words if isinstance(words, tuple) else (words,)
+    return tuple(signed(typeset(part)) if isinstance(part, str) else part for part in several)
 
 
 def plain(words: Words) -> str:

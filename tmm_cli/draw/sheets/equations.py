@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.script import Words, filled
 from tmm_cli.draw.sheets.beneath import Table
-from tmm_cli.language import _, numeral, spelt
+from tmm_cli.language import _, half_up, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
@@ -119,8 +119,10 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
 
 
 def figure(value: float) -> str:
-    """A number with four figures, without powers of ten as far as people write it so."""
-    rounded = float(f"{value:.4g}")
+    """A number with four figures and all those before its point, without powers of ten as far as people write it so."""
+    rounded = float(f"{half_up(value):.4g}")
+    if 1e4 <= abs(rounded) < 1e7:
+        return numeral(value, ".0f")
     if not 0 < abs(rounded) < 1e-4:  # no power of ten
         return numeral(rounded, ".10g")
     places = len(np.format_float_positional(rounded).partition(".")[2])

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Heading, paragraph
+from tmm_cli.note.blocks import Block, Heading, Ref, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
@@ -35,7 +35,7 @@ def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
     yield Heading(_("Law of motion"))
     yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
     yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
-    yield from (rows_of(subject, table) for table in walk(subject.results, TABLES))
+    yield from _tables(subject)
 
 
 def _steady(subject: Subject, running: Running) -> Iterable[Block]:
@@ -77,7 +77,14 @@ def _steady(subject: Subject, running: Running) -> Iterable[Block]:
         "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
         only="law-motion",
     )  # fmt: skip
-    for table in walk(subject.results, TABLES):
-        if table.name == "law-of-motion" and running.sense < 0:
-            yield paragraph(signs(subject.results.linkage))
-        yield rows_of(subject, table)
+    if running.sense < 0:
+        yield paragraph(signs(subject.results.linkage))
+    yield from _tables(subject)
+
+
+def _tables(subject: Subject) -> Iterable[Block]:
+    tables = list(walk(subject.results, TABLES))
+    sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
+    for table, sentence in zip(tables, sentences, strict=True):
+        yield said(sentence, table=Ref(table.name))
+        yield rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")

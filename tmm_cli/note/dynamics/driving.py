@@ -36,7 +36,7 @@ def mean(here: Here) -> Iterable[Block]:
         text = _("The mean moment of the motor, reduced to the driving link:")
     yield said(text)
     way = Product((Constant(2.0 * turns), Constant(math.pi, "π")))
-    work = Quotient(Leaf(CYCLE, steady.machine.work_of_cycle), way)
+    work = Quotient(Leaf(CYCLE, steady.machine.work_of_cycle), Leaf(WHOLE, 2 * math.pi * turns, of=way))
     yield Found(Substitution(DRIVING, Sum(((-1, work),)), steady.moment, _("N·m")))
 
 
@@ -70,5 +70,5 @@ def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
     if value:
         under = Sum(((1, Quotient(slip, critical)), (1, Quotient(critical, slip))))
         moment = Quotient(Product((Constant(2), Leaf(BREAKDOWN, motor.breakdown))), under)
-        found = float(motor.moment(np.array([here.speed.value]))[0][0])
+        found = float(motor.moment(np.array([here.speed.value]))[0])
         yield Found(Substitution(DRIVING, moment, found, _("N·m")))

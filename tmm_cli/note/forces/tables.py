@@ -7,35 +7,50 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Rows, filled, line, said
+from tmm_cli.note.blocks import Block, Line, Ref, Rows, filled, line, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
+from tmm_cli.note.tables import NONE
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE
 from tmm_cli.vectors import Real, Vector
 
 PAIRS = 4  # reactions in one table
-NONE = "—"  # of what there is not in a position
 
 
 def reactions(subject: Subject) -> Iterable[Block]:
     """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
     found = subject.results.reactions
     assert found is not None
-    yield said(_("The following tables give the reactions in all positions and their angles with the axis x."))
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
-    yield from _sized(subject, _("Reactions in the pairs {names}"), pairs)
+    tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
+    yield several(
+        _("Table {first} gives the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x."),
+        [table.key for table in tables],
+    )  # fmt: skip
+    yield from tables
     pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
             for pin in found.pins(subject.results.linkage)]  # fmt: skip
     if pins:
-        yield said(_("In a compound hinge more than two links meet; its pin acts on each of them with the force:"))
-        yield from _sized(subject, _("Forces of the pins {names} on their links"), pins)
+        tables = list(_sized(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
+        yield several(
+            _("In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
+              "them."),
+            _("In a compound hinge more than two links meet; tables {first} and {last} give the force of its pin on "
+              "each of them."),
+            _("In a compound hinge more than two links meet; tables {first} to {last} give the force of its pin on "
+              "each of them."),
+            [table.key for table in tables],
+        )  # fmt: skip
+        yield from tables
 
 
 def _sized(
-    subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]]
-) -> Iterable[Block]:
+    subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
+) -> Iterable[Rows]:
     """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
     for first in range(0, len(forces), PAIRS):
         some = forces[first : first + PAIRS]
@@ -46,7 +61,7 @@ def _sized(
             way, size = np.angle(force) if told is None else told, np.abs(force)
             columns += [np.where(np.isnan(way) & np.isfinite(size), 0.0, size), way]
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
-        yield _table(subject, caption.format(names=names), head, columns, angles=True)
+        yield _table(subject, caption.format(names=names), head, columns, f"{key}-{first // PAIRS}", angles=True)
 
 
 def balancing(subject: Subject) -> Iterable[Block]:
@@ -73,7 +88,8 @@ def balancing(subject: Subject) -> Iterable[Block]:
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     caption = _("What balances the driving link") if not several else _("What balances the driven links")
     yield from _signs(subject, of_all)
-    yield _table(subject, caption, head, columns)
+    yield said(_("By both ways it is given in table {table}."), table=Ref("balance"))
+    yield _table(subject, caption, head, columns, "balance")
 
 
 def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
@@ -85,7 +101,7 @@ def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
 
 
 def _table(
-    subject: Subject, caption: str, head: Sequence[Line], columns: Sequence[Real], *, angles: bool = False
+    subject: Subject, caption: str, head: Sequence[Line], columns: Sequence[Real], key: str, *, angles: bool = False
 ) -> Rows:
     """A row a position. angles: every second column is one."""
     results = subject.results
@@ -102,7 +118,7 @@ def _table(
                 text = angle(subject, value) if angles and place % 2 else shown(subject, value)
             cells.append(line(text))
         rows.append(tuple(cells))
-    return Rows(caption, tuple(head), tuple(rows))
+    return Rows(caption, tuple(head), tuple(rows), key)
 
 
 def _without_rounding(column: Real, k: int) -> float:

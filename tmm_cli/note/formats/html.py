@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -37,6 +38,7 @@ from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
 STOPS = ".,;:)"
+SHORT = 16  # letters of a cell that is not broken
 WHOLE = 13  # rows of a table that is not parted between pages
 
 
@@ -132,10 +134,10 @@ class Writer:
         """With its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
-        head = "".join(f"<th>{self.line(cell)}</th>" for cell in rows.head)
+        head = "".join(f"<th>{self.heading(cell)}</th>" for cell in rows.head)
         body = "".join(
             "<tr>" + "".join(
-                f"<td{' class=' + chr(34) + 'number' + chr(34) if number else ''}>{self.line(cell)}</td>"
+                f"<td{kind_of(cell, number)}>{self.line(cell)}</td>"
                 for cell, number in zip(row, rows.numeric, strict=True)
             ) + "</tr>\n"
             for row in rows.rows
@@ -145,6 +147,12 @@ class Writer:
             f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'
             f"<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
         )
+
+    def heading(self, cell: Line) -> str:
+        """Of a column; units such as rad/s stay on one line."""
+        if not all(isinstance(part, str) for part in cell):
+            return self.line(cell)
+        return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', data("".join(map(str, cell))))
 
     def figure(self, figure: Figure) -> str:
         """With its caption below."""
@@ -164,6 +172,12 @@ class Writer:
     def place(self, key: str) -> str:
         """The name of what is referred to."""
         return f' id="{self.places[key]}"' if key else ""
+
+
+def kind_of(cell: Line, number: bool) -> str:
+    """Its class: a number, or words that stay on one line."""
+    short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
+    return ' class="number"' if number else ' class="short"' if short else ""
 
 
 def title(block: Title) -> str:

@@ -1,0 +1,89 @@
+"""Groups that are found by iteration, on a tape: Newton's steps from tables, and the ordinary stages for the rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from models import CLASS_III, linkage_of
+from test_tape import agree, plainly
+
+from tmm_cli.groups.elimination import Eliminated, Order
+from tmm_cli.problem.build import build
+from tmm_cli.problem.reader import read_text
+from tmm_cli.variants.batch import SURE, prepare
+
+ROUND = np.linspace(0.123, 6.28, 90)
+ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"
+
+
+def by_tape_alone(batch, q):
+    """Where the tape needed nothing else."""
+    found = batch.program(*batch.columns, q, *(batch.starts(q) if batch.starts else ()))
+    return found[SURE] if SURE in found else np.ones(np.shape(q), bool)
+
+
+@pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "summing-lever", "triad-six-assemblies"])
+def test_groups_of_higher_class_close_all_round_in_one_step(name):
+    batch = prepare(linkage_of(name))
+    assert np.all(by_tape_alone(batch, ROUND))
+    found, plain = batch(ROUND), plainly(batch, ROUND)
+    plain = {n: value for n, value in plain.items() if np.max(np.abs(value)) > 1e-12}  # of guides without a couple
+    agree({n: found[n] for n in plain}, plain, 1e-14)
+
+
+@pytest.mark.parametrize("name", ["gear-doubling", "tilter", "rack-doubling", "planetary-dwell-press", "cardan-gear"])
+def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
+    batch = prepare(linkage_of(name))
+    q = batch.linkages[0].sketch.at + 3 * ROUND - 8  # their angles go on beyond a turn
+    assert batch.program is not None and np.all(by_tape_alone(batch, q))
+    found = batch(q)
+    agree({n: found[n] for n in found}, plainly(batch, q), 1e-13)
+
+
+def test_margins_are_those_of_the_whole_jacobian():
+    batch = prepare(linkage_of("press-class-iii"))
+    assert np.allclose(batch.sound(ROUND)["margin"], replace(batch, checks=None).sound(ROUND)["margin"], rtol=1e-12)
+
+
+def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say():
+    batch = prepare(build(read_text(ROCKED, "iii.yaml")).linkage)
+    low, high = batch.kernels[-1].trace.q[[0, -1]]
+    q = np.sort([*np.linspace(low - 0.1, high + 0.1, 40), *(low + np.logspace(-12, -3, 10))])
+    taped, alone = by_tape_alone(batch, q), replace(batch, program=None, checks=None)
+    assert np.any(taped) and not np.all(taped[(q > low) & (q < high)]) and not np.any(taped[(q < low) | (q > high)])
+    sound, plain = batch.sound(q), alone.sound(q)
+    for name in ("placed", "moving"):
+        assert np.array_equal(sound[name], plain[name])
+    found, expected, rest = batch(q), plainly(batch, q), alone(q[~taped])
+    for name in found:
+        there = np.isfinite(rest[name])
+        assert np.allclose(found[name][~taped][there], rest[name][there], rtol=1e-13, atol=1e-16), name
+    agree({n: found[n][taped] for n in found}, {n: expected[n][taped] for n in found}, 1e-12)
+
+
+def test_a_group_that_no_tape_holds_is_solved_by_the_stages():
+    for name in ("cam-lever", "crossed-slots"):  # the law of a cam; passive constraints
+        batch = prepare(linkage_of(name))
+        assert batch.program is None and batch(ROUND[:3])["T.1"].shape == (3,)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(0, 5), st.integers(1, 4))
+@settings(max_examples=30)
+def test_elimination_solves_both_ways(seed, explicit, free):
+    """Explicit unknowns follow from those before them and the free ones; scales change nothing."""
+    random, n = np.random.default_rng(seed), explicit + free
+    matrix = random.normal(size=(n, n)) * (random.random((n, n)) < 0.7) + 3 * np.eye(n)
+    for row in range(explicit):
+        matrix[row, row + 1 : explicit] = 0
+    order = Order(tuple((k, k) for k in range(explicit)), tuple(range(explicit, n)), tuple(range(explicit, n)))
+    rows = [{k: np.array([value]) for k, value in enumerate(line) if value} for line in matrix]
+    right = random.normal(size=n)
+    for scales in (None, (random.uniform(0.1, 10, n), random.uniform(0.1, 10, n))):
+        by = Eliminated(rows, order, scales)
+        if np.linalg.cond(matrix) < 1e4:
+            assert np.allclose(np.ravel(by.solve(right)), np.linalg.solve(matrix, right), atol=1e-9)
+            assert np.allclose(np.ravel(by.transposed(right)), np.linalg.solve(matrix.T, right), atol=1e-9)
