@@ -217,9 +217,7 @@ def test_a_rod_without_its_bolt_lets_the_crank_turn_beside_a_slider_that_stands(
     assert np.ptp(broken.motion.named("E").x) == 0
     between = np.degrees(broken.motion.link("5").angle - broken.motion.link("4").angle)
     assert np.ptp(between) > 20
-    assert any(
-        name.startswith("lever") for name in drawn("settings/safety-rod-broken")
-    )
+    assert any(name.startswith("lever") for name in drawn("settings/safety-rod-broken"))
 
 
 # gear-lever
