@@ -14,22 +14,16 @@ from test_tape import agree, plainly
 from tmm_cli.groups.elimination import Eliminated, Order
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.variants.batch import SURE, prepare
+from tmm_cli.variants.batch import prepare
 
 ROUND = np.linspace(0.123, 6.28, 90)
 ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"
 
 
-def by_tape_alone(batch, q):
-    """Where the tape needed nothing else."""
-    found = batch.program(*batch.columns, q, *(batch.starts(q) if batch.starts else ()))
-    return found[SURE] if SURE in found else np.ones(np.shape(q), bool)
-
-
 @pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "summing-lever", "triad-six-assemblies"])
 def test_groups_of_higher_class_close_all_round_in_one_step(name):
     batch = prepare(linkage_of(name))
-    assert np.all(by_tape_alone(batch, ROUND))
+    assert np.all(batch.closed(ROUND))
     found, plain = batch(ROUND), plainly(batch, ROUND)
     plain = {n: value for n, value in plain.items() if np.max(np.abs(value)) > 1e-12}  # of guides without a couple
     agree({n: found[n] for n in plain}, plain, 1e-14)
@@ -39,7 +33,7 @@ def test_groups_of_higher_class_close_all_round_in_one_step(name):
 def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
     batch = prepare(linkage_of(name))
     q = batch.linkages[0].sketch.at + 3 * ROUND - 8  # their angles go on beyond a turn
-    assert batch.program is not None and np.all(by_tape_alone(batch, q))
+    assert batch.program is not None and np.all(batch.closed(q))
     found = batch(q)
     agree({n: found[n] for n in found}, plainly(batch, q), 1e-13)
 
@@ -53,7 +47,7 @@ def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say()
     batch = prepare(build(read_text(ROCKED, "iii.yaml")).linkage)
     low, high = batch.kernels[-1].trace.q[[0, -1]]
     q = np.sort([*np.linspace(low - 0.1, high + 0.1, 40), *(low + np.logspace(-12, -3, 10))])
-    taped, alone = by_tape_alone(batch, q), replace(batch, program=None, checks=None)
+    taped, alone = batch.closed(q), replace(batch, program=None, checks=None)
     assert np.any(taped) and not np.all(taped[(q > low) & (q < high)]) and not np.any(taped[(q < low) | (q > high)])
     sound, plain = batch.sound(q), alone.sound(q)
     for name in ("placed", "moving"):

@@ -90,6 +90,16 @@ class Batch:
         """
         return self._one_by_one(q) if self.checks is None else self._played(self.checks, q)
 
+    def closed(self, q: Real) -> Real:
+        """Where the tape alone closes all groups, and needs no other stages, at q."""
+        if self.checks is None:
+            return np.zeros(np.shape(q), dtype=bool)
+        q = np.asarray(q, dtype=float)
+        found = self.checks.only(*({SURE} & set(self.checks.outputs)))(
+            *self.columns, q, *(self.starts(q) if self.starts else ())
+        )
+        return found[SURE] if SURE in found else np.ones(found.several_shape, dtype=bool)
+
     def _played(self, program: Program, q: Real) -> Outputs:
         """What a program gives, and the rest of it by the ordinary stages."""
         q = np.asarray(q, dtype=float)
