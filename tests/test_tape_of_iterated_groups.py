@@ -59,6 +59,41 @@ def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say()
     agree({n: found[n][taped] for n in found}, {n: expected[n][taped] for n in found}, 1e-12)
 
 
+def varied(it, size, seed=3):
+    """The same with links up to so much longer, one by one."""
+    random, found = np.random.default_rng(seed), [it]
+    for _ in range(3):
+        links = dict(it.links)
+        for name in it.moving:
+            by = 1 + size * float(random.random())
+            points = {point: place * by for point, place in it.links[name].points.items()}
+            links[name] = replace(it.links[name], points=points)
+        found.append(replace(it, links=links, gravity=it.gravity * by))
+    return found
+
+
+@pytest.mark.parametrize(
+    "name, size, tolerance", [("press-class-iii", 0.05, 1e-13), ("class-iv", 0.05, 1e-13), ("tilter", 0.1, 1e-12)]
+)
+def test_variants_are_followed_from_the_first_one_and_along_their_ways(name, size, tolerance):
+    batch = prepare(varied(linkage_of(name), size))
+    q = ROUND[::9]
+    assert np.all(batch.closed(q))
+    found = batch(q)
+    agree({n: found[n] for n in found}, plainly(batch, q), tolerance)
+
+
+def test_a_variant_that_does_not_go_so_far_is_solved_by_the_stages_where_it_ends():
+    it = linkage_of("press-class-iii")
+    rod = it.links["7"]
+    short = replace(it, links={**it.links, "7": replace(rod, points={n: 0.75 * p for n, p in rod.points.items()})})
+    batch, q = prepare([it, short]), ROUND[::9]
+    closed, sound, alone = batch.closed(q), batch.sound(q), prepare(short)
+    assert np.all(closed[0]) and not np.all(closed[1])
+    assert np.array_equal(sound["placed"][1], alone.sound(q)["placed"]) and np.all(sound["placed"][0])
+    agree({"S2.v": batch(q)["S2.v"][1]}, {"S2.v": alone(q)["S2.v"]}, 1e-13)
+
+
 def test_a_group_that_no_tape_holds_is_solved_by_the_stages():
     for name in ("cam-lever", "crossed-slots"):  # the law of a cam; passive constraints
         batch = prepare(linkage_of(name))
