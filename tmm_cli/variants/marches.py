@@ -26,6 +26,7 @@ from tmm_cli.vectors import Real
 CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
 STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
 ROUNDS = 12  # at most from the first linkage to a variant
+AT_NODE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
 SHORTEST = 0.25  # of a step
 EACH_TURN, LEAST_TURN = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
 STEPS_OF_VARIANTS = 2  # of Newton's method, from ways in such steps
@@ -58,7 +59,7 @@ class Ways:
             q = q - whole * (2 * n * up)
         step = np.where(q < 0, down, up)
         share = q / np.where(step > 0, step, 1.0)
-        k = np.clip(np.floor(share), -n, n - 1)
+        k = np.clip(np.floor(share + AT_NODE), -n, n - 1)
         t = share - k
         flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
         x, v = (part.reshape(unknowns, -1) for part in (self.x, self.v))
@@ -66,9 +67,9 @@ class Ways:
         # the step of the piece: the piece from -1 to 0 is one of the way down
         one, other = (step * v.take(f, axis=1) for f in (flat, flat + 1))
         found = a + t * (one + t * (3 * (b - a) - 2 * one - other + t * (2 * (a - b) + one + other)))
-        found = np.where(t == 0.0, a, found)  # a node, whatever lies after it
+        found = np.where(np.abs(t) <= AT_NODE, a, found)  # a node, whatever lies after it
         if self.gain is not None:
-            found = found + whole * self.gain
+            found = np.where(whole == 0, found, found + whole * self.gain)
         return list(found)
 
 
@@ -158,8 +159,8 @@ class Marches:
             gain = x[:, :, -1:] - x[:, :, :1]
             around = np.where(self.turning[:, None, None], 2 * np.pi * np.round(gain / (2 * np.pi)), 0.0)
             with np.errstate(invalid="ignore"):
-                back = np.all(np.abs(gain - around) < SAME_STATE * self.scale[:, None, None], axis=(0, 2))
-            x[:, ~back] = np.nan
+                other = np.any(np.abs(gain - around) > SAME_STATE * self.scale[:, None, None], axis=(0, 2))
+            x[:, other] = np.nan  # a cycle later it is assembled otherwise
         return Ways(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
     def _marched(self, numbers: Real, x: Real, v: Real, steps: Real, n: int) -> tuple[Real, Real]:

@@ -16,6 +16,7 @@ import numpy as np
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.groups.base import Kernel
+from tmm_cli.kinematics.driver_range import cycle_of
 from tmm_cli.linkage import Linkage, Sketch
 from tmm_cli.tape import Program, TracedArray, record
 from tmm_cli.tape.traced_number import TracedNumber
@@ -40,9 +41,10 @@ class Taped:
         self.structure = mobile(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
         by_stroke = any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
-        if self.linkage.others or self.linkage.friction or (forces and by_stroke):
+        if self.linkage.friction or (forces and by_stroke):
             raise NoTapeError
         self.lines = _straight(self.linkage, self.kernels)
+        self.turns = cycle_of(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
         if isinstance(self.start, TracedNumber):
@@ -85,14 +87,14 @@ class Taped:
     def driver_range(self, columns: Real) -> DriverRanges:
         """The crank's turn, or the range of the driver."""
         if self.ends is None:
-            return DriverRanges.of(self.variant, len(columns), self.linkage.turns, self.start)
+            return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
         found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
         numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
         variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
         variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
-        return DriverRanges.of(variant, len(columns), self.linkage.turns, self.start)
+        return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
     def without(self, part: str) -> Taped:
         """Without results whose names have such a part."""
@@ -137,9 +139,7 @@ def _straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ..
         raise NoTapeError
     for kernel in lines:
         trace = kernel.followed
-        if trace is not None and trace.dead.size:
-            raise NoTapeError
-        if trace is not None and trace.closed and round((trace.q[-1] - trace.q[0]) / (2 * np.pi)) > linkage.turns:
+        if trace is not None and trace.dead.size:  # on the other side of it the determinant has another sign
             raise NoTapeError
     return lines
 
