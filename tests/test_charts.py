@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -88,6 +89,18 @@ def test_positions_are_numbered_beside_degrees_and_the_strokes_named():
     texts = drawn("shaper")["diagrams"].texts()
     assert {*map(str, range(13)), "30", "360", "working stroke", "idle stroke"} <= set(texts)
     assert "a of 5, m/s²" in texts and "balancing moment, N·m" in texts
+
+
+def test_strokes_of_a_cycle_of_two_turns_are_counted_and_not_said_to_work_by_turns():
+    texts = drawn("four-stroke-engine")["diagrams"].texts()
+    assert [text for text in texts if text.startswith("stroke")] == [f"stroke {number}" for number in (1, 2, 3, 4)]
+
+
+def test_a_stroke_in_which_position_0_lies_has_one_number_at_both_ends():
+    engine = load(f"{ROOT}/problems/four-stroke-engine.yaml")
+    late = solve(replace(engine, request=replace(engine.request, start=math.radians(90.0))))
+    texts = dict(diagrams(late))["diagrams"].texts()
+    assert [text for text in texts if text.startswith("stroke")] == [f"stroke {number}" for number in (1, 2, 3, 4, 1)]
 
 
 def test_the_border_of_the_strokes_stands_where_the_output_turns_back():

@@ -19,6 +19,7 @@ from tmm_cli.draw.sheets.equations import figure, table_of_forces, written
 from tmm_cli.draw.sheets.force_plans import forces, lanes, table
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.mechanism import detailed
+from tmm_cli.note.expression import fixed, rounded
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.forces import force_plans
 from tmm_cli.plans.moments import loaded_parts
@@ -199,6 +200,11 @@ def test_a_unit_is_not_left_alone_on_a_line():
     for most in range(20, 100):
         *__, last = wrapped(text, 3.0, float(most))
         assert len(line(last).split()) > 1
+
+
+def test_a_half_is_rounded_up_on_whichever_side_of_it_binary_numbers_are():
+    assert figure(1.5 * 9.81) == figure(14.715000000000002) == "14.72"
+    assert fixed(35 * 9.81, 4) == fixed(343.35000000000002, 4) == "343.4" and rounded(31384.6, 4) == 31385
 
 
 def test_small_numbers_are_written_out():

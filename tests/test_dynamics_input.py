@@ -1,7 +1,8 @@
-"""Mistakes in the blocks that ask for the law of motion: one line that says what to write instead."""
+"""Mistakes in the blocks that ask for the law of motion, and what a run does not come to: one line says it."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from tmm_cli import solve
@@ -9,6 +10,7 @@ from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.understood import doubts
+from tmm_cli.results.warnings import warnings
 
 MACHINE = """tmm: 1
 points: {O: [0, 0]}
@@ -78,3 +80,14 @@ def test_rest_in_a_table_of_speeds_needs_no_unit_and_other_bare_rows_are_told_by
     )
     assert not any("no unit" in text for text in named)
     assert any("write `90 rad/s`, or `90 rpm` if turns a minute are meant" in text for text in bare)
+
+
+def test_positions_that_a_run_does_not_come_to_are_named():
+    run = "dynamics: {run: {from: 90, to: 450, speed: 400 rpm}}\npositions: {count: 6}\nsketch: {at: 60, B: [220, 0]}\n"
+    results = solve(build(read_text(MACHINE + CRANK + run, "x.yaml")))
+    stops = [text for text in warnings(results) if "stops" in text]
+    assert stops == [
+        "driver 1 slows down and stops on its way: no velocities and forces in positions 0, 1, 5, which "
+        "it does not come to"
+    ]
+    assert np.isfinite(results.motion.rate).tolist() == [False, False, True, True, True, False]

@@ -35,11 +35,11 @@ NUMERIC = (  # from below; folders of one floor may know one another
 )  # fmt: skip
 FLOORS = (
     ("top", "double_double", "words"), *NUMERIC, ("results",), ("door",),
-    ("draw", "animate", "note", "grading", "bench"), ("cli",),
+    ("draw", "animate", "note", "grading", "sweep", "bench"), ("cli",),
 )  # fmt: skip
 FLOOR = {folder: number for number, folders in enumerate(FLOORS) for folder in folders}
 # what turns a problem with a task into one with lengths, and what shows a problem
-KNOW_PROBLEMS = ("results", "door", "draw", "animate", "note", "grading", "bench", "cli")
+KNOW_PROBLEMS = ("results", "door", "draw", "animate", "note", "grading", "sweep", "bench", "cli")
 READS_A_TASK = (
     "synthesis.reading",
     "synthesis.blocks",
@@ -69,6 +69,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "cli.structure": "drawing",
     "cli.synthesis_report": "drawing",
     "grading.exports.group": "drawing",
+    "note.chapters.balancing": "balancing, for files that ask for it",
     "note.chapters.law_of_motion": "the law of motion, for files that ask for it",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",

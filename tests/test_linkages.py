@@ -19,6 +19,7 @@ from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
+from tmm_cli.library import redrive
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
@@ -372,3 +373,11 @@ def test_a_tabulated_load_acts_on_near_dead_positions_too(tmp_path):
     assert gas.force[1] == pytest.approx(-(900 + (29 - 20) / (40 - 20) * (200 - 900)), rel=1e-14)
     assert gas.force[0] == 0
     assert results.lever_holds
+
+
+def test_another_driver_leaves_out_what_hangs_on_that_of_the_file():
+    engine = load(PROBLEMS / "four-stroke-engine.yaml")
+    other = redrive(engine, "3")
+    assert engine.dynamics is not None and other.dynamics is None and other.linkage.turns == 1
+    assert [own.name for own in other.linkage.loads] == ["rings"]
+    assert solve(other, "structure").structure.formula == "I(0,3) -> II(1,2)"

@@ -91,7 +91,7 @@ def typeset(text: str) -> str:
     if FORMULA.search(text):
         text = signed(text.replace(" - ", " − "))
     text = re.sub(r"(?<=\d)\*(?=\d)", "·", PAIR.sub(" – ", text))
-    return re.sub(r"(?<=\d) °", "°", text)
+    return re.sub(r"(?<=\d) °(?!/)", "°", text)
 
 
 def spelt(unit: str) -> str:

@@ -55,7 +55,12 @@ def solve(
     """
     whole = problem.whole
     with in_words_of(whole):
-        return pipeline.solve(inputs_of(whole), stage, positions, of, whole)
+        results = pipeline.solve(inputs_of(whole), stage, positions, of, whole)
+    if not whole.request.centres or results.motion is None or of:
+        return results
+    from tmm_cli.analysis.centres import with_centres  # few files ask for them
+
+    return with_centres(results)
 
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
@@ -103,12 +108,18 @@ def count(problem: ChainProblem) -> ChainResults:
 
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
-    """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError."""
+    """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError.
+
+    What hangs on the driver of the file is left out: its law of motion, balancing, loads by its angle.
+    """
     whole = problem.whole
     with in_words_of(whole):
         linkage = redriven(whole.linkage, link)
-    request = replace(whole.request, places=(), start=0.0)
-    return replace(whole, linkage=linkage, request=request, extended=None, balancing=None, shows={})
+    loads = tuple(
+        own for own in linkage.loads if own.window is None and (own.table is None or own.table.against == "stroke")
+    )
+    linkage, request = replace(linkage, loads=loads, turns=1), replace(whole.request, places=(), start=0.0)
+    return replace(whole, linkage=linkage, request=request, extended=None, dynamics=None, balancing=None, shows={})
 
 
 def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None = None) -> Results:

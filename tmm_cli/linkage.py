@@ -303,9 +303,13 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Request:
-    """Which positions are asked for: a count over the range, or places of the driver given one by one."""
+    """Which positions are asked for: a count over the range, or places of the driver given one by one.
+
+    centres: with the instantaneous centres of those in detail.
+    """
 
     count: int = 12
     start: float | Literal["working stroke"] = 0.0
     places: tuple[float, ...] = ()
     detail: tuple[int, ...] = ()
+    centres: bool = False

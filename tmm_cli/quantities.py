@@ -72,7 +72,15 @@ class Dimension:
     def example(self) -> str:
         """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
         name = self.name
-        return _("{kind}, e.g. {example}").format(kind=self, example=KINDS[name].example) if name else str(self)
+        return (
+            _("{kind}, e.g. {example}").format(kind=self, example=_either(KINDS[name].example)) if name else str(self)
+        )
+
+
+def _either(examples: str) -> str:
+    """An example, or two of them."""
+    one, __, other = examples.partition(" or ")
+    return _("{one} or {other}").format(one=one, other=other) if other else one
 
 
 class Kind(NamedTuple):

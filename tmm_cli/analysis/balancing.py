@@ -47,18 +47,18 @@ def balancing(mechanism: Mechanism, start: float, places: Real, task: BalancingT
     q = start + driver.sense * 2 * np.pi * whole.turns * np.arange(count) / count
     pivot = _pivot(linkage)
     about = complex(linkage.local(FRAME, pivot)) if pivot else 0j
-    cycle = balanced(_steadily(mechanism, q), task, about)
+    cycle = balanced(steadily(mechanism, q), task, about)
     corrections = np.empty(0, complex) if task.rotor is None else task.rotor.corrections()
     return Balancing(task, q, cycle, *shaken(mechanism, cycle, places), pivot, corrections)
 
 
 def shaken(mechanism: Mechanism, found: Balanced, q: Real) -> tuple[Shaking, Shaking]:
     """What shakes at places of the driver, without counterweights and with them."""
-    motion, about = _steadily(mechanism, q), found.before.about
+    motion, about = steadily(mechanism, q), found.before.about
     return shaking(motion, about), shaking(motion, about, found.counterweights)
 
 
-def _steadily(mechanism: Mechanism, q: Real) -> Motion:
+def steadily(mechanism: Mechanism, q: Real) -> Motion:
     """The motion at constant speed of the driver."""
     driver = mechanism.linkage.driver
     law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)

@@ -17,6 +17,7 @@ from tmm_cli.draw.sheets.motion_plans import sorts
 from tmm_cli.draw.symbols.scene import Scene, fit, fixed_pivots, to_scale
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import ENGLISH, _, language
+from tmm_cli.plans.record import subscript
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.vectors import Real
@@ -48,7 +49,7 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
         "loops": turns > 0,
         "seconds": SECONDS * (turns or 1),
         "driver": {
-            "name": ("φ" if driver.kind == "turn" else "s") + driver.link,
+            "name": ("φ" if driver.kind == "turn" else "s") + subscript(driver.link),
             "unit": units.spelt(measure),
             "values": rounded(units.from_si(motion.q, measure), 5),
             "turn": units.from_si(2 * np.pi, ANGLE) if driver.kind == "turn" else 0,

@@ -13,6 +13,7 @@ from tmm_cli.draw.sheets.motion_plans import Sort
 from tmm_cli.draw.sheets.over_cycle import Quantities, balances, output
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, spelt
+from tmm_cli.plans.record import in_letters
 from tmm_cli.tolerances import NO_VECTOR
 from tmm_cli.vectors import Real, Vector
 
@@ -77,7 +78,8 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
 
 def _together(letters: list[str]) -> str:
     """Letters of one point, not more than have room."""
-    return ", ".join(letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"])
+    few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
+    return ", ".join(map(in_letters, few))
 
 
 def charts(results: Results, whole: Results) -> Iterable[Quantities]:

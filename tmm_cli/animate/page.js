@@ -79,7 +79,7 @@ function drawPlan({plan, vectors, letters}) {
 }
 
 // ---- diagrams, with a marker that follows
-const WIDE = 320, HIGH = 120, LEFT = 8, RIGHT = 8, TOP = 8, BOTTOM = 16;
+const WIDE = 320, HIGH = 120, LEFT = 46, RIGHT = 8, TOP = 8, BOTTOM = 16;
 const COLOURS = ["#1a1a1a", "#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#c77700"];
 const across = (frame) => LEFT + (WIDE - LEFT - RIGHT) * frame / last;
 const charts = data.charts.map((chart) => {
@@ -117,7 +117,7 @@ const charts = data.charts.map((chart) => {
     return made(svg, "circle", {r: 3, fill: colour});
   });
   for (const value of [low, high]) {
-    if (value !== 0) made(svg, "text", {x: LEFT, y: up(value) + (value === low ? -2 : 3), class: "end"}, figures(value));
+    if (value !== 0) made(svg, "text", {x: LEFT - 4, y: up(value) + 3, class: "end"}, figures(value));
   }
   const follow = (event) => {
     const box = svg.getBoundingClientRect();
@@ -135,7 +135,7 @@ function figures(value) {
 }
 
 function written(number) {
-  return data.comma ? number.replace(".", ",") : number;
+  return (data.comma ? number.replace(".", ",") : number).replace("-", "−");
 }
 
 function drawChart({chart, caption, hand, dots, up}) {
@@ -159,7 +159,7 @@ function show(at) {
   byId("at").value = state.at;
   const driver = data.driver, value = now(driver.values);
   const place = driver.turn ? ((value % driver.turn) + driver.turn) % driver.turn : value;
-  byId("place").textContent = `${driver.name} = ${written(place.toFixed(1))} ${driver.unit}`;
+  byId("place").textContent = `${driver.name} = ${written(place.toFixed(1))} ${driver.unit}`.replace(" °", "°");
 }
 
 function step(time) {

@@ -49,7 +49,7 @@ def kinematics(
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
-    usual = ("quality", "properties", "pressure", "cycle", "points", "link-motion", "slides")
+    usual = ("quality", "properties", "pressure", "cycle", "points", "link-motion", "slides", "centres")
     names = ("points", "link-motion") if asked else usual
 
     def work(file: str) -> int:

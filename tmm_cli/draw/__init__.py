@@ -10,6 +10,7 @@ from itertools import chain
 from tmm_cli.analysis.in_detail import balancing, chosen_here, in_detail
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn, Way, here, in_parts
+from tmm_cli.draw.sheets.centres import sheets as centres
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -59,6 +60,7 @@ def _of_mechanism(results: Results) -> Drawn:
     yield from synthesised(results)
     if bool(results.motion.placed.any()):
         yield from all_positions(results)
+        yield from centres(results)
         yield from diagrams(results)
         yield from shaking(results)
         yield from law_of_motion(results)

@@ -57,6 +57,11 @@ class Balanced:
     alike: bool = False
 
     @property
+    def shakes(self) -> bool:
+        """Whether anything does without counterweights."""
+        return bool(np.any(np.nan_to_num(self.before.force) != 0))
+
+    @property
     def left(self) -> float:
         """Largest shaking force after, over that before."""
         most = float(np.nanmax(np.abs(self.before.force)))

@@ -107,6 +107,11 @@ class Reactions:
         return self.balances[0]
 
     @property
+    def loaded(self) -> bool:
+        """Whether anything acts: where nothing has weight, inertia or a load all reactions are zero."""
+        return any(load.has_force or load.has_moment for load in self.applied)
+
+    @property
     def all(self) -> tuple[Reaction, ...]:
         """Every pair's reaction, the drivers' first, then groups in solving order."""
         return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))

@@ -108,8 +108,9 @@ def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tupl
     applied = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
     reactions = kernel.reactions(at, poses, applied).inner
     along, across, lost, loose = still, still, still, still
+    inner = [pair.name for pair in group.inner]
     for pair in pairs:
-        reaction = reactions[group.inner.index(pair)]
+        reaction = reactions[inner.index(pair.name)]
         force = reaction.force if kernel.inner_on(pair) == link else -reaction.force
         if pair.slide is None:
             point = poses[pair.i].at(motion.linkage.local(pair.i, pair.point))

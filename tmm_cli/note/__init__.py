@@ -9,6 +9,8 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import language
 from tmm_cli.note import blocks
 from tmm_cli.note.chapters import (
+    balancing,
+    centres,
     checks,
     forces,
     kinematics,
@@ -21,7 +23,19 @@ from tmm_cli.note.chapters import (
 )
 from tmm_cli.note.context import Subject
 
-CHAPTERS = (title, task, synthesis, structure, kinematics, law_of_motion, forces, checks, literature)
+CHAPTERS = (
+    title,
+    task,
+    synthesis,
+    structure,
+    kinematics,
+    centres,
+    law_of_motion,
+    forces,
+    balancing,
+    checks,
+    literature,
+)
 
 
 def note(results: Results, *, drawn: bool = True) -> blocks.Note:

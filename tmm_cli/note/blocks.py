@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import string
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -175,6 +175,17 @@ def line(*parts: Inline) -> Line:
     return tuple(parts)
 
 
+def listed_below(lines: Sequence[Line]) -> Items:
+    """One below the other, a stop after the last one and a semicolon after each other one."""
+    last = len(lines) - 1
+    return Items(tuple((*each, "." if k == last else ";") for k, each in enumerate(lines)))
+
+
+def several(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
+    """A sentence that refers to one table or figure by {first}, to two by {first} and {last}, or to all from..to."""
+    return said((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
+
+
 def filled(sentence: str, **parts: Inline | Line) -> Line:
     """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
     found: list[Inline] = []
@@ -198,4 +209,4 @@ def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
 
 def _is_number(cell: Line) -> bool:
     text = "".join(part if isinstance(part, str) else "x" for part in cell)
-    return not text.strip("0123456789.,−-–— ")
+    return not text.strip("0123456789.,−-–— ·⁰¹²³⁴⁵⁶⁷⁸⁹⁻")

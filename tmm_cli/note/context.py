@@ -13,7 +13,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.picture import Space, within
-from tmm_cli.draw.sheets import law_of_motion
+from tmm_cli.draw.sheets import centres, hodographs, law_of_motion
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -41,7 +41,7 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
     "positions": (all_positions, 130), "diagrams": (diagrams, 170),
     "law": (law_of_motion.over_cycle, 225), "energy-mass": (law_of_motion.diagram, 190),
-    "run": (single_run, 225),
+    "run": (single_run, 225), "centres": (centres.sheets, 130), "shaking": (hodographs.balancing, 110),
 }  # fmt: skip
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),

@@ -220,8 +220,11 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Sum(terms):
             parts: list[paper.Node | str] = []
             for sign, term in terms:
+                node = of(term)
+                if not parts and sign > 0 and isinstance(term, Leaf) and isinstance(node, paper.Brackets):
+                    node = node.inside  # a minus at the beginning
                 parts += ["−"] if sign < 0 else ["+"] if parts else []
-                parts.append(of(term))
+                parts.append(node)
             return paper.row(*parts) if parts else paper.Number("0")
         case Product(factors):
             shown: list[paper.Node | str] = []

@@ -126,6 +126,11 @@ def subscript(text: str) -> str:
     return text.translate(_BELOW) if text.isdecimal() and text.isascii() else f"({text})"
 
 
+def in_letters(segment: str) -> str:
+    """A segment of a plan, or a lettered point of it, with the figures of its letters below the line: pa₃, s₁."""
+    return segment.translate(_BELOW)
+
+
 def reaction_name(by: str, on: str, part: str = "") -> str:
     """R₃₄: from link 3 on link 4; part: τ tangential, n normal."""
     return reaction_symbol(by, on, part).name

@@ -174,4 +174,4 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
         start = "working stroke"
     elif given.from_ is not None:
         start = values.number(given.from_, wanted, ("positions", "from"))
-    return Request(count, start, places, tuple(given.detail))
+    return Request(count, start, places, tuple(given.detail), given.centres)

@@ -145,6 +145,7 @@ class Positions(Strict):
     detail: Annotated[list[int], BeforeValidator(_listed, json_schema_input_type=list[int] | int)] = Field(
         default_factory=list, max_length=24, description="numbers of positions drawn in detail"
     )
+    centres: bool = Field(default=False, description="instantaneous centres in the positions in detail")
 
 
 class Checks(Strict):

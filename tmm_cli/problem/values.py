@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.language import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.arithmetic import MOST_ANGLE
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity
@@ -22,6 +22,25 @@ from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
+UNKNOWN = {
+    "link": N_("there is no link of that name"),
+    "moving link": N_("there is no moving link of that name"),
+    "point": N_("there is no point of that name"),
+    "point of link": N_("there is no point of link {link} of that name"),
+    "frame point": N_("there is no frame point of that name"),
+    "point or link": N_("there is no point or link of that name"),
+    "link or point": N_("there is no link or point of that name"),
+    "pair": N_("there is no pair of that name"),
+    "hinge": N_("there is no hinge of that name"),
+    "turning or sliding pair": N_("there is no turning or sliding pair of that name"),
+}
+UNFIT = {
+    "link": N_("this cannot be the name of a link"),
+    "point": N_("this cannot be the name of a point"),
+    "pair": N_("this cannot be the name of a pair"),
+    "guide": N_("this cannot be the name of a guide"),
+    "load": N_("this cannot be the name of a load"),
+}
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
 
@@ -104,7 +123,7 @@ class ValueReader:
         if name in names:
             return name
         raise ProblemError(
-            _("there is no {what} of that name").format(what=what), path=path, found=quote(name),
+            unknown(what), path=path, found=quote(name),
             allowed=", ".join(names) or None, near=nearest(name, names), key=key,
         )  # fmt: skip
 
@@ -185,12 +204,18 @@ class Part:
         return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
 
 
+def unknown(what: str) -> str:
+    """That a name is of nothing of this kind, such as "link" or "point of link 3"."""
+    kind, __, link = what.partition(" of link ")
+    return translated(UNKNOWN["point of link" if link else kind]).format(link=link)
+
+
 def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
     """Refuse a name that is taken, or cannot go into tables, drawings and file names: letters and figures only."""
     pattern = LINK_NAME if what == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
-            _("this cannot be the name of a {what}").format(what=what), path=path, found=quote(name),
+            translated(UNFIT[what]), path=path, found=quote(name),
             allowed=_("letters and figures, at most 16") if what == "link"
             else _("letters and figures, at most 16, a letter first"), key=True,
         )  # fmt: skip

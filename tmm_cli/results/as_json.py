@@ -89,7 +89,7 @@ EXTREME = record(
     Field("high_at", NUMBER, "driver's place there"),
 )
 LAST = (
-    Field("centres", map_of(list_of(CENTRE)), "with --centres: instantaneous centres, by the numbers of positions",
+    Field("centres", map_of(list_of(CENTRE)), "asked for: instantaneous centres, by the numbers of positions",
           lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()}, "centres"),
     Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
     Field("assemblies", list_of(ASSEMBLIES),

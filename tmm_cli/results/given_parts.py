@@ -69,12 +69,15 @@ def parts(problem: Problem) -> Iterable[Table]:
         )  # fmt: skip
     wheels = [_mesh(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
-        note = _(
-            "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
-            "for an angle in rad."
-        )
+        note, title = _("Angles are those of the wheels from the link that holds them."), _("Toothed wheels")
+        if any(mesh.kind == "rack" for mesh in linkage.meshes):
+            title = _("Toothed wheels and racks")
+            note = _(
+                "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
+                "for an angle in rad."
+            )
         yield table_of_words(
-            "meshes", _("Toothed wheels and racks"),
+            "meshes", title,
             (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
             wheels, (note.format(unit=problem.units.spelt(LENGTH)),),
         )  # fmt: skip

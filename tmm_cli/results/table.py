@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.double_double import array
-from tmm_cli.language import numeral, spelt, translated
+from tmm_cli.language import numeral, spelt, translated, typeset
 from tmm_cli.problem.units import Unit, UnitSystem, parse_unit
 from tmm_cli.quantities import NUMBER, Dimension
 
@@ -64,7 +64,7 @@ class Column:
 
 def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int = 6) -> str:
     """A value (SI) in the unit of the file, to so many digits: `110 mm`."""
-    return f"{numeral(units.from_si(value, dimension) + 0.0, f'.{digits}g')} {units.spelt(dimension)}"
+    return typeset(f"{numeral(units.from_si(value, dimension) + 0.0, f'.{digits}g')} {units.spelt(dimension)}")
 
 
 def true_digits(values: Any, bound: Any) -> Any:

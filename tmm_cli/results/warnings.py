@@ -25,6 +25,7 @@ from tmm_cli.vectors import dot
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
+FEW = 12  # positions that are named in one sentence
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
@@ -144,10 +145,11 @@ def _unreached(results: Results, motion: Motion) -> Iterable[str]:
         )
     stopped = np.flatnonzero(~np.isfinite(motion.rate))
     if stopped.size:
+        said = [str(results.numbers[k]) for k in stopped[:FEW]] + ["..."] * (stopped.size > FEW)
         yield _(
-            "driver {link} slows down and stops before it comes to position {number}: no velocities "
-            "and forces from there on"
-        ).format(link=results.linkage.driver.link, number=results.numbers[stopped[0]])
+            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
+            "it does not come to"
+        ).format(link=results.linkage.driver.link, numbers=", ".join(said))
 
 
 def _near(results: Results, motion: Motion) -> Iterable[str]:

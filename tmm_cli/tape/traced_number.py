@@ -15,17 +15,25 @@ from tmm_cli.tape.traced_array import DependsOnData, TracedArray
 
 
 class TracedNumber(NDArrayOperatorsMixin):
-    """A real or complex number: `value` for one linkage, `stand` for all."""
+    """A real or complex number: `value` for one linkage, `stand` for all.
+
+    otherwise: where it is given, gets an array of truths for every choice of the building code: which stands would have
+    chosen otherwise than the value did.
+    """
 
     __hash__ = object.__hash__
 
-    def __init__(self, value: Any, stand: Any) -> None:
-        self.value, self.stand = value, stand
+    def __init__(self, value: Any, stand: Any, otherwise: list[Any] | None = None) -> None:
+        self.value, self.stand, self.otherwise = value, stand, otherwise
 
     def __float__(self) -> float:
+        if self.otherwise is not None:
+            self.otherwise.append(self.stand != self.value)
         return float(self.value)
 
     def __bool__(self) -> bool:
+        if self.otherwise is not None:
+            self.otherwise.append((self.stand != 0) != bool(self.value))
         return bool(self.value)
 
     def __repr__(self) -> str:
@@ -39,19 +47,22 @@ class TracedNumber(NDArrayOperatorsMixin):
 
     @property
     def real(self) -> TracedNumber:
-        return TracedNumber(np.real(self.value), np.real(self.stand))
+        return TracedNumber(np.real(self.value), np.real(self.stand), self.otherwise)
 
     @property
     def imag(self) -> TracedNumber:
-        return TracedNumber(np.imag(self.value), np.imag(self.stand))
+        return TracedNumber(np.imag(self.value), np.imag(self.stand), self.otherwise)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: Any) -> Any:
         if method != "__call__":
             raise DependsOnData(f"{ufunc.__name__}.{method} cannot be written on a tape")
         value = ufunc(*(_value(x) for x in inputs))
+        otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)
         if isinstance(value, bool | np.bool_):
+            if otherwise is not None:
+                otherwise.append(ufunc(*(_stand(x) for x in inputs)) != bool(value))
             return bool(value)
-        return TracedNumber(value, WRITTEN.get(ufunc, ufunc)(*(_stand(x) for x in inputs)))
+        return TracedNumber(value, WRITTEN.get(ufunc, ufunc)(*(_stand(x) for x in inputs)), otherwise)
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         if function is not np.angle:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -101,16 +101,16 @@ def together(make: Make, columns: Real) -> Family | None:
         return None
     if not all(isinstance(kernel, Closed) and kernel.plain for kernel in kernels):
         return None
-    linkage = replace(_stands(varied.linkage), sketch=plain.sketch)
+    linkage = replace(stands(varied.linkage), sketch=plain.sketch)
     structure = structure.rebind(linkage)
     kernels = tuple(kernel.rebind(linkage) for kernel in kernels)
-    request = _stands(varied.request)
+    request = stands(varied.request)
     strokes, sound = _strokes(linkage, kernels, len(columns))
-    q = _places(request, strokes, linkage.driver.sense, len(columns))
+    q = places_of(request, strokes, linkage.driver.sense, len(columns))
     return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
 
 
-def _stands(record: Any) -> Any:
+def stands(record: Any) -> Any:
     """A record built of traced numbers with the arrays that they stand for."""
     return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
 
@@ -145,10 +145,22 @@ def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple
     at = np.nonzero(turns_back)[1].reshape(count, 2)
     rows = np.arange(count)[:, None]
     ends = roots(curve.slope, q[rows, at], q[rows, at + 1])
-    return _named(linkage, curve, ends, resisted(linkage, link)), sound
+    return named_strokes(linkage, curve, ends, resisted(linkage, link)), sound
 
 
-def _named(linkage: Linkage, curve: OutputCurve, ends: Real, resists: Any) -> Strokes:
+class Curve(Protocol):
+    """What tells the strokes of an output, see OutputCurve."""
+
+    @property
+    def link(self) -> str: ...
+    @property
+    def swings(self) -> bool: ...
+    @property
+    def kind(self) -> str: ...
+    def place(self, q: Real) -> Real: ...
+
+
+def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> Strokes:
     """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
@@ -171,7 +183,7 @@ def _named(linkage: Linkage, curve: OutputCurve, ends: Real, resists: Any) -> St
     return Strokes(curve.link, curve.kind, tuple(found), "")
 
 
-def _runs(curve: OutputCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
+def _runs(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
     """As OutputCurve.runs, for (variants, 2) at once."""
     shares = np.linspace(0, 1, 33 if curve.swings else 2)  # an angle is followed through half turns
     found = []
@@ -184,7 +196,7 @@ def _runs(curve: OutputCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
     return np.stack(lows, axis=1), np.stack(runs, axis=1)
 
 
-def _places(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
+def places_of(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
     """The positions of every variant, (variants, positions); None where they need strokes that are not there."""
     ones = np.ones((count, 1))
     if request.places:

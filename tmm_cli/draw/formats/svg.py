@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from html import escape
 
@@ -9,6 +10,7 @@ from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Mark, Text
 from tmm_cli.draw.paper.fonts import FAMILY, HALF
 
 ANCHOR = {"left": "start", "center": "middle", "right": "end"}
+SPACES = re.compile(r"^ +| +$| {2,}")  # that a browser would leave out, though what follows is placed after them
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")
 
 
@@ -45,7 +47,8 @@ def element(mark: Mark, height: float) -> str:
             turn = f' transform="rotate({-mark.turn:.4g} {x} {y})"' if mark.turn else ""
             bold = ' font-weight="bold"' if mark.bold else ""
             italic = ' font-style="italic"' if mark.italic else ""
-            told = escape(mark.text.translate(NOT_XML), quote=False)
+            text = SPACES.sub(lambda gap: "\N{NO-BREAK SPACE}" * len(gap[0]), mark.text)
+            told = escape(text.translate(NOT_XML), quote=False)
             return (
                 f'<text x="{x}" y="{y}" dy="{HALF:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
                 f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{told}</text>'

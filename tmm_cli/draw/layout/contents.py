@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -10,6 +10,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
 from tmm_cli.draw.layout.law_values import law_tables
 from tmm_cli.draw.layout.values import balance_table, forces_table, motion_tables, structure_tables
+from tmm_cli.draw.sheets.centres import sheets as centres
 from tmm_cli.draw.sheets.diagrams import diagrams
 from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
@@ -25,7 +26,13 @@ from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.language import N_
 
-SUBJECTS = (N_("Structure and synthesis"), N_("Kinematics"), N_("Forces"), N_("Law of motion"))
+SUBJECTS = (
+    ("structure", N_("Structure")), ("kinematics", N_("Kinematics")), ("forces", N_("Forces")),
+    ("law-of-motion", N_("Law of motion")),
+)  # fmt: skip
+SYNTHESIS = N_("Structure and synthesis")  # where there is one
+STRUCTURE, FORCES = 0, 2
+FURTHER = "-sheet-"  # in the name of a drawing that goes on with another one
 
 
 @dataclass(frozen=True)
@@ -42,24 +49,55 @@ class Choice:
         motion = self.results.motion
         return motion is not None and bool(motion.placed.any())
 
+    @property
+    def loaded(self) -> bool:
+        """Whether there are forces to draw: without any load a sheet of them would say zero throughout."""
+        reactions = self.results.reactions
+        return reactions is None or reactions.loaded
+
+    def shows(self, sheet: int) -> bool:
+        """Whether there is something to draw on this one."""
+        return sheet == STRUCTURE or (self.moves and (sheet != FORCES or self.loaded))
+
+    def title(self, sheet: int) -> str:
+        """What it is about, to be translated."""
+        return SYNTHESIS if sheet == STRUCTURE and self.results.problem.synthesis is not None else SUBJECTS[sheet][1]
+
 
 @dataclass(frozen=True)
 class Source:
     """What draws some of the drawings of a sheet, from the results or from each of some positions.
 
     usual: longest side on A1, mm; None: as it comes (tables). over: for which positions of the choice it draws.
+    about: how the names of its drawings begin; of sources that say it, drawings whose names go on alike are neighbours.
     """
 
     sheet: int
     draw: Callable[[Any], Drawn]
     usual: float | None = None
     over: Literal["", "plans", "detail"] = ""
+    about: str = ""
 
     def drawings(self, choice: Choice) -> Drawn:
         """They are drawn one after the other, as they are taken."""
+        if not choice.shows(self.sheet):
+            return ()
         if self.over:
             return (found for here in getattr(choice, self.over) for found in self.draw(here))
-        return self.draw(choice.results) if choice.moves or self.sheet == 0 else ()
+        return self.draw(choice.results)
+
+
+def neighbours(drawings: Iterable[tuple[Source, str]]) -> list[int]:
+    """In which order drawings stand, by their numbers: those about one thing (a group) one beside the other.
+
+    drawings: what draws each, and its name.
+    """
+    first: dict[str, int] = {}
+    keys: list[tuple[int, int]] = []
+    for number, (source, name) in enumerate(drawings):
+        thing = name.removeprefix(source.about).partition(FURTHER)[0]
+        keys.append((first.setdefault(thing, number) if source.about else number, number))
+    return [number for __, number in sorted(keys)]
 
 
 def chosen(results: Results, *, every: bool) -> Choice:
@@ -80,11 +118,12 @@ CONTENTS = (
     Source(0, structure_tables),
     Source(1, all_positions, 240),
     Source(1, motion_plans, 300, over="plans"),
-    Source(1, motion_tables),
+    Source(1, centres, 200),
     Source(1, diagrams, 240),
+    Source(1, motion_tables),
     Source(2, position, 200, over="detail"),
-    Source(2, group_loads, 160, over="detail"),
-    Source(2, forces, 100, over="detail"),
+    Source(2, group_loads, 160, over="detail", about="group-loads"),
+    Source(2, forces, 100, over="detail", about="forces"),
     Source(2, lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),

@@ -37,6 +37,8 @@ def files_of_sheets(
             _("plans of so many positions fill no sheet that is read"), found=str(len(choice.plans)),
             allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
         )  # fmt: skip
+    if choice.moves and not choice.loaded:
+        say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
     sheets = dict(large_sheets(choice, paper, way))
     jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:

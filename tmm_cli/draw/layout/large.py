@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import accumulate, chain, product, repeat
+from itertools import accumulate, islice, product, repeat
 
 from tmm_cli.draw.formats import Way, here
-from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source
+from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source, neighbours
 from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
 from tmm_cli.draw.layout.pieces import (
-    ENOUGH,
     GAP,
+    STRICT,
+    THIN,
     Page,
     Piece,
     area,
@@ -22,8 +23,11 @@ from tmm_cli.draw.layout.pieces import (
     evenest,
     filled,
     grown,
+    lettered,
+    ordered,
     shared,
     spaced,
+    tidier,
 )
 from tmm_cli.draw.layout.title_block import SIZES, Titles, frame, inner, title_block
 from tmm_cli.draw.paper.drawing import Drawing
@@ -38,8 +42,7 @@ MANY, SMALLEST = 1.5, 0.45  # positions beyond which drawings of each are smalle
 NOTABLE = 1.1  # times larger: it is drawn again
 EASED = 0.75  # of its room: so much smaller something is tried where it became larger than thought
 TRIES = 5  # of that
-THIN = 0.63  # of a page: with less another shape of the drawings is tried
-ROUNDS = 3  # of making larger what there proves to be room for
+ROUNDS, MORE = 3, 8  # of making larger what there proves to be room for; where a page stays thin
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class LargeSheet(Drawing):
 
 
 def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[str, LargeSheet]]:
-    """Every sheet with its file's stem; what does not fit on one goes on as 1a, 1b. way: who draws.
+    """Every sheet with its file's stem, numbered from 1; what does not fit on one goes on on the next. way: who draws.
 
     That of the structure, which has no scale, is on the smallest format that holds it.
     """
@@ -59,11 +62,12 @@ def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[
     jobs = [partial(_smallest, number, choice, [paper] if number else smaller) for number in range(len(SUBJECTS))]
     found = list(way(jobs))
     count = sum(len(pages) for *__, pages in found)
-    for number, (subject, (size, pictures, pages)) in enumerate(zip(SUBJECTS, found, strict=True)):
-        field = field_of(size, problem.title_texts.block)
-        for letter, page in zip(chain([""], "abcdefghijklmnopqrstuvwxyz"), pages, strict=False):
-            titles = Titles(problem.title_texts, problem.title, _(subject), f"{number}{letter}", count)
-            yield f"sheet-{number}{letter}", framed([pictures[k] for k in page], field, size, titles)
+    every = [(subject, size, pictures, page) for subject, (size, pictures, pages) in enumerate(found) for page in pages]
+    for number, (subject, size, pictures, page) in enumerate(every, 1):
+        field, name = field_of(size, problem.title_texts.block), SUBJECTS[subject][0]
+        titles = Titles(problem.title_texts, problem.title, _(choice.title(subject)), number, count)
+        stem = f"sheet-{number:0{len(str(count))}}-{name}"
+        yield stem, framed([pictures[k] for k in page], field, size, titles)
 
 
 def _smallest(number: int, choice: Choice, papers: Sequence[str]) -> tuple[Size, list[Picture], list[Page]]:
@@ -109,14 +113,19 @@ def _sheet(
     shrunk, most = max(paper) / max(PAPERS["A1"]), (field.width - GAP, high)
     asked = [(source, choice, most) for source in CONTENTS if source.sheet == number]
     parts = [_first(*one, shrunk) for one in asked]
-    lengths, pieces = [len(part) for part in parts], [piece for part in parts for piece in part]
+    lengths, every = [len(part) for part in parts], [piece for part in parts for piece in part]
+    order = neighbours((one[0], piece.drawn.stem) for one, part in zip(asked, parts, strict=True) for piece in part)
+    pieces = [every[k] for k in order]
 
     def drawn(rooms: Sequence[float]) -> list[Piece]:
         """The same pieces in other rooms, source by source."""
+        back = sorted(range(len(order)), key=order.__getitem__)
+        old, new = [pieces[k] for k in back], [rooms[k] for k in back]
         starts = accumulate(lengths, initial=0)
         slices = [slice(start, start + length) for start, length in zip(starts, lengths, strict=False)]
-        again = [_again(*one, pieces[own], rooms[own]) for one, own in zip(asked, slices, strict=True)]
-        return [piece for part in again for piece in part]
+        again = [_again(*one, old[own], new[own]) for one, own in zip(asked, slices, strict=True)]
+        found = [piece for part in again for piece in part]
+        return [found[k] for k in order]
 
     rooms, pages = begun(pieces, field, shrunk)
     free = [k for k, piece in enumerate(pieces) if not piece.length]
@@ -136,10 +145,13 @@ def _sheet(
             if not large:
                 break
         pages = fitting([piece.drawn for piece in pieces], field)
-    for __ in range(ROUNDS):
-        before = [piece.drawn.longest or piece.usual for piece in pieces]
+    for number in range(MORE):
+        thin = _thinnest(([piece.drawn for piece in pieces], pages)) < THIN * field.area
+        if number >= ROUNDS and not thin:
+            break
+        before = _rooms(pieces)
         rooms, pages = shared(pieces, before, pages, field, shrunk)
-        if all(room < NOTABLE * old for room, old in zip(rooms, before, strict=True)):
+        if all(room <= (1.0 if thin else NOTABLE) * old for room, old in zip(rooms, before, strict=True)):
             break
         larger = drawn(rooms)
         found = _taken(pieces, larger, pages, field)
@@ -147,17 +159,41 @@ def _sheet(
             one if one is new else replace(one, most=(old + room) / 2)
             for one, new, old, room in zip(found, larger, before, rooms, strict=True)
         ]
-    return [piece.drawn for piece in pieces], evenest(_sizes(pieces), pages, field)
+    pages = evenest(_sizes(pieces), pages, field)
+    return [piece.drawn for piece in _tidied(pieces, pages, field, drawn)], pages
+
+
+def _tidied(
+    pieces: list[Piece], pages: Sequence[Page], field: Field, drawn: Callable[[Sequence[float]], list[Piece]]
+) -> list[Piece]:
+    """The same with letters of about one size on each page; smaller ones where that brings a page into its order."""
+    for page in pages:
+        tried = drawn(lettered(pieces, _rooms(pieces), page))
+        if pack(spaced(_sizes(tried), page), field) is not None:
+            pieces = tried
+        if ordered(_sizes(pieces), page, field):
+            continue
+        for tried in map(drawn, islice(tidier(pieces, _rooms(pieces), page, field), TRIES)):
+            sizes = _sizes(tried)
+            if area(sizes, page) > THIN * field.area and ordered(sizes, page, field):
+                pieces = tried
+                break
+    return pieces
+
+
+def _rooms(pieces: Sequence[Piece]) -> list[float]:
+    """What they were drawn for, mm."""
+    return [piece.drawn.longest or piece.usual for piece in pieces]
 
 
 def _taken(pieces: Sequence[Piece], larger: Sequence[Piece], pages: Sequence[Page], field: Field) -> list[Piece]:
     """Those of the larger pieces for which there really is room, one after the other."""
     found = list(pieces)
-    for page, led in product(pages, (True, False)):
-        if led or area(_sizes(found), page) < ENOUGH * field.area:
+    for page, (led, tidy, enough) in product(pages, STRICT):
+        if area(_sizes(found), page) < enough * field.area:
             for number in page:
                 tried = [*found[:number], larger[number], *found[number + 1 :]]
-                if pack(spaced(_sizes(tried), page), field, led=led) is not None:
+                if pack(spaced(_sizes(tried), page), field, led=led, tidy=tidy) is not None:
                     found = tried
     return found
 
@@ -181,7 +217,10 @@ def _first(source: Source, choice: Choice, most: Size, shrunk: float) -> list[Pi
     pictures = _drawn(source, choice, most, repeat(usual and usual * shrunk))
     if usual is None:
         least, largest = LETTERS
-        return [Piece(one, one.longest / shrunk, least * one.longest, largest * one.longest) for one in pictures]
+        return [
+            Piece(one, one.longest / shrunk, least * one.longest, largest * one.longest, letters=True)
+            for one in pictures
+        ]
     return [Piece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
 
 

@@ -9,6 +9,7 @@ from random import Random
 
 Size = tuple[float, float]
 MIXED = 30  # orders by chance that are tried too, always the same ones
+NEAR = 3.0  # places by which boxes that are to stay about in their order change it, at most
 MANY = 300  # where the best of all arrangements is looked for
 
 
@@ -35,35 +36,41 @@ class Field:
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
 
 
-def pack(sizes: Sequence[Size], field: Field, *, led: bool = False) -> list[Size] | None:
+def pack(sizes: Sequence[Size], field: Field, *, led: bool = False, tidy: bool = False) -> list[Size] | None:
     """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted.
 
-    led: the first box is in the upper left corner.
+    led: the first box is in the upper left corner. tidy: none stands before an earlier one.
     """
-    return next(_packed(sizes, field, MIXED, led=led), None)
+    found = _packed(sizes, field, MIXED, led=led, tidy=tidy)
+    return next((places for places in found if not tidy or not _broken(places)), None)
 
 
 def arranged(sizes: Sequence[Size], field: Field) -> list[Size] | None:
     """The same, so that a reader who goes right and down meets the boxes about as they come."""
     for led in (True, False):
-        found = list(_packed(sizes, field, MANY, led=led))
+        found = [places for tidy in (True, False) for places in _packed(sizes, field, MANY, led=led, tidy=tidy)]
         if found:
-            return min(found, key=lambda places: _disorder(places, sizes, field))
+            return min(found, key=lambda places: (_broken(places), _disorder(places, sizes, field)))
     return None
 
 
-def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool) -> Iterator[list[Size]]:
-    """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too."""
+def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
+    """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too; tidy: orders near theirs."""
     if sum(width * height for width, height in sizes) > field.area:
         return
     turned = Field(field.height, field.width, field.taken[::-1])
-    for order in _orders(sizes, mixed, 1 if led else 0):
+    for order in _orders(sizes, mixed, 1 if led else 0, tidy=tidy):
         places = _in_order(sizes, order, field)
         if places is not None:
             yield places
         places = _in_order([(height, width) for width, height in sizes], order, turned)
         if places is not None:
             yield [(x, y) for y, x in places]
+
+
+def _broken(places: Sequence[Size]) -> int:
+    """How many boxes begin both farther up and farther to the left than one that comes earlier."""
+    return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(places, 2))
 
 
 def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> float:
@@ -77,11 +84,16 @@ def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> fl
     )
 
 
-def _orders(sizes: Sequence[Size], mixed: int, kept: int) -> Iterator[Sequence[int]]:
+def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
     """Orders in which boxes are put down: as they come, then the large ones first; `kept`: that many stay first."""
     every = range(len(sizes))
-    first, rest = every[:kept], every[kept:]
+    first, rest, chance = every[:kept], every[kept:], Random(len(sizes))
     yield every
+    if tidy:
+        for __ in range(mixed):
+            near = {k: k + NEAR * chance.random() for k in rest}
+            yield [*first, *sorted(rest, key=near.__getitem__)]
+        return
     keys = (
         lambda k: -sizes[k][1],
         lambda k: -sizes[k][0] * sizes[k][1],
@@ -90,7 +102,6 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int) -> Iterator[Sequence[i
     )
     for key in keys:
         yield [*first, *sorted(rest, key=key)]
-    chance = Random(len(sizes))
     yield from ([*first, *chance.sample(rest, len(rest))] for __ in range(mixed))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations, islice, pairwise, product
@@ -22,6 +22,11 @@ STEP = 1.04  # by which a drawing without a scale is made larger
 ROUGHLY = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
 POINT = 1e-6  # mm: a figure of this size has none
 ENOUGH = 0.74  # of a page: then nothing more is made larger
+THIN = 0.63  # of a page: with less something else is tried
+# whether the first one is in the corner and all are in their order, and of how much of a page it is given up
+STRICT = ((True, True, ENOUGH), (False, True, THIN), (True, False, THIN), (False, False, THIN))
+SMALLER = (0.93, 0.86, 0.78, 0.7, 0.62)  # of their rooms: drawings for which a page can be in order
+ALIKE = 1.08  # times larger than those of another table of its page the letters of one may be
 EVEN = 0.68  # of every page: then pieces are shared out in no further way
 MOST = 3.0  # of its usual size: nothing is made larger
 SIZES = 60  # that are tried from the largest to the least
@@ -37,6 +42,7 @@ class Piece:
     usual: float
     least: float = 0.0
     most: float = math.inf
+    letters: bool = False  # it is a table: as large as its letters
 
     @property
     def length(self) -> float:
@@ -187,15 +193,53 @@ def shared(
 ) -> tuple[list[float], list[Page]]:
     """Larger rooms, and so many pages as there are, shared out so that the emptiest one is as full as can be."""
     best, most = (list(given), pages), -1.0
-    for way in ways(sized(pieces, given), pages, field):
-        rooms = grown(pieces, given, way, field, shrunk)
-        sizes = sized(pieces, rooms)
-        least = min((area(sizes, page) for page in way), default=0.0)
-        if least > most:
-            best, most = (rooms, way), least
-        if least > EVEN * field.area:
-            break
+
+    def better(found: Iterable[list[Page]], enough: float) -> bool:
+        """Whether the emptiest page became fuller in one of these ways."""
+        nonlocal best, most
+        before = most
+        for way in found:
+            rooms = grown(pieces, given, way, field, shrunk)
+            sizes = sized(pieces, rooms)
+            least = min((area(sizes, page) for page in way), default=0.0)
+            if least > most:
+                best, most = (rooms, way), least
+            if least > enough * field.area:
+                break
+        return most > before
+
+    better(ways(sized(pieces, given), pages, field), EVEN)
+    while most < THIN * field.area and better(moved(sized(pieces, given), best[1], field), THIN):
+        pass
     return best
+
+
+def moved(sizes: Sequence[Size], pages: list[Page], field: Field) -> Iterator[list[Page]]:
+    """Pages where the emptiest one has one piece more from another one, perhaps in exchange for one of its own."""
+    thin = min(range(len(pages)), key=lambda number: area(sizes, pages[number]), default=0)
+    for other, page in enumerate(pages):
+        for piece, back in product(page if other != thin else (), (None, *pages[thin])):
+            way = list(pages)
+            way[thin] = sorted([*(k for k in pages[thin] if k != back), piece])
+            way[other] = sorted([*(k for k in page if k != piece), *(() if back is None else (back,))])
+            if way[other] and all(pack(spaced(sizes, way[n]), field) is not None for n in (thin, other)):
+                yield way
+
+
+def ordered(sizes: Sequence[Size], page: Page, field: Field) -> bool:
+    """Whether the pieces of a page can stand in their order, the first one in its corner."""
+    return pack(spaced(sizes, page), field, led=True, tidy=True) is not None
+
+
+def tidier(pieces: Sequence[Piece], given: Sequence[float], page: Page, field: Field) -> Iterator[list[float]]:
+    """Rooms in which a drawing or two, or all tables, are so much smaller that the page is in order and full enough."""
+    tables = [k for k in page if pieces[k].letters]
+    single = [tables, *([k] for k in page if k not in tables)]
+    for share, which in product(SMALLER, [*single, *([*a, *b] for a, b in combinations(single, 2))]):
+        rooms = eased(pieces, given, share, which)
+        sizes = sized(pieces, rooms)
+        if area(sizes, page) > THIN * field.area and ordered(sizes, page, field):
+            yield rooms
 
 
 def grown(
@@ -203,18 +247,32 @@ def grown(
 ) -> list[float]:
     """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size.
 
-    The first drawing stays in the corner, unless too much of the page were left empty for that.
+    The pieces stay in their order and the first one in the corner, unless too much of the page were left empty for
+    that. Letters of tables stay about alike.
     """
     rooms = list(given)
-    for page, led in product(pages, (True, False)):
+    for page, (led, tidy, enough) in product(pages, STRICT):
         growing = set(page)
-        while growing and area(sized(pieces, rooms), page) < ENOUGH * field.area:
+        while growing and area(sized(pieces, rooms), page) < enough * field.area:
             number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
             piece, before = pieces[number], rooms[number]
             rooms[number] = piece.larger(before)
             sizes = sized(pieces, rooms)
-            most = min(MOST * shrunk * piece.usual, piece.most)
-            if not before < rooms[number] <= most or pack(spaced(sizes, page), field, led=led) is None:
+            most = min(MOST * shrunk * piece.usual, piece.most, alike(pieces, rooms, page, number))
+            if not before < rooms[number] <= most or pack(spaced(sizes, page), field, led=led, tidy=tidy) is None:
                 rooms[number] = before
                 growing.discard(number)
     return rooms
+
+
+def lettered(pieces: Sequence[Piece], rooms: Sequence[float], page: Page) -> list[float]:
+    """The rooms with those of a page's tables made smaller whose letters are larger than those of another one."""
+    return [min(room, alike(pieces, rooms, page, k)) if k in page else room for k, room in enumerate(rooms)]
+
+
+def alike(pieces: Sequence[Piece], rooms: Sequence[float], page: Page, number: int) -> float:
+    """The largest room for a piece beside tables, if it is one: its letters are hardly larger than theirs."""
+    if not pieces[number].letters:
+        return math.inf
+    others = [rooms[k] / pieces[k].usual for k in page if pieces[k].letters and k != number]
+    return ALIKE * min(others, default=math.inf) * pieces[number].usual

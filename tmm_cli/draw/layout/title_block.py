@@ -23,7 +23,7 @@ class Titles:
     texts: TitleTexts
     title: str
     subject: str
-    number: str
+    number: int
     count: int
 
 

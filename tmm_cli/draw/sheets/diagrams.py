@@ -124,6 +124,17 @@ def _strokes(results: Results) -> list[tuple[float, float, bool]]:
     return found
 
 
+def _named(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
+    """What the strokes are called. Those of a longer cycle of loads, as of a four-stroke engine, do not work by turns:
+    they are counted from position 0 on."""
+    if results.linkage.turns == 1 or any(load.working_stroke_only for load in results.linkage.loads):
+        return [_("working stroke") if working else _("idle stroke") for __, __, working in strokes]
+    numbers = list(range(1, len(strokes) + 1))
+    if len(strokes) % 2:  # position 0 is within a stroke, and this is its other part
+        numbers[-1] = 1
+    return [_("stroke {number}").format(number=number) for number in numbers]
+
+
 def _turned(results: Results, q: Real) -> Any:
     """The driver's turn from position 0, deg; a slider's run in the file's unit."""
     if results.linkage.driver.kind == "slide":
@@ -143,9 +154,10 @@ def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], e
         if not results.inputs.request.places:
             numbers.append((end, str(len(results.asked))))
     axis, words = _across(results, (0.0, end) if end else (min(xs), max(xs)), *room(sheet))
+    strokes = sorted(_strokes(results))
     spans = [
-        (math.degrees(start), math.degrees(start + length), _("working stroke") if working else _("idle stroke"))
-        for start, length, working in _strokes(results)
+        (math.degrees(start), math.degrees(start + length), name)
+        for (start, length, __), name in zip(strokes, _named(results, strokes), strict=True)
     ]
     over = Across(axis, words, sorted(numbers), spans)
     chart(sheet, [plotted(one, results.problem.units, xs, marks, borders) for one in every], over)

@@ -41,7 +41,7 @@ class Hodograph:
 def balancing(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The shaking force before and after balancing."""
     found = results.balancing
-    if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
+    if found is None or not found.cycle.shakes:
         return
     drawn = [Hodograph(_("dashed: without counterweights"), found.cycle.before.force, found.before.force, LOAD, "--")]
     if found.cycle.counterweights:

@@ -19,7 +19,7 @@ from tmm_cli.draw.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.lever import POLE, LeverPlan, Pair, lever_plan
-from tmm_cli.plans.record import Symbol, balance_name, balance_symbol
+from tmm_cli.plans.record import Symbol, balance_name, balance_symbol, in_letters
 from tmm_cli.tolerances import NO_DIFFERENCE
 
 MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
@@ -29,7 +29,7 @@ def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
     for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
-        sheet.label(", ".join(names), at, 11 if pole in names else 10)
+        sheet.label(", ".join(map(in_letters, names)), at, 11 if pole in names else 10)
 
 
 def weighty(plan: LeverPlan) -> Sequence[Acting]:

@@ -21,7 +21,7 @@ from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import _, numeral
+from tmm_cli.language import _, numeral, typeset
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import PAD, balance_symbol
 from tmm_cli.plans.velocity import massive
@@ -66,7 +66,7 @@ def place_of_driver(results: Results, q: float, digits: int = 6) -> str:
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
     value = round(units.from_si(q % (2 * np.pi) if crank else q, measure), DECIMALS)
-    place = f"{numeral(value, f'.{digits}g')} {units.spelt(measure)}"
+    place = typeset(f"{numeral(value, f'.{digits}g')} {units.spelt(measure)}")
     return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
 
 

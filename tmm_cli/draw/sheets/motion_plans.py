@@ -18,7 +18,7 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.acceleration import POLE, acceleration_plan
 from tmm_cli.plans.readings import readings, turns
-from tmm_cli.plans.record import NamedVector, Plan
+from tmm_cli.plans.record import NamedVector, Plan, in_letters
 from tmm_cli.plans.velocity import velocity_plan
 
 ABOUT = 9.0  # mm about the lines of a plan, for letters
@@ -105,7 +105,7 @@ def table(here: Position, sort: Sort, plan: Plan, mu: float) -> list[Row]:
         first, *others = reading.symbols
         names = (first, *(part for symbol in others for part in (" = ", symbol)))
         length = numeral(reading.size / mu, ".1f") if reading.size else "0"
-        rows.append(Row((names, reading.segment, length, figure(reading.size))))
+        rows.append(Row((names, in_letters(reading.segment), length, figure(reading.size))))
     rows.append(Row((_("link"), _("sense"), "", spelt(sort.turning)), head=True))
     for turn in turns(here.motion, here.k, sort.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""

@@ -134,7 +134,7 @@ def shaking(results: Results, q: Any) -> list[Quantities]:
 
     ways = [(_("without counterweights"), found.before), (_("with counterweights"), found.after)]
     told = [(*way, curve) for way, curve in zip(ways, shaken(results.mechanism, found.cycle, q), strict=True)]
-    told = told if found.cycle.counterweights else told[:1]
+    told = told[::-1] if found.cycle.counterweights else told[:1]  # dashed is without, as in the hodograph
     nothing = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
 
     def size(force: Any) -> Any:

@@ -87,4 +87,4 @@ def _tables(subject: Subject) -> Iterable[Block]:
     sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(tables, sentences, strict=True):
         yield said(sentence, table=Ref(table.name))
-        yield rows_of(subject, table, key=table.name)
+        yield rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")

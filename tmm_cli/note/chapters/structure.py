@@ -11,6 +11,7 @@ from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, L
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
 from tmm_cli.note.math import Words
+from tmm_cli.note.tables import NONE
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.structure import PAIRS, ROLES
 from tmm_cli.results.stages import link_name
@@ -148,5 +149,5 @@ def _group(group: Group) -> tuple[Line, ...]:
     outer = ", ".join(_("{pair} (to {link})").format(pair=pair, link=link) for pair, link in known)
     return (
         line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(group.type),
-        line(", ".join(pair.name for pair in group.inner)), line(outer), line(own),
+        line(", ".join(pair.name for pair in group.inner) or NONE), line(outer), line(own),
     )  # fmt: skip

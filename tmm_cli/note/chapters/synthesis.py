@@ -52,7 +52,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         if drawn in diagrams[:1]:
             sentence = _("How the result depends on what may be chosen is shown in figure {figure}.")
         elif drawn in diagrams:
-            sentence = _("See figure {figure} too.")
+            sentence = _("What else depends on this choice is shown in figure {figure}.")
         yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
     sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")

@@ -9,9 +9,9 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said, several
 from tmm_cli.note.context import Subject, with_degrees
-from tmm_cli.note.tables import rows_of
+from tmm_cli.note.tables import NONE, rows_of
 from tmm_cli.plans.bodies import named
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
@@ -56,11 +56,19 @@ def blocks(subject: Subject) -> Iterable[Block]:
     if linkage.loads:
         yield said(_("The loads are given in table {table}."), table=Ref("loads"))
         yield _loads(subject)
-    for table in given(problem):
-        if table.name == "drivers" and not linkage.others:
-            continue
-        if table.name in FURTHER or table.name.startswith("load_table"):
-            yield said(_("Further data are given in table {table}."), table=Ref(table.name))
+    further = [
+        table for table in given(problem)
+        if (table.name in FURTHER or table.name.startswith("load_table"))
+        and not (table.name == "drivers" and not linkage.others)
+    ]  # fmt: skip
+    if further:
+        yield several(
+            _("Further data are given in table {first}."),
+            _("Further data are given in tables {first} and {last}."),
+            _("Further data are given in tables {first} to {last}."),
+            [table.name for table in further],
+        )  # fmt: skip
+        for table in further:
             yield rows_of(subject, table, key=table.name)
             yield from (paragraph(with_degrees(note)) for note in table.notes)
     yield paragraph(_("It is required to find:"))
@@ -82,7 +90,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        (line(name), line(link.label or _(ROLES[roles[name]])), _lengths(subject, link) or line("—"))
+        (line(name), line(link.label or _(ROLES[roles[name]])), _lengths(subject, link) or line(NONE))
         for name, link in linkage.links.items() if name != FRAME
     )  # fmt: skip
     head = (line(_("link")), line(_("is called")), line(_("sizes")))
@@ -108,7 +116,7 @@ def _lengths(subject: Subject, link: Link) -> Line:
 def _fixed(subject: Subject) -> Rows:
     linkage = subject.results.linkage
     rows = [
-        (line(point), *_place(subject, place), line(""))
+        (line(point), *_place(subject, place), line(NONE))
         for point, place in linkage.links[FRAME].points.items()
     ]  # fmt: skip
     for slide in linkage.slides:
@@ -117,7 +125,7 @@ def _fixed(subject: Subject) -> Rows:
             rows.append((line(_("guide {name}").format(name=slide.name)), *_place(subject, slide.through), line(angle)))
     unit = subject.unit(LENGTH)
     head = (line(_("point")), line(f"x, {unit}"), line(f"y, {unit}"), line(_("direction")))
-    shown = tuple(row if any(r[3] != ("",) for r in rows) else row[:3] for row in rows)
+    shown = tuple(row if any(r[3] != (NONE,) for r in rows) else row[:3] for row in rows)
     caption = _("Fixed points and guides") if _guided(subject) else _("Fixed points")
     return Rows(caption, head[: len(shown[0]) if shown else 3], shown, "fixed")
 
@@ -178,7 +186,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         first, last = (subject.value(angle, ANGLE, 6) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
     name = named(load.name, "P" if load.force else "M")
-    return line(name), line(link_name(load.link)), line(place if load.force else "—"), line(size), line(when)
+    return line(name), line(link_name(load.link)), line(place if load.force else NONE), line(size), line(when)
 
 
 def _wanted(subject: Subject) -> Iterable[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.dynamics.flywheel import Tangent
-from tmm_cli.language import _
+from tmm_cli.language import _, symbol
 from tmm_cli.note.blocks import Block, Found, said
 from tmm_cli.note.dynamics.words import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
 from tmm_cli.note.expression import (
@@ -55,7 +55,7 @@ def diagram(here: Here) -> Iterable[Block]:
           "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
           "which {J} is zero the energies {Ea} and {Eb}:"),
         T=START, A=WORK, J=INERTIA, up=_half(LARGEST), low=_half(LEAST), Ea=OFFSETS[0], Eb=OFFSETS[1],
-        psi=row("tan", Letter(Symbol("ψ")), "=", Fraction(
+        psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", Fraction(
             row(Letter(Symbol("μ", "J")), "·", Power(Letter(Symbol("ω")), Number("2"))),
             row(Number("2"), "·", Letter(Symbol("μ", "A"))),
         )),

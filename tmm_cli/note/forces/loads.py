@@ -61,7 +61,10 @@ def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     yield from map(Found, there)
     nothing = [one.name for one in found if one not in there]
     if nothing:
-        yield said(_("These are zero, as the accelerations are: {names}."), names=listed(nothing))
+        text = _("These are zero, as the accelerations are: {names}.")
+        if len(nothing) == 1:
+            text = _("This is zero, as the acceleration is: {names}.")
+        yield said(text, names=listed(nothing))
 
 
 def _of_inertia(results: Results, load: Applied, k: int) -> Iterable[Substitution]:

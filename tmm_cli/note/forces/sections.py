@@ -7,7 +7,7 @@ from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Items, Line, filled, said
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, filled, listed_below, said
 from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part
@@ -88,7 +88,7 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
     drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
-    yield Items((*unknown, *drives))
+    yield listed_below((*unknown, *drives))
     yield from part.subject.figures(
         "group-loads", _("All that acts is shown in figure {figure}: forces without scale, their arms to scale."),
         _("Loads and reactions: {links}; {position}").format(links=links_of(part.links), position=part.caption),

@@ -7,16 +7,16 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, filled, line, said
+from tmm_cli.note.blocks import Block, Line, Ref, Rows, filled, line, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
+from tmm_cli.note.tables import NONE
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE
 from tmm_cli.vectors import Real, Vector
 
 PAIRS = 4  # reactions in one table
-NONE = "—"  # of what there is not in a position
 
 
 def reactions(subject: Subject) -> Iterable[Block]:
@@ -24,22 +24,33 @@ def reactions(subject: Subject) -> Iterable[Block]:
     found = subject.results.reactions
     assert found is not None
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
-    sentence = _("Table {first} gives the reactions in all positions and their angles with the axis x.")
-    if len(pairs) > PAIRS:
-        sentence = _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x.")
-    last = (len(pairs) - 1) // PAIRS
-    yield said(sentence, first=Ref("reactions-0"), last=Ref(f"reactions-{last}"))
-    yield from _sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions")
+    tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
+    yield several(
+        _("Table {first} gives the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x."),
+        [table.key for table in tables],
+    )  # fmt: skip
+    yield from tables
     pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
             for pin in found.pins(subject.results.linkage)]  # fmt: skip
     if pins:
-        yield said(_("In a compound hinge more than two links meet; its pin acts on each of them with the force:"))
-        yield from _sized(subject, _("Forces of the pins {names} on their links"), pins, "pins")
+        tables = list(_sized(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
+        yield several(
+            _("In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
+              "them."),
+            _("In a compound hinge more than two links meet; tables {first} and {last} give the force of its pin on "
+              "each of them."),
+            _("In a compound hinge more than two links meet; tables {first} to {last} give the force of its pin on "
+              "each of them."),
+            [table.key for table in tables],
+        )  # fmt: skip
+        yield from tables
 
 
 def _sized(
     subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
-) -> Iterable[Block]:
+) -> Iterable[Rows]:
     """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
     for first in range(0, len(forces), PAIRS):
         some = forces[first : first + PAIRS]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from dataclasses import dataclass
 from functools import partial
 from html import escape
@@ -133,7 +134,7 @@ class Writer:
         """With its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
-        head = "".join(f"<th>{self.line(cell)}</th>" for cell in rows.head)
+        head = "".join(f"<th>{self.heading(cell)}</th>" for cell in rows.head)
         body = "".join(
             "<tr>" + "".join(
                 f"<td{kind_of(cell, number)}>{self.line(cell)}</td>"
@@ -146,6 +147,12 @@ class Writer:
             f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'
             f"<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
         )
+
+    def heading(self, cell: Line) -> str:
+        """Of a column; units such as rad/s stay on one line."""
+        if not all(isinstance(part, str) for part in cell):
+            return self.line(cell)
+        return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', data("".join(map(str, cell))))
 
     def figure(self, figure: Figure) -> str:
         """With its caption below."""

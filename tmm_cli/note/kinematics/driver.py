@@ -165,19 +165,25 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     slides = strokes.kind == "slide"
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
+    text = _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = "
+             "{places}; between them it turns through {size}.")  # fmt: skip
+    if slides:
+        text = _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = "
+                 "{places}; between them it goes through {size}.")  # fmt: skip
     yield said(
-        _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = {places}; "
-          "between them it goes through {size}."),
-        output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
+        text, output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
     )  # fmt: skip
     if not np.isfinite(strokes.k):
         return
     working = sum(s.length for s in strokes.working)
     idle = sum(s.length for s in strokes.strokes if not s.working)
+    text = _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; "
+             "the coefficient of change of mean speed is {k}:")  # fmt: skip
+    if len(strokes.strokes) > 2:
+        text = _("During the working strokes of a cycle the driving link turns through {working} in all, during the "
+                 "idle ones through {idle}; the coefficient of change of mean speed is {k}:")  # fmt: skip
     yield said(
-        _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; the "
-          "coefficient of change of mean speed is {k}:"),
-        k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
+        text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
     )  # fmt: skip
     angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
     yield Found(Substitution(Symbol("k"), Quotient(*angles), strokes.k))

@@ -16,12 +16,11 @@ from tmm_cli.note.context import OF_POSITION, Subject
 from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
 from tmm_cli.note.math import Letter, Number, row
 from tmm_cli.plans.readings import turns
-from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, round_scale
+from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, in_letters, round_scale
 from tmm_cli.plans.vector_equations import Spot
 from tmm_cli.tolerances import NO_VECTOR
 
 SMALL = 0.2  # of the largest known vector: a smaller one is not the one by which a scale is told
-_BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
 @dataclass(frozen=True)
@@ -178,7 +177,7 @@ def large(vectors: Sequence[Vector]) -> Vector | None:
 
 def drawn(vector: Vector) -> Symbol:
     """Its segment."""
-    return Symbol(vector.segment.translate(_BELOW))
+    return Symbol(in_letters(vector.segment))
 
 
 def zero(symbol: Symbol) -> Block:

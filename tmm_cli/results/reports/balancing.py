@@ -13,6 +13,7 @@ from tmm_cli.quantities import ANGLE, FORCE, MASS, MOMENT, NUMBER
 from tmm_cli.results.reports.cycle import driver_columns
 from tmm_cli.results.reports.quality import Row, of_rows
 from tmm_cli.results.table import Column, Table
+from tmm_cli.tolerances import NO_FORCE
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -21,12 +22,8 @@ def tables(results: Results) -> Iterable[Table]:
     assert found is not None
     rows, notes = [*_counterweights(found), *_largest(found), *_rotor(results, found)], [*_notes(found)]
     yield Table("balancing", _("Balancing"), of_rows(rows, results), notes=tuple(notes))
-    if _shakes(found):
+    if found.cycle.shakes:
         yield _positions(results, found)
-
-
-def _shakes(found: Balancing) -> bool:
-    return bool(np.any(np.nan_to_num(found.cycle.before.force) != 0))
 
 
 def _counterweights(found: Balancing) -> Iterable[Row]:
@@ -39,7 +36,7 @@ def _counterweights(found: Balancing) -> Iterable[Row]:
 
 
 def _largest(found: Balancing) -> Iterable[Row]:
-    if not _shakes(found):
+    if not found.cycle.shakes:
         return
     before, after = found.cycle.before, found.cycle.after
     yield _("largest shaking force"), np.nanmax(np.abs(before.force)), FORCE
@@ -68,7 +65,7 @@ def _rotor(results: Results, found: Balancing) -> Iterable[Row]:
 
 
 def _notes(found: Balancing) -> Iterable[str]:
-    if _shakes(found):
+    if found.cycle.shakes:
         yield _("Shaking: forces of inertia of all links on the frame, over the cycle at constant speed of the driver.")
     if found.cycle.alike:
         yield _("Some counterweights could do what others do: of all ways to balance the least masses are shown.")
@@ -81,8 +78,10 @@ def _positions(results: Results, found: Balancing) -> Table:
     told = [(found.before, "F x", "F y", "F", "M")]
     if found.cycle.counterweights:
         told.append((found.after, N_("F x, balanced"), N_("F y, balanced"), N_("F, balanced"), N_("M, balanced")))
+    least = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
     for shaking, *headers in told:
-        values = (shaking.force.real, shaking.force.imag, np.abs(shaking.force), shaking.moment)
+        force = np.where(np.abs(shaking.force) < least, 0, shaking.force)  # rounding is none
+        values = (force.real, force.imag, np.abs(force), shaking.moment)
         columns += [
             Column(h, v, MOMENT if v is shaking.moment else FORCE) for h, v in zip(headers, values, strict=True)
         ]

@@ -1,0 +1,46 @@
+"""Large sheets of the bank, drawn once a process, and how much stands on them."""
+
+from __future__ import annotations
+
+import functools
+
+from bank import solved
+
+from tmm_cli.draw.layout.contents import chosen
+from tmm_cli.draw.layout.large import large_sheets
+from tmm_cli.draw.layout.title_block import SIZES, inner
+
+COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
+
+
+@functools.cache
+def drawn(name, paper="A1", every=False):
+    return dict(large_sheets(chosen(solved(name), every=every), paper))
+
+
+def about(name, subject):
+    """The first sheet with this in its name."""
+    return next(sheet for stem, sheet in drawn(name).items() if stem.endswith(subject))
+
+
+def free(sheet):
+    """What is within the frame beside the title block, mm²."""
+    low, high = inner(sheet.paper)
+    return (high - low).real * (high - low).imag - SIZES["gost"][0] * SIZES["gost"][1]
+
+
+def used(sheet):
+    return sum((b - a).real * (b - a).imag for a, b in boxes(sheet))
+
+
+def boxes(sheet):
+    """Lower left and upper right corners of what stands on a sheet."""
+    return [(at, at + complex(*one.paper)) for at, one in sheet.pictures]
+
+
+def apart(one, other):
+    (low, high), (other_low, other_high) = one, other
+    return (
+        low.real >= other_high.real or other_low.real >= high.real
+        or low.imag >= other_high.imag or other_low.imag >= high.imag
+    )  # fmt: skip

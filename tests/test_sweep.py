@@ -1,0 +1,221 @@
+"""Mechanisms over parameters: each point is the mechanism of that file, borders are where mechanics has them."""
+
+import csv
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tmm_cli.draw.paper.contours import contour, hatching, region
+from tmm_cli.draw.sheets.sweep import sheets
+from tmm_cli.grading.task import Task
+from tmm_cli.library import problem_of, solve
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.settings import with_settings
+from tmm_cli.sweep.grid import read_axes
+from tmm_cli.sweep.mechanisms import Mechanisms
+from tmm_cli.sweep.quantities import read_shown
+from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
+from tmm_cli.sweep.run import refuse_points, swept
+from tmm_cli.synthesis import measures
+
+ROOT = Path(__file__).parents[1]
+PROBLEMS = ROOT / "problems"
+
+
+def sweep(file, over, show=()):
+    tree = read_file(str(PROBLEMS / f"{file}.yaml"))
+    mechanisms = Mechanisms(tree, read_axes(Task(tree), over), show)
+    return swept(mechanisms, tree, show)
+
+
+def one_by_one(file, settings):
+    """What a run of the file with other parameters finds."""
+    return solve(problem_of(with_settings(read_file(str(PROBLEMS / f"{file}.yaml")), settings)))
+
+
+def largest(values):
+    return float(np.max(np.abs(values)))
+
+
+@pytest.mark.parametrize(
+    ("file", "over", "setting", "reaction"),
+    [
+        ("six-bar", "OA=80..120:5", "OA={:g}", ("BF", "R_34")),
+        ("shaper", "n1=60..90:4", "n1={:g} rpm", ("D", "R_34")),
+        ("shaper", "CD=600..700:3", "CD={:g}", ("D", "R_34")),
+    ],
+)
+def test_each_point_is_the_mechanism_of_a_file_with_that_parameter(file, over, setting, reaction):
+    found = sweep(file, [over], ["H,k,pressure,M_b", reaction[1], "omega_3"])
+    assert found.taped
+    for point, state, values in zip(found.points, found.state, found.values, strict=True):
+        results = one_by_one(file, [setting.format(point[0])])
+        force = next(r for r in results.reactions.all if {r.by, r.on} == {"3", "4"})
+        alone = [
+            measures.stroke(results), measures.ratio(results), measures.pressure(results),
+            largest(results.reactions.balance.moment), largest(np.abs(force.force)),
+            largest(results.motion.link("3").omega),
+        ]  # fmt: skip
+        assert values == pytest.approx(alone, rel=1e-12)
+        assert (state == LIMIT) == any(not one.holds for one in results.pressure)
+
+
+@pytest.mark.parametrize(("file", "over"), [("press-class-iii", "OA=84..86:2"), ("cylinder", "AB=240..260:2")])
+def test_what_no_tape_holds_is_solved_by_the_ordinary_stages(file, over):
+    found = sweep(file, [over])
+    assert not found.taped and set(found.state) <= {WORKS, LIMIT}
+    name = "M_b" if any(one.name == "M_b" for one in found.shown) else "F_b"
+    k = next(k for k, one in enumerate(found.shown) if one.name == name)
+    balance = one_by_one(file, [f"{found.axes[0].name}={found.points[0, 0]:g}"]).reactions.balance
+    assert found.values[0, k] == pytest.approx(largest(balance.moment if name == "M_b" else balance.force), rel=1e-12)
+
+
+def test_the_crank_of_a_four_bar_stops_to_turn_where_grashof_has_it():
+    # l1 + l4 = l2 + l3 beyond the frame of 400 mm: l1 = 350 + 250 - 400; the rocker's limit of 45 deg is met before
+    found = sweep("crank-rocker", ["l1=20..320:41"], ["psi"])
+    last = found.marks[-1]
+    assert (last.before, last.after) == (LIMIT, STOPS)
+    assert last.at[0] == pytest.approx(200.0, rel=1e-12)
+    # crank along the frame: the transmission angle between links 2 and 3, by the cosine theorem, is 45 deg
+    across = math.sqrt(350**2 + 250**2 - 2 * 350 * 250 * math.cos(math.radians(45)))
+    assert found.marks[0].at[0] == pytest.approx(400 - across, rel=1e-12)
+
+
+def test_an_offset_slider_stops_to_turn_and_then_to_assemble():
+    # the rod of 190 mm reaches the guide while r + e is shorter; at the sketch (60 deg) while e - r sin 60 deg is
+    found = sweep("crank-slider-offset", ["e=0..160:17"], ["H"])
+    borders = {mark.after: mark.at[0] for mark in found.marks}
+    assert borders[STOPS] == pytest.approx(140.0, rel=1e-12)
+    assert found.state[-1] == APART
+    assert borders[APART] == pytest.approx(190 - 50 * math.sin(math.radians(60)), rel=1e-12)
+
+
+def test_numbers_that_no_file_may_have_are_marked_and_no_error():
+    found = sweep("crank-rocker", ["l1=-20..20:5"], ["psi"])
+    assert found.state.tolist() == [REFUSED, REFUSED, REFUSED, WORKS, WORKS]
+    assert found.why[0] == "a length cannot be negative"
+    assert np.all(np.isnan(found.values[:3])) and np.all(np.isfinite(found.values[3:]))
+
+
+def test_over_two_parameters_each_line_is_a_sweep_over_one():
+    both = sweep("crank-rocker", ["l1=60..180:3", "l4=300..500:3"], ["psi,k,M_b"])
+    assert both.shape == (3, 3)
+    for row, l1 in enumerate(both.axes[0].values):
+        tree = with_settings(read_file(str(PROBLEMS / "crank-rocker.yaml")), [f"l1={l1:g}"])
+        mechanisms = Mechanisms(tree, read_axes(Task(tree), ["l4=300..500:3"]), ["psi,k,M_b"])
+        one = swept(mechanisms, tree, ["psi,k,M_b"])
+        here = slice(3 * row, 3 * row + 3)
+        assert both.state[here].tolist() == one.state.tolist()
+        assert np.allclose(both.values[here], one.values, rtol=1e-12, equal_nan=True)
+    edges = [mark for mark in both.marks if STOPS in (mark.before, mark.after)]
+    assert edges
+    for mark in edges:  # of the four lengths the shortest and the longest are as long as the two others
+        lengths = sorted([*mark.at, 350.0, 250.0])
+        assert lengths[0] + lengths[3] == pytest.approx(lengths[1] + lengths[2], rel=1e-9)
+
+
+def test_an_output_that_turns_back_more_often_is_still_told():
+    # the toggle of the press passes its straight position twice with a longer crank: four strokes in a turn
+    found = sweep("toggle-press", ["OA=35..60:2"], ["H,M_b"])
+    strokes = one_by_one("toggle-press", ["OA=60"])
+    assert len(strokes.strokes.strokes) == 4
+    assert found.values[1, 0] == pytest.approx(strokes.strokes.travel, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("over", "message"),
+    [
+        (["OB=1..2"], "--over OB=1..2: there is no parameter of that name\n  found:   'OB'\n"
+                      "  allowed: OA, OC, CD, DE, n1"),
+        (["OA"], "--over OA: a name, two bounds and perhaps a count are wanted\n  found:   'OA'\n"
+                 "  allowed: --over OA=80..120:41"),
+        (["OA=90..80"], "--over OA=90..80: the lower bound comes first\n  found:   'OA=90..80'\n"
+                        "  allowed: --over OA=80..120:41"),
+        (["OA=80..90:1"], "--over OA=80..90:1: the number of values is a whole number\n  found:   '1'\n"
+                          "  allowed: 2 to 1000000"),
+        (["n1=60..80 kg"], "--over n1=60..80 kg: an angular speed is wanted here\n  found:   'n1=60..80 kg'\n"
+                           "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s"),
+        (["OA=8..9", "OA=80..90"], "--over OA=80..90: this is swept twice\n  found:   'OA'"),
+    ],
+)  # fmt: skip
+def test_a_range_that_cannot_be_is_refused(over, message):
+    task = Task(read_file(str(PROBLEMS / "shaper.yaml")))
+    with pytest.raises(ProblemError) as refused:
+        read_axes(task, over)
+    assert str(refused.value) == message
+
+
+def test_the_nearest_quantity_is_proposed():
+    task = Task(read_file(str(PROBLEMS / "crank-rocker.yaml")))
+    with pytest.raises(ProblemError) as refused:
+        read_shown(task, ["psi,presure"])
+    assert str(refused.value).splitlines()[:2] == [
+        "--show psi,presure: there is no such quantity",
+        "  found:   'presure'",
+    ]
+    assert refused.value.near == "pressure"
+    assert [one.name for one in read_shown(task, ["v_K, a of K,omega_3"])] == ["v of K", "a of K", "omega of 3"]
+
+
+def test_more_mechanisms_than_a_minute_has_room_for_are_refused_before_they_start():
+    problem = Task(read_file(str(PROBLEMS / "six-bar.yaml"))).problem
+    refuse_points(problem, 1_000_000, taped=True, cores=1)
+    with pytest.raises(ProblemError, match="these are too many mechanisms"):
+        refuse_points(problem, 1_000_000, taped=False, cores=1)
+
+
+def test_a_contour_joins_the_places_of_equal_value():
+    x, y = np.meshgrid(np.arange(9.0), np.arange(7.0), indexing="ij")
+    (line,) = contour(x + 2 * y, 7.5)
+    assert np.allclose(line.real + 2 * line.imag, 7.5) and len(line) > 5
+    (ring,) = contour((x - 4) ** 2 + (y - 3) ** 2, 4.5)
+    assert ring[0] == ring[-1]
+
+
+def test_hatching_stays_in_its_region_and_goes_on_from_piece_to_piece():
+    inside = np.add.outer(np.arange(6), np.arange(6)) >= 5
+    pieces = list(region(inside, lambda one, other: 0.5))
+    lines = hatching(pieces, 0.7)
+    assert all(min(a.real + a.imag, b.real + b.imag) >= 4.5 - 1e-9 for a, b in lines)
+    area = sum(abs(b - a) for a, b in lines) * 0.7
+    assert area == pytest.approx(25 - 4.5**2 / 2, rel=0.08)
+
+
+def test_the_command_writes_what_it_shows(tmp_path):
+    call = [sys.executable, "-m", "tmm_cli", "sweep", "problems/crank-rocker.yaml", "--over", "l1=100..220:7",
+            "--show", "psi,M_b", "--set", "w1=20 rad/s", "-o", str(tmp_path)]  # fmt: skip
+    done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "7 mechanisms of 12 positions, all at once" in done.stderr
+    folder = tmp_path / "crank-rocker-sweep"
+    with (folder / "sweep.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    record = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    assert record["format"] == 1 and record["files"] == ["borders.csv", "sweep.csv", "sweep.png", "sweep.svg"]
+    assert (
+        [float(row["l1"]) for row in rows] == record["parameters"][0]["values"] == [100, 120, 140, 160, 180, 200, 220]
+    )
+    assert [row["mechanism"] for row in rows] == ["works"] * 3 + ["limit"] * 2 + ["stops"] * 2
+    psi = record["quantities"][0]
+    assert (psi["name"], psi["unit"]) == ("psi", "rad")
+    assert float(rows[0]["psi, deg"]) == pytest.approx(math.degrees(psi["values"][0]), rel=1e-12)
+    assert psi["values"][-1] is None and rows[-1]["psi, deg"] == ""
+    results = one_by_one("crank-rocker", ["l1=120", "w1=20 rad/s"])
+    assert float(rows[1]["M_b, N*m"]) == pytest.approx(largest(results.reactions.balance.moment), rel=1e-12)
+    assert record["borders"][-1]["at"] == pytest.approx([200.0], rel=1e-12)
+
+
+def test_a_sheet_a_quantity_over_two_parameters_and_one_for_all_over_one():
+    two = sweep("crank-rocker", ["l1=60..240:7", "l4=300..500:5"], ["psi,k"])
+    assert [name for name, __ in sheets("", two, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)] == [
+        "sweep-psi", "sweep-k"
+    ]  # fmt: skip
+    one = sweep("crank-rocker", ["l1=60..240:7"], ["psi,k"])
+    ((name, drawing),) = sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
+    assert name == "sweep" and {"works", "does not turn fully"} <= set(drawing.texts())

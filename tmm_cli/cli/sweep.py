@@ -1,0 +1,108 @@
+"""`tmm sweep`."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli.cli.common import Json, Settings, bars, console, emit_json, refusing
+from tmm_cli.cli.opening import introduce
+from tmm_cli.cli.talk import OK, say, speak_as
+from tmm_cli.draw.formats import files as drawings
+from tmm_cli.draw.sheets.sweep import sheets
+from tmm_cli.grading.task import Task
+from tmm_cli.grading.workers import cluster, processes
+from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.settings import with_settings
+from tmm_cli.results.files import RECORD, Staged, folder_name
+from tmm_cli.results.terminal import show as show_table
+from tmm_cli.results.text import csv_text, json_text, plain
+from tmm_cli.sweep.grid import read_axes
+from tmm_cli.sweep.mechanisms import Mechanisms
+from tmm_cli.sweep.record import Swept
+from tmm_cli.sweep.report import borders_table, points_table, sections
+from tmm_cli.sweep.run import refuse_points, swept
+
+File = Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML) with parameters.", show_default=False)]
+Over = Annotated[
+    list[str],
+    typer.Option(metavar="NAME=FROM..TO:COUNT", help="Sweep this parameter (two at most).", show_default=False),
+]
+Show = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAMES", help="Quantities, e.g. H,k,pressure,M_b,R_34,v_E.", show_default=False),
+]
+Folder = Annotated[
+    Path | None,
+    typer.Option("--out", "-o", metavar="DIR", help="Write CSV, result.json, drawings there.", show_default=False),
+]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
+]
+
+
+def sweep(
+    file: File, over: Over, show: Show = None, settings: Settings = None, out: Folder = None, jobs: Jobs = None,
+    scheduler: Scheduler = None, as_json: Json = False,
+) -> None:  # fmt: skip
+    """Show quantities over one parameter or two, and where the mechanism stops to assemble, to turn, to keep limits.
+
+    Each point is a variant with the assembly of the file's own one.
+    """
+    with refusing(as_json):
+        tree = with_settings(speak_as(read_file(file)), settings or ())
+        task = Task(tree)
+        introduce(task.problem)
+        problem = task.problem.whole
+        mechanisms = Mechanisms(tree, read_axes(task, over), show or ())
+        taped, cores = mechanisms.turning is not None, jobs or os.cpu_count() or 1
+        points = 1
+        for axis in mechanisms.axes:
+            points *= len(axis.values)
+        refuse_points(problem, points, taped=taped, cores=None if scheduler else cores)
+        _announce(problem, points, taped)
+        way = cluster(scheduler) if scheduler else processes(cores)
+        with bars() as shown:
+            work = shown.add_task(_("solved"), total=points)
+            found = swept(mechanisms, tree, show or (), way, lambda count: shown.advance(work, count))
+        if as_json:
+            emit_json(plain(dict(sections(found, problem))))
+        else:
+            show_table(points_table(found, words=True), problem.units, console())
+            if found.marks:
+                show_table(borders_table(found, words=True), problem.units, console())
+        if out is not None:
+            _write(found, problem, out)
+        raise typer.Exit(OK)
+
+
+def _announce(problem: Problem, points: int, taped: bool) -> None:
+    """How much work it is, before it starts."""
+    positions = len(problem.request.places) or problem.request.count
+    told = (
+        _("{points} mechanisms of {positions} positions, all at once")
+        if taped
+        else _("{points} mechanisms of {positions} positions, one after another")
+    )
+    say(told.format(points=points, positions=positions))
+
+
+def _write(found: Swept, problem: Problem, out: Path) -> None:
+    """All files at once, or none. Raises OSError."""
+    folder = out / folder_name(f"{problem.name}-sweep")
+    with Staged(folder) as staged:
+        with spoken(ENGLISH):
+            staged.write("sweep.csv", csv_text(points_table(found), problem.units))
+            staged.write("borders.csv", csv_text(borders_table(found), problem.units))
+        for name, picture in drawings(sheets(problem.title, found, problem.units), say):
+            staged.write(name, (picture,))
+        names = sorted(staged.names)
+        with spoken(ENGLISH):
+            staged.write(RECORD, json_text([*sections(found, problem), ("files", names)]))
+    say(_("written: {files}").format(files=folder))

@@ -1,0 +1,142 @@
+"""Lines of equal value on a grid, and regions of it with their hatching."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_cli.tolerances import SAME_PLACES
+
+CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
+Share = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
+
+
+def contour(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
+    """Lines on which values (columns, rows) have a level, as places column + i row; none in cells that lack a value."""
+    above = values >= level
+    whole = np.isfinite(values[:-1, :-1] + values[1:, :-1] + values[1:, 1:] + values[:-1, 1:])
+    mixed = np.stack([above[i : i + len(above) - 1, j : j + above.shape[1] - 1] for i, j in CORNERS])
+    pieces: list[tuple[complex, complex]] = []
+    cells = np.argwhere(whole & np.any(mixed != mixed[0], axis=0))
+
+    def share(one: tuple[int, int], other: tuple[int, int]) -> float:
+        return float((level - values[one]) / (values[other] - values[one]))
+
+    for i, j in np.argwhere(~whole).tolist():  # of three corners, a triangle
+        nodes = [(i + a, j + b) for a, b in CORNERS if np.isfinite(values[i + a, j + b])]
+        if len(nodes) == 3:
+            pairs = [sorted(pair) for pair in zip(nodes, nodes[1:] + nodes[:1], strict=True)]
+            ends = [
+                complex(*one) + share(one, other) * (complex(*other) - complex(*one))
+                for one, other in pairs if above[one] != above[other]
+            ]  # fmt: skip
+            pieces += [(ends[0], ends[1])] if ends else []
+    middles = (values[:-1, :-1] + values[1:, :-1] + values[1:, 1:] + values[:-1, 1:]) / 4
+    for i, j in cells.tolist():
+        crossed = [place for _, _, place in _crossings(above, i, j, share)]
+        if len(crossed) == 4 and (middles[i, j] >= level) != above[i, j]:  # a saddle: its middle tells what is joined
+            crossed = crossed[1:] + crossed[:1]
+        pieces += [(crossed[k], crossed[k + 1]) for k in range(0, len(crossed), 2)]
+    return _joined(pieces)
+
+
+def borders(inside: NDArray[Any], share: Share) -> list[NDArray[Any]]:
+    """Outlines of a region of the nodes (columns, rows), inside the grid."""
+    pieces = []
+    for i, j in _mixed(inside):
+        crossed = [place for _, _, place in _crossings(inside, i, j, share)]
+        pieces += [(crossed[k], crossed[k + 1]) for k in range(0, len(crossed), 2)]
+    return _joined(pieces)
+
+
+def region(inside: NDArray[Any], share: Share) -> Iterator[list[complex]]:
+    """The region in pieces, as corners column + i row: rows of whole cells, and parts of those that its border cuts."""
+    whole = inside[:-1, :-1] & inside[1:, :-1] & inside[1:, 1:] & inside[:-1, 1:]
+    for j in range(whole.shape[1]):
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], whole[:, j], [False]])))
+        for first, last in ends.reshape(-1, 2).tolist():
+            yield [complex(first, j), complex(last, j), complex(last, j + 1), complex(first, j + 1)]
+    for i, j in _mixed(inside):
+        crossed = {one: place for one, _, place in _crossings(inside, i, j, share)}
+        corners: list[complex] = []
+        for a, b in CORNERS:
+            node = (i + a, j + b)
+            corners += [complex(*node)] if inside[node] else []
+            corners += [crossed[node]] if node in crossed else []
+        yield corners
+
+
+def hatching(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
+    """Slanted lines through polygons (mm), so far apart; lines that go on from piece to piece are one."""
+    along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
+    spans: dict[int, list[tuple[float, float]]] = {}
+    for piece in pieces:
+        corners = np.asarray(piece) / along  # lines are level there
+        heights = corners.imag
+        for k in range(int(np.ceil(heights.min() / pitch)), int(np.floor(heights.max() / pitch)) + 1):
+            places = []
+            for one, other in zip(corners, np.roll(corners, -1), strict=True):
+                if (one.imag <= k * pitch) != (other.imag <= k * pitch):
+                    places.append(float(one.real + (other - one).real * (k * pitch - one.imag) / (other - one).imag))
+            places.sort()
+            spans.setdefault(k, []).extend(zip(places[::2], places[1::2], strict=True))
+    found = []
+    for k, own in spans.items():
+        last: list[float] = []
+        for start, end in sorted(own):
+            if last and start <= last[1] + SAME_PLACES * pitch:
+                last[1] = max(last[1], end)
+                continue
+            if last:
+                found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+            last = [start, end]
+        if last:
+            found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+    return found
+
+
+def _mixed(inside: NDArray[Any]) -> list[list[int]]:
+    """Cells through which a border goes."""
+    corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
+    found: list[list[int]] = np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
+    return found
+
+
+def _crossings(
+    above: NDArray[Any], i: int, j: int, share: Share
+) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
+    """Sides of a cell that a border crosses, round it: from which node to which, and where."""
+    for k, (a, b) in enumerate(CORNERS):
+        c, d = CORNERS[(k + 1) % 4]
+        one, other = (i + a, j + b), (i + c, j + d)
+        if above[one] != above[other]:
+            low, high = min(one, other), max(one, other)
+            yield one, other, complex(*low) + share(low, high) * (complex(*high) - complex(*low))
+
+
+def _joined(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
+    """Pieces that have an end in common as one line."""
+    at: dict[complex, list[int]] = {}
+    for n, piece in enumerate(pieces):
+        for end in piece:
+            at.setdefault(end, []).append(n)
+    left, found = set(range(len(pieces))), []
+    starts = [n for own in at.values() if len(own) == 1 for n in own]
+    for first in [*starts, *range(len(pieces))]:
+        if first not in left:
+            continue
+        left.discard(first)
+        one, other = pieces[first]
+        line = [other, one] if len(at[other]) == 1 else [one, other]
+        while True:
+            after = next((n for n in at[line[-1]] if n in left), None)
+            if after is None:
+                break
+            left.discard(after)
+            a, b = pieces[after]
+            line.append(b if a == line[-1] else a)
+        found.append(np.array(line))
+    return found

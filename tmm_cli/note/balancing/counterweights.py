@@ -1,0 +1,194 @@
+"""Counterweights by the static replacement of masses: couplers by masses in their hinges, as a course finds them.
+
+I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 13. It is written where it gives what the calculation
+found: for links whose centres of mass lie on the lines of their hinges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_cli.dynamics.balancing import Balanced, Counterweight
+from tmm_cli.dynamics.balancing_task import BalancingTask, Place
+from tmm_cli.language import _
+from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.note.blocks import Block, Found, Paragraph, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Leaf, Product, Quotient, Substitution, Sum, evaluate
+from tmm_cli.plans.record import Symbol
+from tmm_cli.vectors import cross, dot
+
+ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
+SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found
+EXACT = 15  # figures of what is put in, where the two are compared
+
+MOMENT, SHARE = Symbol("D"), Symbol("k")
+
+
+def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[Block]:
+    """Each with its mass times radius, and its mass where the radius is told; what they leave of the force."""
+    replaced = _Replaced(subject.results.linkage, found, task)
+    if replaced.solved():
+        yield said(
+            _("A counterweight has the product {D} = m·r of its mass and its radius. Links that carry none are "
+              "replaced by masses in their hinges, so that the common centre of mass does not change; a counterweight "
+              "then balances the masses of its link about its pivot, on the side that is away from them."),
+            D=MOMENT,
+        )  # fmt: skip
+        yield from replaced.told
+    else:
+        yield said(
+            _("The product {D} = m·r of the mass of a counterweight and its radius, and its angle, are such that the "
+              "mean square of the force over the cycle is least; it depends on them linearly."),
+            D=MOMENT,
+        )  # fmt: skip
+    for weight in found.counterweights:
+        angle = subject.text(float(np.degrees(weight.angle)))
+        yield said(
+            _("Link {link}: {D} = {size} kg·m, {angle}° from the x axis of the link."),
+            link=weight.place.link, D=Symbol("D", weight.place.link), size=subject.text(weight.size), angle=angle,
+        )  # fmt: skip
+        if weight.mass is not None and weight.size:
+            own = Leaf(Symbol("D", weight.place.link), weight.size)
+            mass = Quotient(own, Leaf(Symbol("r", weight.place.link), weight.place.radius))
+            yield Found(Substitution(Symbol("m", f"c{weight.place.link}"), mass, weight.mass, _("kg")))
+    before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
+    if found.left < ON_LINE:
+        yield said(_("They leave no shaking force: the common centre of mass of the links does not move."))
+        return
+    yield said(_("The largest shaking force is {F} without them and {Fb} with them; the share that is left:"),
+               F=Symbol("F", "max"), Fb=Symbol("F", "max").primed)  # fmt: skip
+    share = Quotient(Leaf(Symbol("F", "max").primed, after), Leaf(Symbol("F", "max"), before))
+    yield Found(Substitution(Symbol("λ"), share, found.left))
+
+
+@dataclass
+class _Replaced:
+    """Masses that are moved to the hinges of links, and from there to counterweights."""
+
+    linkage: Linkage
+    found: Balanced
+    task: BalancingTask
+    told: list[Block] = field(default_factory=list)
+    lumps: dict[str, list[Leaf]] = field(default_factory=dict)
+
+    def solved(self) -> bool:
+        """Whether all counterweights follow; then `told` says how."""
+        weights = {weight.place.link: weight for weight in self.found.counterweights}
+        if len(weights) < len(self.found.counterweights):
+            return False
+        if not all(self._replace(link) for link in self.linkage.moving if link not in weights):
+            return False
+        moved = [link for link in weights if self._fixed(weights[link].place) is None]
+        return all(self._balance(weights[link]) for link in [*moved, *(n for n in weights if n not in moved)])
+
+    def _fixed(self, place: Place) -> str | None:
+        """The hinge on the frame about which a counterweight turns."""
+        points = self.linkage.links[place.link].points
+        return next((p for p in self._hinges(place.link, FRAME) if points[p] == place.about), None)
+
+    def _hinges(self, link: str, *others: str) -> list[str]:
+        """Points in which it is joined to those links by hinges; to any moving one where none is named."""
+        named = others or tuple(name for name in self.linkage.moving if name != link)
+        return [h.point for h in self.linkage.hinges if link in h.links and set(named) & set(h.links)]
+
+    def _replace(self, name: str) -> bool:
+        """A link without a counterweight by masses in its hinges."""
+        link = self.linkage.links[name]
+        mass = float(np.ravel(link.mass)[0])
+        if not mass:
+            return True
+        own, hinges = Leaf(Symbol("m", name), mass), list(dict.fromkeys(self._hinges(name)))
+        if self.linkage.slides_on_frame(name) and len(hinges) == 1:
+            self.lumps.setdefault(hinges[0], []).append(own)
+            return True
+        if self._hinges(name, FRAME) or len(hinges) != 2:
+            return False
+        a, b = (complex(link.points[p]) for p in hinges)
+        line, centre = b - a, complex(link.centre) - a
+        if abs(cross(line, centre)) > ON_LINE * abs(line) ** 2:
+            return False
+        share = dot(line, centre) / abs(line) ** 2
+        length = Leaf(Symbol("l", "".join(hinges)), abs(line))
+        if not 0 <= share <= 1:
+            return False
+        self.told.append(
+            said(_("Link {link} is replaced by masses in {a} and {b}:"), link=name, a=hinges[0], b=hinges[1])
+        )
+        for (point, part), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
+            symbol, value = Symbol("m", f"{name}{point}"), mass * part
+            arm = Leaf(Symbol("l", f"S{name}{other}"), abs(line) * part)
+            self.told.append(Found(Substitution(symbol, Product((own, Quotient(arm, length))), value, _("kg"))))
+            self.lumps.setdefault(point, []).append(Leaf(symbol, value))
+        return True
+
+    def _balance(self, weight: Counterweight) -> bool:
+        """Those of its link and of its points."""
+        place, link = weight.place, self.linkage.links[weight.place.link]
+        name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
+        if pivot is None:
+            return False
+        own, mass = Symbol("m", name), float(np.ravel(link.mass)[0])
+        masses: list[tuple[Leaf, Leaf, complex]] = []
+        if mass and link.centre != place.about:
+            arm = complex(link.centre) - place.about
+            masses.append((Leaf(own, mass), Leaf(Symbol("l", f"{pivot}S{name}"), abs(arm)), arm))
+        for point in self._hinges(name):
+            if point == pivot or point not in self.lumps:
+                continue
+            arm = complex(link.points[point]) - place.about
+            masses += [(one, Leaf(Symbol("l", f"{pivot}{point}"), abs(arm)), arm) for one in self.lumps.pop(point)]
+        if not masses:
+            return False
+        along = masses[-1][2] / abs(masses[-1][2])
+        if any(abs(cross(along, arm)) > ON_LINE * abs(arm) for *__, arm in masses):
+            return False
+        terms: list[tuple[int, Expression]] = [
+            (1 if dot(along, arm) > 0 else -1, Product((one, length))) for one, length, arm in masses
+        ]
+        terms += self._shared(name, pivot, along)
+        expression = Sum(tuple(terms))
+        if abs(abs(evaluate(expression, EXACT)) - weight.size) > SAME * weight.size:
+            return False
+        if evaluate(expression, EXACT) < 0:
+            expression = Sum(tuple((-sign, term) for sign, term in terms))
+        self.told.append(_about(name, pivot))
+        self.told.append(Found(Substitution(Symbol("D", name), expression, weight.size, _("kg·m"))))
+        if self._fixed(place) is None:
+            self._carry(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
+        return True
+
+    def _carry(self, weight: Counterweight, pivot: str, masses: list[Leaf]) -> None:
+        """The pivot moves, and carries the link with all its masses and the counterweight."""
+        name = weight.place.link
+        every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
+        total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
+        self.told.append(said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"),
+                              m=every[-1].symbol, pivot=pivot))  # fmt: skip
+        own = Quotient(Leaf(Symbol("D", name), weight.size), Leaf(Symbol("r", name), weight.place.radius))
+        terms: list[tuple[int, Expression]] = [(1, one) for one in every[:-1]]
+        self.told.append(Found(Substitution(total.symbol, Sum((*terms, (1, own))), total.value, _("kg"))))
+        self.lumps.setdefault(pivot, []).append(total)
+
+    def _shared(self, name: str, pivot: str, along: complex) -> Iterator[tuple[int, Expression]]:
+        """Of masses that go to and fro at the end of a coupler the share that a counterweight on the crank takes."""
+        points = self.linkage.links[name].points
+        for point in list(self.lumps):
+            sliding = any(self.linkage.slides_on_frame(link) for h in self.linkage.hinges if h.point == point
+                          for link in h.links if link != FRAME)  # fmt: skip
+            pins = [p for p in self._hinges(name) if p in points and p != pivot]
+            if sliding and len(pins) == 1:
+                arm = complex(points[pins[0]]) - complex(points[pivot])
+                length = Leaf(Symbol("l", f"{pivot}{pins[0]}"), abs(arm))
+                share = Leaf(SHARE, self.task.share)
+                for one in self.lumps.pop(point):
+                    yield (1 if dot(along, arm) > 0 else -1), Product((share, one, length))
+                self.told.append(said(_("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
+                                      point=point, k=SHARE))  # fmt: skip
+
+
+def _about(link: str, pivot: str) -> Paragraph:
+    return said(_("The counterweight of link {link} balances its masses about {pivot}:"), link=link, pivot=pivot)

@@ -1,0 +1,73 @@
+"""The force and the moment by which the inertia of the links shakes the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.analysis.balancing import steadily
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Found, Inline, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Leaf, Product, Square, SquareRoot, Substitution, Sum
+from tmm_cli.plans.record import Symbol
+from tmm_cli.tolerances import NO_VECTOR
+
+if TYPE_CHECKING:
+    from tmm_cli.analysis.balancing import Balancing
+
+FORCE, MOMENT = Symbol("F"), Symbol("M")
+X, Y = Symbol("F", "x"), Symbol("F", "y")
+
+
+def explained(found: Balancing) -> Iterable[Block]:
+    """What is summed up."""
+    pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
+    yield said(
+        _("At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
+          "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its centre of "
+          "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
+          "{epsilon} the angular acceleration."),
+        F=FORCE, M=MOMENT, pivot=pivot, m=Symbol("m"), a=Symbol("a", "S"), x=Symbol("x", "S"), y=Symbol("y", "S"),
+        J=Symbol("J", "S"), epsilon=Symbol("ε"),
+    )  # fmt: skip
+
+
+def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
+    """Parts of the force, its size, and the moment."""
+    results = subject.results
+    assert results.motion is not None
+    motion = steadily(results.mechanism, results.motion.q[k : k + 1])
+    about, moments = found.before.about, list[Expression]()
+    terms: tuple[list[Expression], list[Expression]] = ([], [])
+    largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, mass = motion.centre(name), float(np.ravel(link.mass)[0])
+        a, r = complex(centre.a[0]), complex(centre.x[0]) - about
+        if mass and abs(a) > NO_VECTOR * largest:
+            m = Leaf(Symbol("m", name), mass)
+            parts = [Leaf(Symbol("a", f"S{name}{axis}"), value) for axis, value in (("x", a.real), ("y", a.imag))]
+            arms = [Leaf(Symbol(axis, f"S{name}"), value) for axis, value in (("x", r.real), ("y", r.imag))]
+            for own, part in zip(terms, parts, strict=True):
+                own.append(Product((m, part)))
+            turned = Sum(((1, Product((arms[0], parts[1]))), (-1, Product((arms[1], parts[0])))))
+            moments.append(Product((m, turned)))
+        inertia, epsilon = float(np.ravel(link.inertia)[0]), float(np.broadcast_to(motion.link(name).epsilon, 1)[0])
+        if inertia and epsilon:
+            moments.append(Product((Leaf(Symbol("J", f"S{name}"), inertia), Leaf(Symbol("ε", name), epsilon))))
+    if not moments:
+        return
+    yield said(_("Position {number}:"), number=str(results.numbers[k]))
+    force = complex(found.before.force[k])
+    for symbol, own, value in zip((X, Y), terms, (force.real, force.imag), strict=True):
+        yield Found(Substitution(symbol, _less(own), value, _("N")))
+    size = SquareRoot(Sum(((1, Square(Leaf(X, force.real))), (1, Square(Leaf(Y, force.imag))))))
+    yield Found(Substitution(FORCE, size, abs(force), _("N")))
+    yield Found(Substitution(MOMENT, _less(moments), float(found.before.moment[k]), _("N·m")))
+
+
+def _less(terms: list[Expression]) -> Expression:
+    return Sum(tuple((-1, term) for term in terms))

@@ -1,0 +1,192 @@
+"""Whether variants assemble, turn and keep their limits, where their strokes end: by their tape, (variants,) at once.
+
+Places of a turn are looked at first; what decides between two of them (a group that may fall short, ends of strokes,
+peaks of what has a limit) is then found there. Variants in which much happens between two places are looked at finely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tmm_cli.kinematics.strokes import Strokes, resisted
+from tmm_cli.roots import least, roots
+from tmm_cli.sweep.peaks import near_peaks, peaks_between
+from tmm_cli.sweep.taped import FINELY, Closely, Turning, each, turned
+from tmm_cli.variants.family import named_strokes
+from tmm_cli.variants.variant import Variant
+from tmm_cli.vectors import Real
+
+SCAN = 72  # places in a turn of the driver
+BLOCK = 50  # variants that are looked at finely at once
+WORKS, STOPS, APART = range(3)  # what a variant does
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is looked for. peaks: names of what is limited whose largest values are wanted to the last digit.
+
+    limits: of what is limited, near which that is wanted of all. strokes: whether their ends are.
+    """
+
+    peaks: Sequence[str] = ()
+    limits: Mapping[str, float] = field(default_factory=dict)
+    strokes: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """How variants go (WORKS, ...), (variants,); of those that work the peaks of what is limited, by name, else nan.
+
+    sure: whether all is told: the output has as many strokes as that of the first one, nothing nearly happens. A peak
+    that is far below its limit, and was not asked for, is that of the scan. ends: the driver's places where strokes
+    end, (variants, 2).
+    """
+
+    does: Real
+    sure: Real
+    peaks: Mapping[str, Real]
+    ends: Real
+
+    def take(self, rows: Real) -> Looked:
+        """Some of the variants."""
+        peaks = {name: peak[rows] for name, peak in self.peaks.items()}
+        return Looked(self.does[rows], self.sure[rows], peaks, self.ends[rows])
+
+
+def look(turning: Turning, columns: Real, wish: Wish) -> Looked:
+    """Variants whose numbers are the rows of columns (variants, n)."""
+    found = _View(turning, columns, wish, SCAN).looked
+    again = np.flatnonzero(~found.sure)
+    for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
+        fine = _View(turning, columns[rows], wish, FINELY).looked
+        found.does[rows], found.sure[rows], found.ends[rows] = fine.does, fine.sure, fine.ends
+        for name, peak in found.peaks.items():
+            peak[rows] = fine.peaks[name]
+    return found
+
+
+class _View:
+    """Variants at so many places of a turn."""
+
+    def __init__(self, turning: Turning, columns: Real, wish: Wish, places: int) -> None:
+        self.turning, self.columns, self.wish = turning, columns, wish
+        self.places, self.step = places, 2 * np.pi / places
+        self.found = turning.scan(*each(columns), self.at(np.arange(places)))
+
+    def at(self, numbers: Real) -> Real:
+        """The driver at places."""
+        found: Real = self.turning.linkage.sketch.at + self.step * numbers
+        return found
+
+    @property
+    def looked(self) -> Looked:
+        """All that is looked for."""
+        does, sure = self._assembled()
+        ends = np.full((len(self.columns), 2), np.nan)
+        if self.wish.strokes and self.turning.output is not None and np.any(does == WORKS):
+            slope = self.found["slope"]
+            turns = turned(slope)
+            sure &= np.sum(turns, axis=1) == self.turning.strokes
+            sure &= ~_nearly(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
+            rows = np.flatnonzero((does == WORKS) & sure)
+            if self.turning.strokes and rows.size:
+                low = np.nonzero(turns[rows])[1].reshape(-1, 2)
+                slopes = Closely(self.turning.close.only("slope"), self.columns[rows])
+                ends[rows] = _ends(lambda q: slopes(q)["slope"], self.at(low), self.at(low + 1))
+        works = does == WORKS
+        peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
+        return Looked(does, sure | ~works, peaks, ends)
+
+    def _assembled(self) -> tuple[Real, Real]:
+        """Whether they are assembled where the sketch is, and all round, in no dead position; whether surely so."""
+        does = np.full(len(self.columns), WORKS)
+        apart, lost, doubtful = np.zeros((3, len(does)), dtype=bool)
+        for k in range(len(self.turning.kernels)):
+            gap, slack, det = (self.found[f"{name}{k}"] for name in ("gap", "slack", "det"))
+            missing = ~(gap <= 0)
+            apart |= missing[:, 0]
+            lost |= np.any(missing | (gap >= -2 * slack) | (np.sign(det) != np.sign(det[:, :1])), axis=1)
+            if k in self.turning.single:
+                doubtful |= _nearly(-np.abs(det), np.ones(det.shape, dtype=bool))
+        does[lost], does[apart] = STOPS, APART
+        for k in range(len(self.turning.kernels)):
+            name = f"gap{k}"
+            gap = self.found[name]
+            rows, at = near_peaks(gap, np.zeros(len(gap)), (does == WORKS)[:, None])
+            if rows.size:
+                close = Closely(self.turning.close.only(name, f"slack{k}"), self.columns[rows])
+                q = self.at(at)
+                place, value = least(_negative(close, name), q - self.step, q + self.step)
+                does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = STOPS
+        return does, ~doubtful
+
+    def _peak(self, name: str, works: Real) -> Real:
+        """The largest value of a curve of each variant; of what is not wanted, between places near its limit only."""
+        curve = self.found[name]
+        top: Real = np.max(curve, axis=1)
+        limit = self.wish.limits.get(name)
+        level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
+        rows, at = near_peaks(curve, level, works[:, None])
+        if rows.size:
+            close = Closely(self.turning.close.only(name), self.columns[rows])
+            before, here, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
+            peaks = peaks_between(lambda q: close(q)[name], self.at(at), self.step, (before, here, after))
+            np.maximum.at(top, rows, peaks)
+        return top
+
+
+def _nearly(curve: Real, where: Real) -> Real:
+    """Which variants' curves below zero may reach it between two places. where: places that count."""
+    rows, _at = near_peaks(curve, np.zeros(len(curve)), where)
+    found = np.zeros(len(curve), dtype=bool)
+    found[rows] = True
+    return found
+
+
+def _ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
+    """Roots between places; that at a place itself is there, though rounding has it on neither side."""
+    at_low, at_high = slope(low), slope(high)
+    outside = np.sign(at_low) == np.sign(at_high)
+    found = roots(slope, low, high)
+    return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), found)
+
+
+def _negative(close: Closely, name: str) -> Callable[[Real], Real]:
+    return lambda q: -close(q)[name]
+
+
+def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant) -> Strokes | None:
+    """Of variants that work, as arrays (variants, 1)."""
+    if turning.output is None:
+        return None
+    curve = _Output(turning, Closely(turning.close.only("place"), columns))
+    if not turning.strokes:
+        return Strokes(turning.output, curve.kind, (), "")
+    return named_strokes(turning.linkage, curve, looked.ends, resisted(varied.linkage, turning.output))
+
+
+@dataclass(frozen=True)
+class _Output:
+    """The output's curve, see variants.family.Curve."""
+
+    turning: Turning
+    close: Closely
+
+    @property
+    def link(self) -> str:
+        assert self.turning.output is not None
+        return self.turning.output
+
+    @property
+    def swings(self) -> bool:
+        return self.turning.linkage.output_swings(self.link)
+
+    @property
+    def kind(self) -> str:
+        return "swing" if self.swings else "slide"
+
+    def place(self, q: Real) -> Real:
+        return self.close(q)["place"]

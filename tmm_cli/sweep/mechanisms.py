@@ -1,0 +1,232 @@
+"""Mechanisms at points of a grid of parameters: how each goes, and what is shown of it; by the tape, or one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis import pipeline
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.errors import AssemblyError, LinkageError
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.grading.task import Task
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.language import _
+from tmm_cli.library import inputs_of
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import refusal
+from tmm_cli.problem.tree import Tree
+from tmm_cli.sweep import looking
+from tmm_cli.sweep.grid import Axis
+from tmm_cli.sweep.looking import Looked, Wish, look, strokes_of
+from tmm_cli.sweep.quantities import PRESSURE, read_shown
+from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
+from tmm_cli.sweep.taped import Turning, beyond
+from tmm_cli.synthesis import measures
+from tmm_cli.tape import DependsOnData
+from tmm_cli.variants.variant import NoTapeError, sketch_of
+from tmm_cli.vectors import Real
+
+DOUBTS = 200  # of a job by the tape that are looked at one by one
+BLOCK = 1_000  # variants at once: what all of them have at the places of a scan stays in the cache
+
+
+class FirstLinks(Motion):
+    """A motion on a tape: where links share a point the first tells its motion, as nothing is there to choose by."""
+
+    def _sway(self, link: str, point: str) -> float:
+        return 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """What quantities are read from, see analysis.quantities.base.Solved."""
+
+    motion: Any = None
+    reactions: Any = None
+    strokes: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Of points (points,): how they go, why (a limit, or a refusal); what is shown of them, (points, quantities)."""
+
+    state: Real
+    why: list[str]
+    values: Real
+
+
+class Mechanisms:
+    """Of a file over some of its parameters. Raises ProblemError where its own numbers give no mechanism."""
+
+    def __init__(self, tree: Tree, axes: Sequence[Axis], show: Sequence[str]) -> None:
+        self.task, self.axes = Task(tree), tuple(axes)
+        self.shown = read_shown(self.task, show)
+        self.names = tuple(axis.name for axis in axes)
+        self.dimensions = tuple(axis.dimension for axis in axes)
+        self.factors = np.array([axis.factor for axis in axes])
+        self.allowed = self.task.problem.whole.pressure_limits
+
+    @cached_property
+    def turning(self) -> Turning | None:
+        """The tape, where there is one."""
+        problem = self.task.problem.whole
+        if "synthesis" in self.task.tree.data or problem.dynamics is not None:
+            return None
+        own = [self.task.number(v, d) for v, d in zip(self.task.own(self.names), self.dimensions, strict=True)]
+        at_positions = [one for one in self.shown if not one.whole]
+
+        def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+            taped = FirstLinks(**{field.name: getattr(motion, field.name) for field in fields(motion)})
+            return {one.name: one.at_positions(Read(taped, reactions)) for one in at_positions}
+
+        try:
+            turning = Turning(
+                lambda numbers: self.task.make(self.names, self.dimensions, numbers), own, read,
+                forces=any(one.forces for one in at_positions),
+            )  # fmt: skip
+            with np.errstate(all="ignore"):
+                looked = look(turning, np.array([own]), Wish())
+            return turning if looked.does[0] == looking.WORKS and looked.sure[0] else None
+        except (NoTapeError, DependsOnData):
+            return None
+        except LinkageError as error:
+            raise refusal(error, problem) from None
+
+    @cached_property
+    def limits(self) -> dict[str, float]:
+        """Of what is limited, by the names of the tape."""
+        assert self.turning is not None
+        return {one.name: beyond(one, self.allowed) for one in self.turning.limited}
+
+    @cached_property
+    def goes(self) -> bool:
+        """Whether the driver of the file's own variant turns fully, or goes its whole stroke."""
+        return measures.goes_its_way(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
+
+    def at(self, points: Real, *, values: bool = True) -> Found:
+        """Points as they are written (points, parameters). values: else it is only told how they go."""
+        count = len(points)
+        found = Found(np.zeros(count, dtype=int), [""] * count, np.full((count, len(self.shown)), np.nan))
+        if self.turning is None:
+            self._one_by_one(points, np.arange(count), found)
+            return found
+        parts = np.array_split(np.arange(count), -(-count // BLOCK))
+        left = [self._taped(points, part, found, values) for part in parts]
+        unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
+        for row in unsure[DOUBTS:]:
+            found.why[row] = _("its output moves otherwise than that of the file")
+        for row in otherwise[DOUBTS:]:
+            found.state[row] = REFUSED
+            found.why[row] = _("one of very many that are built otherwise than the file's own")
+        self._one_by_one(points, [*unsure[:DOUBTS], *otherwise[:DOUBTS]], found)
+        return found
+
+    def _one_by_one(self, points: Real, rows: Iterable[int], found: Found) -> None:
+        for row in rows:
+            found.state[row], found.why[row], found.values[row] = self._alone(points[row])
+
+    def _taped(self, points: Real, part: Real, found: Found, values: bool) -> tuple[Real, Real]:
+        """Fill in what the tape tells; which rows other stages tell, and which are built otherwise."""
+        turning, nothing = self.turning, np.zeros(0, dtype=int)
+        assert turning is not None
+        columns = points[part] * self.factors
+        with np.errstate(all="ignore"):
+            try:
+                varied, otherwise = turning.varied(columns)
+            except (ProblemError, DependsOnData):
+                return nothing, part
+            looked = look(turning, columns, Wish(self._pressures() if values else (), self.limits, values))
+            works = looked.does == looking.WORKS
+            found.state[part] = np.select([looked.does == looking.STOPS, looked.does == looking.APART], [STOPS, APART])
+            for one in turning.limited:
+                over = part[works & (looked.peaks[one.name] > self.limits[one.name])]
+                for row in over[found.state[over] == WORKS]:
+                    found.why[row] = f"{one.kind} {one.link}"
+                found.state[over] = LIMIT
+            unsure = values & works & ~looked.sure & ~otherwise
+            rows = np.flatnonzero(works & looked.sure & ~otherwise)
+            if values and rows.size:
+                whole = len(rows) == len(part)
+                own = varied if whole else turning.varied(columns[rows])[0]
+                try:
+                    found.values[part[rows]] = self._values(columns[rows], looked.take(rows), own)
+                except NoTapeError:
+                    return part, nothing
+        return part[unsure], part[otherwise]
+
+    def _pressures(self) -> list[str]:
+        """Names of the tape whose largest peak is the pressure angle, where it is shown."""
+        assert self.turning is not None
+        if not any(one.name == PRESSURE for one in self.shown):
+            return []
+        angles = [one for one in self.turning.limited if one.kind == "pressure"]
+        return [one.name for one in angles if one.link == self.turning.output] or [one.name for one in angles]
+
+    def _values(self, columns: Real, looked: Looked, varied: Any) -> Real:
+        """What is shown of variants that work."""
+        turning = self.turning
+        assert turning is not None
+        strokes = strokes_of(turning, columns, looked, varied)
+        q, at_positions = turning.at_positions(columns, strokes, varied)
+        found = np.full((len(q), len(self.shown)), np.nan)
+        for k, one in enumerate(self.shown):
+            if one.name == PRESSURE:
+                peaks = [looked.peaks[name] for name in self._pressures()]
+                found[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
+            elif one.quantity is not None and one.whole:
+                found[:, k] = np.ravel(one.quantity.read(Read(strokes=strokes)))
+            else:
+                found[:, k] = one.one(np.broadcast_to(at_positions[one.name], q.shape))
+        return found
+
+    def _alone(self, point: Real) -> tuple[int, str, Real]:
+        """A point by the ordinary stages: how it goes, why, what is shown."""
+        nothing = np.full(len(self.shown), np.nan)
+        texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
+        forces = any(one.forces for one in self.shown)
+        try:
+            problem = self._as_own(self.task.variant(texts).whole)
+        except ProblemError as error:
+            return REFUSED, error.message, nothing
+        try:
+            results = pipeline.solve(inputs_of(problem), "forces" if forces else "kinematics", problem=problem)
+        except LinkageError as error:
+            return (APART if isinstance(error, AssemblyError) else REFUSED), refusal(error, problem).message, nothing
+        if self.goes and not measures.goes_its_way(results):
+            return STOPS, "", nothing
+        over = [f"pressure {one.link}" for one in results.pressure if not one.holds]
+        over += [f"slot {one.slide.name}" for one in results.slots if one.ways]
+        with np.errstate(all="ignore"):
+            return (LIMIT, over[0], self._of(results)) if over else (WORKS, "", self._of(results))
+
+    def _as_own(self, problem: Problem) -> Problem:
+        """The same, sketched in the assembly of the file's own variant where a tape knows that for all."""
+        if self.turning is None:
+            return problem
+        linkage = problem.linkage
+        with np.errstate(all="ignore"):
+            shown = sketch_of(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
+        if not all(np.isfinite(place) for place in (*shown.points.values(), *shown.angles.values())):
+            return problem
+        return replace(problem, linkage=replace(linkage, sketch=shown), extended=None)
+
+    def _of(self, results: Results) -> Real:
+        """What is shown of a mechanism that was solved by the ordinary stages."""
+        assert results.motion is not None
+        searched = {"H": measures.stroke, "psi": measures.stroke, "k": measures.ratio, PRESSURE: measures.pressure}
+        sound = results.motion.moving & ~results.locked
+        found = []
+        for one in self.shown:
+            if one.name in searched:
+                found.append(searched[one.name](results))
+            elif one.quantity is not None and one.whole:
+                found.append(float(np.ravel(one.quantity.read(results))[0]))
+            else:
+                found.append(float(one.one(np.where(sound, one.at_positions(results), np.nan)[None, :])[0]))
+        return np.array(found)

@@ -1,0 +1,123 @@
+"""What can be shown over parameters: what students may be asked, as one number of a mechanism, and the pressure angle.
+
+Of what has a value a position the largest size at the positions of the file counts; of places, how far they go there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.analysis.quantities.base import Quantity, Solved
+from tmm_cli.grading.task import Task
+from tmm_cli.language import _
+from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.quantities import ANGLE, Dimension
+from tmm_cli.vectors import Real
+
+PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
+USUAL = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
+MOST = 12  # quantities at once
+OF_A_CYCLE = ("H", "psi", "k", PRESSURE)  # the ordinary stages find them over all the driver's way
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A quantity that is shown. quantity: how it is read from a solution; none of what is searched for."""
+
+    name: str
+    dimension: Dimension
+    quantity: Quantity | None
+
+    @property
+    def whole(self) -> bool:
+        """Whether it belongs to the mechanism, and to no position."""
+        return self.quantity is None or self.quantity.whole
+
+    @property
+    def forces(self) -> bool:
+        """Whether it wants the force plan."""
+        return self.quantity is not None and self.quantity.stage in ("forces", "balance")
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        if self.whole:
+            return {PRESSURE: _("largest pressure angle")}.get(self.name, self.name)
+        if self.ranges:
+            return _("range of {quantity} at the positions").format(quantity=self.name)
+        return _("largest {quantity} at the positions").format(quantity=self.name)
+
+    @property
+    def ranges(self) -> bool:
+        return self.quantity is not None and self.quantity.against in ("range", "angle")
+
+    def at_positions(self, solved: Solved) -> Any:
+        """What a tape is to give of it at positions, see `one`."""
+        assert self.quantity is not None
+        found = self.quantity.read(solved)
+        return found if self.ranges else np.abs(found)
+
+    def one(self, values: Real) -> Real:
+        """One number of each variant from those at positions, (variants, positions); of none that is there nan."""
+        if not self.ranges:
+            return np.asarray(np.fmax.reduce(values, axis=1))
+        assert self.quantity is not None
+        followed = np.unwrap(values, axis=1) if self.quantity.against == "angle" else values
+        return np.asarray(np.fmax.reduce(followed, axis=1) - np.fmin.reduce(followed, axis=1))
+
+
+def known(task: Task) -> Mapping[str, Shown]:
+    """All that can be shown of a file, by the names in its tables. Raises ProblemError."""
+    named = {
+        name: Shown(name, quantity.dimension, quantity) for name, quantity in task.quantities.items()
+        if not name.startswith("arm of ")  # it is nothing where its force vanishes
+    }  # fmt: skip
+    return {**named, PRESSURE: Shown(PRESSURE, ANGLE, None)}
+
+
+def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
+    """What options `--show` ask for: names with commas between; `v_E` is v of E. Raises ProblemError."""
+    every = known(task)
+    names = {
+        **{name.replace(" of ", "_").replace(" on ", "_"): name for name in every},
+        **{name: name for name in every},
+    }
+    found: list[Shown] = []
+    for text in given:
+        for name in _split(text, names):
+            if name not in names:
+                near = nearest(name, names)
+                raise ProblemError(
+                    _("there is no such quantity"), found=quote(name), file=f"--show {text}", near=near,
+                    allowed=_("e.g. {names}").format(names=", ".join(_examples(every))),
+                )  # fmt: skip
+            found.append(every[names[name]])
+    found = list(dict.fromkeys(found)) or [every[name] for name in USUAL if name in every]
+    if len(found) > MOST:
+        raise ProblemError(
+            _("these are too many quantities"), found=str(len(found)), allowed=_("at most {most}").format(most=MOST),
+            file="--show",
+        )  # fmt: skip
+    return tuple(found)
+
+
+def _split(text: str, names: Mapping[str, str]) -> list[str]:
+    """Names between commas; a name may have a comma itself, R_10,11."""
+    found: list[str] = []
+    for part in re.split(r"\s*,\s*", text.strip()):
+        if found and f"{found[-1]},{part}" in names:
+            found[-1] = f"{found[-1]},{part}"
+        else:
+            found.append(part)
+    return found
+
+
+def _examples(every: Mapping[str, Shown]) -> list[str]:
+    """One of each kind."""
+    kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(every))}
+    return list(kinds.values())[::-1]

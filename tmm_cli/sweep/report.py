@@ -1,0 +1,91 @@
+"""A sweep as tables and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.language import N_, _, translated
+from tmm_cli.problem.record import Problem
+from tmm_cli.quantities import KINDS, NUMBER, product_text
+from tmm_cli.results.table import Column, Table
+from tmm_cli.sweep.record import LIMIT, STATES, WORDS, Swept
+
+FORMAT = 1
+TITLE, BORDERS = N_("Sweep"), N_("Where that changes")
+
+
+def points_table(sweep: Swept, *, words: bool = False) -> Table:
+    """A row a point. words: how it goes is said for people, else as in files."""
+    names = [translated(word) for word in WORDS] if words else list(STATES)
+    columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
+    columns += [Column(one.name, sweep.values[:, k], one.dimension) for k, one in enumerate(sweep.shown)]
+    columns.append(Column(N_("mechanism"), [names[n] for n in sweep.state.tolist()]))
+    why = [_why(*both) for both in zip(sweep.why, sweep.state.tolist(), strict=True)] if words else sweep.why
+    columns.append(Column(N_("why"), why))
+    return Table("sweep", translated(TITLE), tuple(columns))
+
+
+def borders_table(sweep: Swept, *, words: bool = False) -> Table:
+    """A row a place where how the mechanism goes changes."""
+    names = [translated(word) for word in WORDS] if words else list(STATES)
+    columns = [
+        Column(axis.words, np.array([mark.at[k] for mark in sweep.marks]), NUMBER, digits=9)
+        for k, axis in enumerate(sweep.axes)
+    ]
+    columns += [
+        Column(N_("before"), [names[mark.before] for mark in sweep.marks]),
+        Column(N_("after"), [names[mark.after] for mark in sweep.marks]),
+        Column(N_("why"), [_why(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
+    ]
+    return Table("borders", translated(BORDERS), tuple(columns))
+
+
+def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
+    """result.json of a sweep, part by part: values in SI and radians, parameters as they are written."""
+    yield "format", FORMAT
+    yield "problem", problem.name
+    yield "title", problem.title
+    yield (
+        "parameters",
+        [{"name": axis.name, "unit": axis.unit, "si": axis.factor, "values": axis.values} for axis in sweep.axes],
+    )
+    yield "order", "values and mechanism go through the points with the last parameter changing first"
+    yield "taped", sweep.taped
+    yield "states", list(STATES)
+    yield "mechanism", sweep.state
+    yield "why", {str(k): text for k, text in enumerate(sweep.why) if text}
+    yield "quantities", [
+        {
+            "name": one.name, "unit": _unit(one.dimension), "kind": _kind(one), "values": sweep.values[:, k],
+        }
+        for k, one in enumerate(sweep.shown)
+    ]  # fmt: skip
+    yield "borders", [
+        {
+            "at": list(mark.at), "along": sweep.axes[mark.along].name, "before": STATES[mark.before],
+            "after": STATES[mark.after], "why": mark.why,
+        }
+        for mark in sweep.marks
+    ]  # fmt: skip
+
+
+def _why(text: str, state: int) -> str:
+    """For people."""
+    if state != LIMIT:
+        return text
+    kind, _space, thing = text.partition(" ")
+    return {"pressure": _("pressure angle of link {link}"), "slot": _("slot of pair {link}")}[kind].format(link=thing)
+
+
+def _kind(one: Any) -> str:
+    return "of the mechanism" if one.whole else "range at the positions" if one.ranges else "largest at the positions"
+
+
+def _unit(dimension: Any) -> str:
+    """The SI unit."""
+    bases = {"m": dimension.length, "kg": dimension.mass, "s": dimension.time, "rad": dimension.angle}
+    named = {KINDS["force"].dimension: "N", KINDS["moment of force"].dimension: "N*m"}
+    return named.get(dimension, product_text(bases))

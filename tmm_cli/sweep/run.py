@@ -1,0 +1,162 @@
+"""A sweep chunk by chunk, here, in processes or on a cluster; then the places where how the mechanism goes changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.grading.workers import Way, here
+from tmm_cli.language import _
+from tmm_cli.problem.budget import BUDGET, parts, refuse_work
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.tree import Tree
+from tmm_cli.roots import bisect
+from tmm_cli.sweep.grid import MOST, Axis, grid
+from tmm_cli.sweep.looking import SCAN
+from tmm_cli.sweep.mechanisms import Found, Mechanisms
+from tmm_cli.sweep.record import STATES, Mark, Swept
+from tmm_cli.vectors import Real
+
+CHUNK, FEW = 20_000, 20  # points of a job: by the tape, one by one
+TAPED, ALONE = 1 / 1_200, 1 / 4  # what a part at a position costs, against a run of one file (problem.budget)
+SEARCHED = 720  # positions more of a point that is solved alone: its range and strokes
+HALVINGS = 46  # of a step, by the tape: to the last digits
+ROUGHLY = (20, 4)  # one by one: of one parameter, of two
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Some of the points, for another process."""
+
+    tree: Tree
+    axes: tuple[Axis, ...]
+    show: tuple[str, ...]
+    points: Real
+
+    def __call__(self) -> Found:
+        return Mechanisms(self.tree, self.axes, self.show).at(self.points)
+
+
+@dataclass(frozen=True, eq=False)
+class Borders:
+    """Pairs of points (pairs, parameters) between which how the mechanism goes changes from a state.
+
+    Gives the last points with that state, the first ones beyond, how the mechanism goes there, and why.
+    """
+
+    tree: Tree
+    axes: tuple[Axis, ...]
+    show: tuple[str, ...]
+    inside: Real
+    outside: Real
+    state: Real
+    halvings: int
+
+    def __call__(self) -> tuple[Real, Real, Real, list[str]]:
+        mechanisms = Mechanisms(self.tree, self.axes, self.show)
+
+        def at(share: Real) -> Real:
+            found: Real = self.inside + share[:, None] * (self.outside - self.inside)
+            return found
+
+        def holds(share: Real) -> Real:
+            found: Real = mechanisms.at(at(share), values=False).state == self.state
+            return found
+
+        low, high = bisect(holds, np.zeros(len(self.state)), np.ones(len(self.state)), self.halvings)
+        beyond = mechanisms.at(at(high), values=False)
+        return at(low), at(high), beyond.state, beyond.why
+
+
+def refuse_points(problem: Problem, points: int, *, taped: bool, cores: int | None) -> None:
+    """Refuse what would take longer than a minute on every core. cores: None of a cluster. Raises ProblemError."""
+    request = problem.request
+    refuse_work(problem.linkage, request)
+    positions = len(request.places) or request.count
+    each = parts(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
+    most = MOST if cores is None else min(MOST, int(BUDGET * cores / each))
+    if points > most:
+        raise ProblemError(
+            _("these are too many mechanisms"), file="--over",
+            found=_("{points} mechanisms of {positions} positions").format(points=points, positions=positions),
+            allowed=_("at most {most}").format(most=most),
+        )  # fmt: skip
+
+
+def swept(
+    mechanisms: Mechanisms, tree: Tree, show: Sequence[str], way: Way = here,
+    seen: Callable[[int], None] = lambda count: None,
+) -> Swept:  # fmt: skip
+    """All points, and the borders between them. seen: is told of so many more points. Raises ProblemError."""
+    axes, points = mechanisms.axes, grid(mechanisms.axes)
+    taped = mechanisms.turning is not None
+    size = CHUNK if taped else FEW
+    chunks = [points[first : first + size] for first in range(0, len(points), size)]
+    found: list[Found | None] = [None] * len(chunks)
+    if len(chunks) == 1:  # no tape is written twice
+        found[0] = mechanisms.at(points)
+        seen(len(points))
+    else:
+        for number, part in way([Points(tree, axes, tuple(show), chunk) for chunk in chunks], lambda: False):
+            found[number] = part
+            seen(len(part.state))
+    whole = [part for part in found if part is not None]
+    state = np.concatenate([part.state for part in whole])
+    why = [text for part in whole for text in part.why]
+    values = np.concatenate([part.values for part in whole])
+    marks = _marks(mechanisms, tree, tuple(show), _edges(axes, points, state, why), way)
+    return Swept(axes, mechanisms.shown, points, state, why, values, marks, taped)
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """Two points (parameters,) of a line of the grid, and how the mechanism goes at each, and why."""
+
+    along: int
+    points: tuple[Real, Real]
+    states: tuple[int, int]
+    why: tuple[str, str]
+
+
+def _edges(axes: Sequence[Axis], points: Real, state: Real, why: Sequence[str]) -> list[Edge]:
+    """Neighbours of the grid at which the mechanism goes differently."""
+    number = np.arange(len(points)).reshape([len(axis.values) for axis in axes])
+    found = []
+    for along in range(len(axes)):
+        lines = np.moveaxis(number, along, -1)
+        before, after = lines[..., :-1].ravel(), lines[..., 1:].ravel()
+        change = state[before] != state[after]
+        for b, a in zip(before[change].tolist(), after[change].tolist(), strict=True):
+            found.append(Edge(along, (points[b], points[a]), (int(state[b]), int(state[a])), (why[b], why[a])))
+    return found
+
+
+def _marks(
+    mechanisms: Mechanisms, tree: Tree, show: tuple[str, ...], edges: Sequence[Edge], way: Way
+) -> tuple[Mark, ...]:  # fmt: skip
+    """Borders between neighbours of the grid; between two of them there may be several."""
+    taped = mechanisms.turning is not None
+    halvings = HALVINGS if taped else ROUGHLY[len(mechanisms.axes) - 1]
+    size = CHUNK if taped else max(1, FEW // halvings)
+    found: list[Mark] = []
+    for _round in STATES:
+        parts = [edges[first : first + size] for first in range(0, len(edges), size)]
+        jobs = []
+        for part in parts:
+            inside, outside = (np.array([edge.points[side] for edge in part]) for side in (0, 1))
+            state = np.array([edge.states[0] for edge in part])
+            jobs.append(Borders(tree, mechanisms.axes, show, inside, outside, state, halvings))
+        left: list[Edge] = []
+        for k, (last, first, state, why) in way(jobs, lambda: False):
+            for n, edge in enumerate(parts[k]):
+                before, after = edge.states
+                goes = after if int(state[n]) == before else int(state[n])  # what only the ordinary stages tell
+                reason = (why[n] or edge.why[1]) if goes > before else edge.why[0]
+                found.append(Mark(tuple(((last[n] + first[n]) / 2).tolist()), edge.along, before, goes, reason))
+                if goes != after:
+                    left.append(Edge(edge.along, (first[n], edge.points[1]), (goes, after), (why[n], edge.why[1])))
+        edges = left
+    return tuple(sorted(found, key=lambda mark: (mark.along, *mark.at[:: -1 if mark.along == 0 else 1])))

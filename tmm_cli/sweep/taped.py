@@ -1,0 +1,181 @@
+"""The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
+
+Unlike variants.taped this knows loads that act by the strokes: where these begin and how far they go are inputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.assembly.choose import assemble
+from tmm_cli.assembly.solvable import mobile
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.groups.base import Closed
+from tmm_cli.groups.sequence import link_states
+from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.pressure import angle, followers
+from tmm_cli.kinematics.strokes import Stroke, Strokes, output_place, output_slope
+from tmm_cli.structure.cycle import turns_of_cycle
+from tmm_cli.structure.naming import output_link
+from tmm_cli.tape import Program, record
+from tmm_cli.tape.traced_number import TracedNumber
+from tmm_cli.tolerances import END_OF_SLOT
+from tmm_cli.variants.batch import CHECKS, SURE, solved
+from tmm_cli.variants.family import places_of, stands
+from tmm_cli.variants.stack import changed, numbers
+from tmm_cli.variants.variant import Make, NoTapeError, Variant
+from tmm_cli.vectors import Real
+
+FINELY = 1440  # places in a turn of the driver, as the ordinary stages look at
+
+
+@dataclass(frozen=True)
+class Limited:
+    """A curve that has a limit: pressure angle of a link (rad), share of a slot by which a stone is beyond its end."""
+
+    name: str
+    kind: str
+    link: str
+    sliding: bool = False
+
+
+class Turning:
+    """Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
+
+    read: what is wanted at the positions, by name; forces: whether that needs reactions.
+    """
+
+    def __init__(
+        self, make: Make, first: Sequence[float], read: Callable[[Motion, Reactions | None], Mapping[str, Any]],
+        *, forces: bool,
+    ) -> None:  # fmt: skip
+        self.make, self.first, self.variant = make, tuple(first), make(first)
+        linkage = self.linkage = self.variant.linkage
+        driver = linkage.driver
+        turns = driver.kind == "turn" and driver.stroke is None and turns_of_cycle(linkage) == linkage.turns == 1
+        if not turns or driver.law is not None or linkage.others or linkage.meshes or linkage.friction:
+            raise NoTapeError
+        self.structure = mobile(linkage)
+        self.kernels = assemble(linkage, self.structure)
+        if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):
+            raise NoTapeError
+        self.single = [k for k, kernel in enumerate(self.kernels) if getattr(kernel, "assemblies", 0) == 1]
+        leads = [lead for kernel in self.kernels for lead in followers(kernel.group)]
+        self.slots = [slide for slide in linkage.slides if slide.ends is not None]
+        self.limited = (
+            *(Limited(f"angle{n}", "pressure", lead[0], lead[1].kind == "P") for n, lead in enumerate(leads)),
+            *(Limited(f"slot{n}.{end}", "slot", slide.name) for n, slide in enumerate(self.slots) for end in "01"),
+        )
+        link = output_link(linkage, tuple(kernel.group for kernel in self.kernels))
+        whole = link is not None and (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link))
+        self.output = link if whole else None
+        self.scan, self.close = (record(self._states, *[1] * len(first), axis) for axis in (2, 3))
+        self.forces = record(
+            lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 5), 3
+        )  # fmt: skip
+        self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
+
+    @cached_property
+    def strokes(self) -> int:
+        """How many strokes the output of the first linkage has. Raises NoTapeError for more than two of them."""
+        if self.output is None:
+            return 0
+        places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINELY) / FINELY
+        slope = self.scan.only("slope")(*(np.array([[x]]) for x in self.first), places)["slope"]
+        if (count := int(np.sum(turned(slope)))) > 2:
+            raise NoTapeError
+        return count
+
+    def _linkage(self, data: Sequence[Any]) -> Any:
+        """Linkage and groups with stands in the places of their numbers."""
+        varied = self.make([TracedNumber(x, stand) for x, stand in zip(self.first, data, strict=True)]).linkage
+        found = {path: number.stand for path, number in numbers(varied) if isinstance(number, TracedNumber)}
+        linkage = replace(changed(varied, found), sketch=self.linkage.sketch)
+        return linkage, tuple(kernel.rebind(linkage) for kernel in self.kernels)
+
+    def _states(self, *data: Any) -> Mapping[str, Any]:
+        linkage, kernels = self._linkage(data[:-1])
+        states = link_states(linkage, kernels, data[-1], 1, blank=False)
+        found: dict[str, Any] = {}
+        for k, at in enumerate(states.placements):
+            found |= {f"gap{k}": at.residual - at.slack, f"slack{k}": at.slack, f"det{k}": at.det}
+        if self.output is not None:
+            found |= {"slope": output_slope(states, self.output), "place": output_place(states, self.output)}
+        leads = [(k, lead) for k, kernel in enumerate(kernels) for lead in followers(kernel.group)]
+        for n, (k, lead) in enumerate(leads):
+            found[f"angle{n}"] = angle(states, kernels[k], states.placements[k], lead)
+        for n, slide in enumerate(self.slots):
+            own = linkage.slide(slide.name)
+            first, last = (linkage.local(own.carrier, name) for name in own.ends)
+            run, length = states.run(own), np.abs(last - first)
+            found |= {f"slot{n}.0": -run / length, f"slot{n}.1": run / length - 1}
+        return found
+
+    def _positions(
+        self, data: Sequence[Any], read: Callable[[Motion, Reactions | None], Mapping[str, Any]], forces: bool
+    ) -> Mapping[str, Any]:
+        *columns, start, length, low, run, begin, q = data
+        linkage, kernels = self._linkage(columns)
+        strokes = None
+        if self.output is not None:
+            pair: tuple[Any, ...] = ()
+            if self.strokes:
+                pair = (Stroke(start, length, low, run, True), Stroke(start + length, length, low + run, -run, False))
+            swings = "swing" if linkage.output_swings(self.output) else "slide"
+            strokes = Strokes(self.output, swings, pair, "")
+        structure = self.structure.rebind(linkage)
+        return solved(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
+
+    def varied(self, columns: Real) -> tuple[Variant, Real]:
+        """The variants as one with arrays for numbers; which of them would have been built otherwise, (variants,)."""
+        otherwise: list[Any] = []
+        both = zip(self.first, each(columns), strict=True)
+        made = self.make([TracedNumber(x, column, otherwise) for x, column in both])
+        apart = np.zeros(len(columns), dtype=bool)
+        for truth in otherwise:
+            apart |= np.broadcast_to(np.asarray(truth), (len(columns), 1))[:, 0]
+        return replace(made, linkage=stands(made.linkage), request=stands(made.request)), apart
+
+    def at_positions(self, columns: Real, strokes: Strokes | None, varied: Variant) -> tuple[Real, Mapping[str, Real]]:
+        """Places of the driver, and what is wanted there, (variants, positions). Raises NoTapeError."""
+        q = places_of(varied.request, strokes, self.linkage.driver.sense, len(columns))
+        if q is None:
+            raise NoTapeError
+        one = strokes.strokes[0] if strokes is not None and strokes.strokes else Stroke(0.0, 0.0, 0.0, 0.0, True)
+        numbers = [x + np.zeros((len(columns), 1)) for x in (one.start, one.length, one.low, one.run, q[:, :1])]
+        return q, self.forces(*each(columns), *numbers, q)
+
+
+@dataclass(frozen=True)
+class Closely:
+    """A program at places of variants of its own: q is (variants, n), or (m variants,), which is m rounds of them."""
+
+    program: Program
+    columns: Real
+
+    def __call__(self, q: Real) -> Mapping[str, Real]:
+        shaped = q.reshape(len(self.columns), -1) if q.ndim > 1 else q.reshape(-1, len(self.columns)).T
+        found = self.program(*each(self.columns), shaped)
+        return {name: value if q.ndim > 1 else value.T.reshape(-1) for name, value in found.items()}
+
+
+def each(columns: Real) -> list[Real]:
+    """The columns one by one, (variants, 1)."""
+    return [columns[:, k : k + 1] for k in range(columns.shape[1])]
+
+
+def turned(slope: Real) -> Real:
+    """After which places of a turn a slope has another sign."""
+    forward = slope >= 0
+    found: Real = forward != np.roll(forward, -1, axis=1)
+    return found
+
+
+def beyond(one: Limited, allowed: tuple[float, float]) -> float:
+    """The limit of a curve; allowed: pressure angles of sliding and of turning links (rad)."""
+    return END_OF_SLOT if one.kind == "slot" else allowed[0 if one.sliding else 1]
