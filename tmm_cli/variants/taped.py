@@ -47,7 +47,9 @@ class Taped:
         self.turns = cycle_of(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
-        if isinstance(self.start, TracedNumber):
+        # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+        apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
+        if apart or isinstance(self.start, TracedNumber):
             raise NoTapeError
         own = any(isinstance(number, TracedNumber) for number in _ends(varied))
         self.ends = record(self._ends, *[1] * len(first)) if own else None
