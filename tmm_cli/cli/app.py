@@ -31,9 +31,12 @@ COMMANDS = {
     "sweep": "Show quantities over parameters, and where it fails.",
     "variants": "Draw variants of a task for a group of students.",
     "grade": "Mark what the students of a group handed in.",
+    "import": "Write a problem file from a file of another program.",
+    "export": "Write the linkage of a problem for another program.",
     "sheets": "Draw sheets to hand in, framed and to scale, as PDF or DXF.",
     "note": "Write the explanatory note, formulas with numbers put in.",
     "animate": "Let the mechanism turn on a page for the browser.",
+    "gallery": "Write a page of many mechanisms, each turning.",
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from keyword import iskeyword
 
 import typer
 
@@ -22,11 +23,12 @@ def add_commands(app: typer.Typer, package: str, lines: Mapping[str, str], words
             app.command(name, help=line)(_listed)
         return
     name, *further = asked
-    module = import_module(f"{package}.{name}")
+    own = f"{name}_" if iskeyword(name) else name
+    module = import_module(f"{package}.{own}")
     if hasattr(module, "group"):
         app.add_typer(module.group(further))
     else:
-        app.command(name)(speaking(getattr(module, name)))
+        app.command(name)(speaking(getattr(module, own)))
 
 
 def _listed() -> None:

@@ -12,7 +12,7 @@ A panel on which the slip is no polynomial is halved: after a jump of the load t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -22,12 +22,14 @@ from tmm_cli.dynamics.curves import FIT, NODES, SUMS, Curve, nodes
 from tmm_cli.dynamics.motion import Law
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
-from tmm_cli.errors import StandstillError, WeakMotorError
+from tmm_cli.errors import LinkageError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.tolerances import LAST_STEP
 from tmm_cli.vectors import Real
 
 STEPS = 60  # of Newton's method, at most
 TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel begins where the one before ends
+RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
+UNEVEN = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
 NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
 ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # values at the nodes to both ends
 
@@ -35,106 +37,127 @@ ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # val
 def with_motor(machine: Reduced, flywheel: float, motor: Motor) -> Law:
     """What the machine comes to when every cycle is as the one before, from the motor's speed without load on.
 
-    Raises WeakMotorError, StandstillError.
+    Raises WeakMotorError, StandstillError, RunawayError.
     """
-    wanted = -machine.work_of_cycle / machine.length
-    if wanted >= motor.most:
-        raise WeakMotorError(wanted, motor.most)
-    cycle, slip = _Cycle.of(machine, flywheel, motor), 0.0
-    for _ in range(STEPS):
-        end, slope, values = cycle.run(slip)
-        step = (slip - end) / (1 - slope) if slope < 1 else slip - end
-        slip = min(slip - step, (slip + 1) / 2)
-        if slope < 1 and abs(step) <= LAST_STEP * float(np.max(np.abs(values))):
-            break
-    else:
-        raise StandstillError(float(nodes(cycle.edges)[np.argmax(values.T)]))
-    values = cycle.run(slip)[2]
-    inertia = np.stack([panel.inertia for panel in cycle.panels], axis=1)
-    speed = motor.idle * (1 - values)
-    energy, driving, pace = (
-        Curve(cycle.edges, FIT @ own) for own in (inertia * speed**2 / 2, motor.at_slip(values)[0], 1 / speed)
-    )
-    return Law(machine, flywheel, energy, driving, pace.summed())
+    return Cycle.of(machine, motor).law(flywheel)
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Panel:
-    """inertia: with the flywheel; slope of it by the way; moment of the loads: at the nodes between low and high."""
+    """inertia without flywheel, slope of it by the way, moment of the loads: at the nodes between low and high.
+
+    slips: found there last, from which the next search begins.
+    """
 
     low: float
     high: float
     inertia: Real
     slope: Real
     moment: Real
+    slips: Real | None = None
 
     @classmethod
-    def of(cls, machine: Reduced, flywheel: float, low: float, high: float) -> _Panel:
+    def of(cls, machine: Reduced, low: float, high: float) -> _Panel:
         x = nodes(np.array([low, high]))
-        return cls(low, high, flywheel + machine.inertia(x), machine.slope(x), machine.moment(x))
+        return cls(low, high, machine.inertia(x), machine.slope(x), machine.moment(x))
 
 
 @dataclass
-class _Cycle:
-    """A cycle in panels, which are halved as it is run."""
+class Cycle:
+    """A cycle in panels, which are halved as it is run, for one flywheel after another.
+
+    whole: before they are; slip: at the beginning of the cycle that was found last.
+    """
 
     machine: Reduced
-    flywheel: float
     motor: Motor
-    panels: list[_Panel]
+    whole: tuple[_Panel, ...]
+    slip: float = 0.0
+    panels: list[_Panel] = field(default_factory=list)
 
     @classmethod
-    def of(cls, machine: Reduced, flywheel: float, motor: Motor) -> _Cycle:
-        panels = [_Panel.of(machine, flywheel, *ends) for ends in pairwise(machine.moment.edges.tolist())]
-        return cls(machine, flywheel, motor, panels)
+    def of(cls, machine: Reduced, motor: Motor) -> Cycle:
+        """Raises WeakMotorError."""
+        wanted = -machine.work_of_cycle / machine.length
+        if wanted >= motor.most:
+            raise WeakMotorError(wanted, motor.most)
+        edges = machine.moment.edges.tolist()
+        return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
+
+    def law(self, flywheel: float) -> Law:
+        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError."""
+        slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
+        for _ in range(STEPS):
+            end, slope, values = self._run(flywheel, slip)
+            step = (slip - end) / (1 - slope) if slope < 1 else slip - end
+            slip = min(slip - step, (slip + 1) / 2)
+            if slope < 1 and abs(step) <= LAST_STEP * float(np.max(np.abs(values))):
+                break
+        else:
+            raise self._unsteady(values)
+        values = self._run(flywheel, slip)[2]
+        inertia = flywheel + np.stack([panel.inertia for panel in self.panels], axis=1)
+        speed = idle * (1 - values)
+        energy, driving, pace = (
+            Curve(self._edges, FIT @ own) for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
+        )
+        if abs(driving.total + self.machine.work_of_cycle) > UNEVEN * energy.length * self.motor.most:
+            raise self._unsteady(values)  # so heavy a flywheel that a cycle's change of its energy is rounding
+        # on the rising branch of the characteristic it is a good beginning for the next flywheel
+        self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
+        return Law(self.machine, flywheel, energy, driving, pace.summed())
+
+    def _unsteady(self, values: Real) -> LinkageError:
+        """A machine that runs away, or comes to rest where its slip is largest."""
+        if np.mean(values) < RUNAWAY:
+            return RunawayError()
+        return StandstillError(float(nodes(self._edges)[np.argmax(values.T)]))
 
     @property
-    def edges(self) -> Real:
+    def _edges(self) -> Real:
         return np.array([0.0, *(panel.high for panel in self.panels)])
 
-    def run(self, begin: float) -> tuple[float, float, Real]:
-        """Slip after the cycle, its slope by that at the beginning, and slips at the nodes, (nodes, panels).
-
-        Raises StandstillError.
-        """
-        left, done, values, slope, size = self.panels[::-1], list[_Panel](), list[Real](), 1.0, abs(begin)
+    def _run(self, flywheel: float, begin: float) -> tuple[float, float, Real]:
+        """Slip after the cycle, its slope by that at the beginning, and slips at the nodes, (nodes, panels)."""
+        left, done, slope, size = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
         while left:
             panel = left.pop()
-            found = self._solved(panel, begin)
-            largest = size if found is None else max(size, float(np.max(np.abs(found[0]))))
-            if found is None or _rough(found[0], begin, largest):
+            found = self._solved(panel, flywheel, begin)
+            largest = size if found is None else max(size, float(np.max(np.abs(found[:, 0]))))
+            if found is None or _rough(found[:, 0], begin, largest):
                 if panel.high - panel.low < NARROWEST * self.machine.length:
                     raise StandstillError(panel.low)
                 middle = (panel.low + panel.high) / 2
                 parts = pairwise((panel.low, middle, panel.high))
-                left += [_Panel.of(self.machine, self.flywheel, *ends) for ends in parts][::-1]
+                left += [_Panel.of(self.machine, *ends) for ends in parts][::-1]
                 continue
-            own, by_begin = found
-            begin, size = float(ENDS[1] @ own), largest
-            slope *= float(ENDS[1] @ by_begin)
+            panel.slips = found[:, 0]
+            (begin, by_begin), size = (ENDS[1] @ found).tolist(), largest
+            slope *= by_begin
             done.append(panel)
-            values.append(own)
         self.panels = done
-        return begin, slope, np.stack(values, axis=1)
+        return begin, slope, np.stack([panel.slips for panel in done if panel.slips is not None], axis=1)
 
-    def _solved(self, panel: _Panel, begin: float) -> tuple[Real, Real] | None:
-        """Slips at the nodes, and their slopes by that at the beginning; None where there are none."""
+    def _solved(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
+        """Slips at the nodes, and their slopes by that at the beginning, (nodes, 2); None where there are none."""
         idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * SUMS[:-1]
-        values = np.full(NODES, begin)
+        values = np.full(NODES, begin) if panel.slips is None else panel.slips
+        inertia, right = idle * (flywheel + panel.inertia), np.ones((NODES, 2))
         for _ in range(STEPS):
             speed = idle * (1 - values)
             driving, by_slip = self.motor.at_slip(values)
-            under = idle * panel.inertia * speed
-            own = panel.moment + driving - panel.slope * speed**2 / 2
-            rate = -(by_slip + panel.slope * speed * idle) / under - own * idle**2 * panel.inertia / under**2
-            matrix = np.eye(NODES) - sums * rate
-            step = np.linalg.solve(matrix, begin - sums @ (own / under) - values)
-            found = values + step
-            if not np.all(np.isfinite(found)):
+            under = inertia * speed
+            rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
+            by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
+            right[:, 0] = begin - sums @ rate - values
+            found: Real = np.linalg.solve(np.eye(NODES) - sums * by_rate, right)
+            step, found[:, 0] = found[:, 0].copy(), values + found[:, 0]
+            own = found[:, 0]
+            if not np.all(np.isfinite(own)):
                 return None
-            if np.all(np.abs(step) <= LAST_STEP * np.max(np.abs(found))) and np.all(found < 1):
-                return found, np.linalg.solve(matrix, np.ones(NODES))
-            values = np.minimum(found, (1 + values) / 2)
+            if np.all(own < 1) and np.max(np.abs(step)) <= LAST_STEP * np.max(np.abs(own)):
+                return found
+            values = np.minimum(own, (1 + values) / 2)
         return None
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.dynamics.by_motor import with_motor
+from tmm_cli.dynamics.by_motor import Cycle
 from tmm_cli.dynamics.curves import Curve, fitted
 from tmm_cli.dynamics.flywheel import (
     Flywheel,
@@ -24,12 +24,12 @@ from tmm_cli.dynamics.motion import Law, under_constant_moment
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.errors import NoFlywheelError, StandstillError
-from tmm_cli.roots import roots
-from tmm_cli.vectors import Real
+from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
+TRIALS = 60  # of flywheels between two
+MET = 1e-12  # of a fluctuation: it is as wanted
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ class Steady:
 
 def extremes(law: Law) -> tuple[float, float]:
     """The least and the largest speed over the cycle."""
-    (__, low), (__, high) = extreme_places(law)
-    return low, high
+    places = law.energy.places()
+    return lowest(law.speed, places)[1], -lowest(lambda x: -law.speed(x), places)[1]
 
 
 def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -153,10 +153,12 @@ def steady(machine: Reduced, task: SteadyTask) -> Steady:
 def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
 
+    cycle = Cycle.of(machine, motor)
+
     def delta_of(flywheel: float) -> float:
         try:
-            return fluctuation(with_motor(machine, flywheel, motor))
-        except StandstillError:
+            return fluctuation(cycle.law(flywheel))
+        except (StandstillError, RunawayError):
             return STANDS
 
     own = delta_of(task.flywheel)
@@ -165,26 +167,42 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
         if own <= task.delta:
             raise NoFlywheelError(task.delta, own)
         flywheel = _searched(
-            task.delta, delta_of, task.flywheel, float(np.max(machine.inertia(machine.inertia.places())))
+            task.delta, delta_of, task.flywheel, own, float(np.max(machine.inertia(machine.inertia.places())))
         )
-    law = with_motor(machine, flywheel, motor)
+    law = cycle.law(flywheel)
     gained = law.energy.coefficients.copy()
     gained[0] -= law.energy(np.zeros(1))[0]
     work = Curve(law.energy.edges, gained)
     return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
 
 
-def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
-    """The inertia with which the fluctuation is delta: it falls as the flywheel grows."""
-    high = low + unit
+def _searched(delta: float, delta_of: Callable[[float], float], low: float, own: float, unit: float) -> float:
+    """The inertia with which the fluctuation is delta; own: that with the least one, low.
+
+    One over the fluctuation grows with the flywheel nearly evenly, so that few trials by its chord are enough.
+    """
+
+    def over(flywheel: float) -> float:
+        return delta / delta_of(flywheel) - 1
+
+    high, below = low + unit, delta / own - 1
     for _ in range(DOUBLINGS):
-        if delta_of(high) < delta:
+        above = over(high)
+        if above > 0:
             break
-        low, high = high, 2 * high
+        low, high, below = high, 2 * high, above
     else:
         raise NoFlywheelError(delta, float("nan"))
-
-    def missed(flywheels: Real) -> Real:
-        return np.array([delta_of(float(flywheel)) - delta for flywheel in np.ravel(flywheels)])
-
-    return float(roots(missed, np.array([low]), np.array([high]))[0])
+    found, last = high, 0.0
+    for _ in range(TRIALS):  # the Illinois method: an end that stays twice counts half
+        found = low - below * (high - low) / (above - below)
+        here = over(found)
+        if abs(here) <= MET:
+            break
+        same = here * last > 0
+        if here < 0:
+            low, below, above = found, here, above / 2 if same else above
+        else:
+            high, above, below = found, here, below / 2 if same else below
+        last = here
+    return found

@@ -35,6 +35,11 @@ def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
 def read_file(path: str | os.PathLike[str]) -> Tree:
     """Read a problem file. Raises ProblemError when it is not a readable, bounded, plain YAML mapping."""
     file = os.fspath(path)
+    return read_text(file_text(file), file)
+
+
+def file_text(file: str) -> str:
+    """The text of a file of bounded size. Raises ProblemError."""
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
@@ -51,7 +56,7 @@ def read_file(path: str | os.PathLike[str]) -> Tree:
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason), file=file) from None
     if len(data) > MAX_BYTES:
         raise _too_large(file, f"more than {MAX_BYTES} bytes")
-    return read_text(_decoded(data, file), file)
+    return _decoded(data, file)
 
 
 def _too_large(file: str, found: str) -> ProblemError:

@@ -1,0 +1,179 @@
+"""`tmm import` and `tmm export`: files of other programs, solved and compared with what those programs print.
+
+pylinkage.json: nine mechanisms and their steps by pylinkage 1.3.0. pmks-verification.json: places that the reference
+solver of PMKS+ prints to six decimals (PMKS-Web/PMKS_Verification); its points E, F, H of two mechanisms are left out,
+as it goes over to their mirror images after the first row.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from test_commands import ROOT, tmm
+
+from tmm_cli.analysis.pipeline import at_places
+from tmm_cli.library import load, problem_of, solve
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.formats import foreign_of
+from tmm_cli.problem.formats.pmks_link import DIGITS
+from tmm_cli.problem.formats.written import written
+from tmm_cli.problem.reader import read_text
+
+FILES = ROOT / "tests" / "data" / "foreign"
+PYLINKAGE = json.loads((FILES / "pylinkage.json").read_text(encoding="utf-8"))
+PMKS = json.loads((FILES / "pmks-verification.json").read_text(encoding="utf-8"))
+MIRRORED = {"otis-four-bar": "EFH", "stephenson-iii": "EFH"}
+
+
+def imported(text, file="file"):
+    """The foreign record, and its kinematics by the problem file that is written of it."""
+    foreign = foreign_of(text, file)
+    return foreign, solve(problem_of(read_text(written(foreign, file), file)), "kinematics")
+
+
+def places(results, angle, names):
+    """Of points in m, with the crank at an angle (rad)."""
+    motion = at_places(results, np.array([angle])).motion
+    return [complex(motion.named(name).x[0]) for name in names]
+
+
+@pytest.mark.parametrize("case", PYLINKAGE, ids=[case["file"]["name"] for case in PYLINKAGE])
+def test_a_mechanism_of_pylinkage_goes_through_the_places_that_pylinkage_computes(case):
+    foreign, results = imported(json.dumps(case["file"]))
+    driver = next(link for link in case["file"]["links"] if link["type"] == "driver")
+    (tip,) = set(driver["joints"]) - {driver["motor_joint"]}
+    long = [joint for joint in foreign.places if joint != "P"]  # names such as coupler.0_crank.tip become letters
+    letters = dict(zip(long, "ABCDEFGH", strict=False))
+    moving = [joint for joint in case["joints"] if joint not in foreign.frame]
+    for step in case["steps"]:
+        there = {joint: complex(*place) for joint, place in zip(case["joints"], step, strict=True)}
+        angle = np.angle(there[tip] - there[driver["motor_joint"]])
+        found = places(results, angle, [letters.get(joint, joint) for joint in moving])
+        assert np.array(found) * 1000 == pytest.approx(np.array([there[joint] for joint in moving]), abs=1e-11)
+
+
+@pytest.mark.parametrize("name", PMKS)
+def test_a_csv_file_of_pmks_goes_through_the_places_that_its_reference_solver_prints(name):
+    foreign, results = imported((FILES / f"{name}.csv").read_text(encoding="utf-8"), f"{name}.csv")
+    assert foreign.program == "PMKS+" and foreign.length == "cm"
+    for row in PMKS[name]:
+        there = {joint: complex(*place) for joint, place in row.items() if joint not in MIRRORED.get(name, "")}
+        found = places(results, np.angle(complex(*row["B"]) - complex(*row["A"])), there)
+        assert np.array(found) * 100 == pytest.approx(np.array(list(there.values())), abs=1e-6)
+
+
+def encoded(number, *, signed=True):
+    """A whole number to the base 64 as PMKS+ writes it."""
+    digits, left = "", abs(number)
+    while left or not digits:
+        left, digit = divmod(left, 64)
+        digits = DIGITS[digit] + digits
+    return ("0" if signed and number < 0 else "") + digits
+
+
+def link(joints, links, forces=(), *, clockwise=False, gravity=True, rpm=30, length=1, newton=True):
+    """The text of a saved link. joints: (flags, name, x, y, angle); links: (kind, name, joints); forces likewise."""
+
+    def decimal(value):
+        return encoded(round(1000 * value))
+
+    text = f"{encoded(clockwise + 2 * gravity, signed=False)}.{decimal(1)}.{encoded(rpm)},0.{length}0{int(newton)}."
+    for flags, name, x, y, angle in joints:
+        text += f"{encoded(flags, signed=False)}{name},{name},{decimal(x)},{decimal(y)},{decimal(angle)}."
+    text += "."
+    for kind, name, own, mass, x, y in links:
+        text += f"Y{kind}{name},{name},{decimal(mass)},{decimal(0.5)},{decimal(x)},{decimal(y)},abcdef,"
+        text += "".join(f"{joint}," for joint in own) + ",."
+    text += "."
+    for name, on, x0, y0, x1, y1, size in forces:
+        text += f"2{name},{on},{name},{decimal(x0)},{decimal(y0)},{decimal(x1)},{decimal(y1)},{decimal(size)}."
+    text += ".N"
+    return text + DIGITS[len(text) % 62]
+
+
+TURNING, INPUT, GROUND, SLIDING = 0, 2, 4, 1
+SLIDER = link(
+    [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 3, 4, 0), (TURNING, "C", 15, -1, 0),
+     (SLIDING | GROUND, "D", 15, -1, math.pi / 4)],
+    [("R", "AB", "AB", 2, 1.5, 2), ("R", "BC", "BC", 3, 9, 1.5), ("P", "CD", "CD", 1, 0, 0)],
+    [("F1", "BC", 9, 1.5, 9, 3.5, 40)], clockwise=True,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", [SLIDER, f"https://app.pmksplus.com/?{SLIDER}\n"])
+def test_a_saved_link_of_pmks_keeps_lengths_guide_speed_masses_and_forces(text):
+    foreign, results = imported(text)
+    linkage = results.linkage
+    assert (foreign.drive.speed, foreign.drive.unit) == (-30, "rpm")
+    assert places(results, math.atan2(4, 3), "BC") == pytest.approx([0.03 + 0.04j, 0.15 - 0.01j], abs=1e-15)
+    (slide,) = linkage.slides
+    assert float(slide.direction) == pytest.approx(math.pi / 4, abs=5e-4)
+    assert (linkage.driver.sense, linkage.links["BC"].mass, linkage.links["BC"].inertia) == (-1, 3, 0.5)
+    (load,) = linkage.loads
+    assert load.force == pytest.approx(40j) and linkage.gravity == -9.81j
+
+
+def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_loads_carried_over():
+    name = "slotted-lever.yaml"
+    foreign, results = imported((FILES / name).read_text(encoding="utf-8"), name)
+    linkage = results.linkage
+    a = 0.11 * np.exp(1j * math.pi / 6)
+    along = (a + 0.35j) / abs(a + 0.35j)
+    d = -0.35j + 0.65 * along
+    e = d.real + math.sqrt(0.21**2 - (d.imag - 0.27) ** 2) + 0.27j
+    assert places(results, math.pi / 6, "ADE") == pytest.approx([a, d, e], abs=1e-14)
+    assert (linkage.driver.sense, linkage.driver.rate, linkage.driver.acceleration) == (-1, 8, 4)
+    lever = linkage.links["3"]  # 20 kg in its middle, 2 kg at its end
+    assert lever.mass == pytest.approx(22) and lever.centre == pytest.approx((20 * 0.325 + 2 * 0.65) / 22)
+    assert lever.inertia == pytest.approx(1.1 + 20 * 2 / 22 * 0.325**2)
+    (load,) = linkage.loads
+    assert load.force == pytest.approx(1500 * (d - e) / abs(d - e)) and load.at == pytest.approx(0.03j)
+    assert foreign.left == ("Block `dynamics`: motor and flywheel are said otherwise here.",)
+
+
+REFUSED = {
+    "nothing of it\n":
+        "file: this file is of no format that is known here\n"
+        "  allowed: pylinkage; PMKS+, CSV; PMKS+, a saved link; linkage/v2",
+    SLIDER[:-1] + ("0" if SLIDER[-1] != "0" else "1"):
+        "file: this link is not whole: its last character does not fit its length",
+    '{"joints": [{"id": "A", "position": [0, 0]}], "links": [{"id": "1", "type": "lnk", "joints": []}]}':
+        "file:1:77: links[0].type: this word is not known here\n  found:   'lnk'\n"
+        "  allowed: ground, driver, arc_driver, link\n  did you mean 'link'?",
+    "joints\nid,x,y,links,type,ground,angle,input\nA,0,zero,AB,R,true,Null,true\n":
+        "file:3:1: y: a number is wanted\n  found:   'zero'",
+    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}, construct: [{type: point_on_ray, point: B, from: C}]}\n":
+        "file:2:82: geometry.construct[0].from: this word is not known here\n  found:   'C'\n  allowed: A",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_a_mistake_in_a_foreign_file_is_said_with_its_place(text):
+    with pytest.raises(ProblemError) as refused:
+        foreign_of(text, "file")
+    assert str(refused.value).startswith(REFUSED[text])
+
+
+def test_what_is_exported_to_pylinkage_comes_back_as_the_same_linkage(tmp_path):
+    ours = ROOT / "problems" / "crank-slider.yaml"
+    done = tmm("export", str(ours), "--to", "pylinkage", "-o", "it.json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    done = tmm("import", "it.json", cwd=tmp_path)
+    assert done.returncode == 0 and done.stderr.endswith("written: it.yaml; next: tmm run it.yaml\n")
+    one, other = (solve(load(str(file)), "kinematics") for file in (ours, tmp_path / "it.yaml"))
+    for angle in (0.3, 2.0, 5.0):
+        assert places(other, angle, "AB") == pytest.approx(places(one, angle, "AB"), abs=1e-14)
+
+
+def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_path):
+    (tmp_path / "it.pmks").write_text(SLIDER, encoding="utf-8")
+    (tmp_path / "it.yaml").write_text("mine\n", encoding="utf-8")
+    done = tmm("import", "it.pmks", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (2, "error: it.yaml is there already\n  allowed: another file, with -o\n")
+    assert (tmp_path / "it.yaml").read_text(encoding="utf-8") == "mine\n"
+    done = tmm("export", str(ROOT / "problems" / "shaper.yaml"), "--to", "pylinkage", "-o", "-", cwd=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.endswith("error: pylinkage knows sliders with one hinge on a line of the frame only\n")

@@ -1,0 +1,42 @@
+"""`tmm import`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli.cli.common import refusing
+from tmm_cli.cli.talk import say
+from tmm_cli.language import _
+from tmm_cli.library import problem_of
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.formats import foreign_of
+from tmm_cli.problem.formats.written import written
+from tmm_cli.problem.reader import file_text, read_text
+
+
+def import_(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="Of pylinkage, PMKS+ or linkage/v2.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="Where to; - prints it; NAME.yaml here.", show_default=False),
+    ] = None,
+) -> None:
+    """Write a problem file from another program's file."""
+    with refusing():
+        foreign = foreign_of(file_text(file), file)
+        target = out or Path(f"{Path(file).stem}.yaml")
+        text = written(foreign, Path(file).name)
+        problem_of(read_text(text, str(target)))  # what is written can be read
+        if str(out) == "-":
+            typer.echo(text, nl=False)
+        elif target.exists():
+            raise ProblemError(_("{file} is there already").format(file=target), allowed=_("another file, with -o"))
+        else:
+            with target.open("x", encoding="utf-8") as stream:
+                stream.write(text)
+            say(_("written: {file}; next: tmm run {file}").format(file=target))
+        for line in foreign.left:
+            say(_("not taken over: {line}").format(line=line))

@@ -1,0 +1,30 @@
+"""Files of other programs: a format is a file here, and a line below; all are read into a Foreign, which is written."""
+
+from __future__ import annotations
+
+from typing import Final, Protocol
+
+from tmm_cli.language import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.formats import linkage_v2, pmks_csv, pmks_link, pylinkage
+from tmm_cli.problem.formats.foreign import Foreign
+
+
+class Format(Protocol):
+    """A module."""
+
+    def recognised(self, text: str) -> bool: ...
+    def read(self, text: str, file: str) -> Foreign: ...
+
+
+FORMATS: Final[dict[str, Format]] = {
+    "pylinkage": pylinkage, "PMKS+, CSV": pmks_csv, "PMKS+, a saved link": pmks_link, "linkage/v2": linkage_v2,
+}  # fmt: skip
+
+
+def foreign_of(text: str, file: str) -> Foreign:
+    """The mechanism of a file in the format that it is of. Raises ProblemError."""
+    for one in FORMATS.values():
+        if one.recognised(text):
+            return one.read(text, file)
+    raise ProblemError(_("this file is of no format that is known here"), allowed="; ".join(FORMATS), file=file)

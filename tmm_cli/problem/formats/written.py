@@ -1,0 +1,209 @@
+"""A mechanism of another program as the text of a problem file."""
+
+from __future__ import annotations
+
+import cmath
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import count
+from string import ascii_uppercase
+
+from tmm_cli.language import _
+from tmm_cli.problem.errors import clean
+from tmm_cli.problem.formats.foreign import FRAME, Body, Foreign, Push, Slide
+
+PLAIN = re.compile(r"[^\W\d]\w{0,11}|[1-9]\d?")
+SAME = 1e-9  # of the size: points so near are in one place
+ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
+
+
+def written(foreign: Foreign, source: str) -> str:
+    """The text; source: the name of the file that was read."""
+    return "\n".join(_Writing.of(foreign).lines(source)) + "\n"
+
+
+@dataclass(frozen=True)
+class _Writing:
+    """names: of points, and links: of bodies, as the problem file calls them; axes: of bodies, origin and angle."""
+
+    foreign: Foreign
+    names: dict[str, str]
+    links: dict[str, str]
+    axes: dict[str, tuple[complex, float]]
+    size: float
+
+    @classmethod
+    def of(cls, foreign: Foreign) -> _Writing:
+        links = _plain([body.name for body in foreign.bodies], map(str, count(1))) | {FRAME: FRAME}
+        axes: dict[str, tuple[complex, float]] = {FRAME: (0j, 0.0)}
+        for body in foreign.bodies:
+            axes[body.name] = _axes(foreign, body)
+        for slide in foreign.slides:  # a stone has the directions of what it slides on
+            if not _spread(foreign, slide.runner):
+                axes[slide.runner] = (axes[slide.runner][0], axes[slide.carrier][1])
+        return cls(foreign, _plain(foreign.places, _letters()), links, axes, _size(foreign))
+
+    def lines(self, source: str) -> Iterator[str]:
+        it = self.foreign
+        told = _("Imported from {program}: {file}.").format(program=it.program, file=clean(source, 200))
+        yield f"# {told}"
+        for name, new in {**self.names, **self.links}.items():
+            if name != new:
+                yield "# " + _("{name} is called {new} here.").format(name=clean(name, 60), new=new)
+        yield from (f"# {clean(note, 300)}" for note in it.notes)
+        if it.left:
+            yield "# " + _("Not taken over:")
+            yield from (f"# - {clean(line, 300)}" for line in it.left)
+        yield "tmm: 1"
+        yield f"title: {_text(it.title or source)}"
+        yield f"units: {{length: {it.length}, angle: deg}}"
+        if it.frame:
+            yield "points: " + _flow((self.names[p], self._vector(it.places[p])) for p in it.frame)
+        fixed = [slide for slide in it.slides if slide.carrier == FRAME]
+        if fixed:
+            guides = [(f"g{k}", self._guide(slide)) for k, slide in enumerate(fixed, 1)]
+            yield "guides: " + _flow(guides)
+        yield "links:"
+        for body in it.bodies:
+            yield f"  {self._key(body.name)}: {self._link(body, fixed)}"
+        yield from self._motion()
+        yield from self._loads()
+
+    def _key(self, body: str) -> str:
+        return self.links[body] if body != FRAME else "0"
+
+    def _local(self, body: str, place: complex) -> complex:
+        origin, angle = self.axes[body]
+        return (place - origin) * cmath.rect(1, -angle)
+
+    def _vector(self, z: complex) -> str:
+        return f"[{', '.join(_number(part if abs(part) > ROUNDING * self.size else 0.0) for part in (z.real, z.imag))}]"
+
+    def _guide(self, slide: Slide) -> str:
+        through = self._local(slide.carrier, slide.through)
+        angle = math.degrees(slide.angle - self.axes[slide.carrier][1])
+        return f"{{through: {self._vector(through)}, angle: {_number(math.remainder(angle, 360))}}}"
+
+    def _link(self, body: Body, fixed: list[Slide]) -> str:
+        places = {self.names[point]: self._local(body.name, self.foreign.places[point]) for point in body.points}
+        parts = [("name", _text(body.label))] if body.label else []
+        if len(places) == 2 and _spread(self.foreign, body.name):
+            parts += [("points", f"[{', '.join(places)}]"), ("length", _number(abs(list(places.values())[1])))]
+        elif len(places) == 1:
+            parts.append(("points", f"[{next(iter(places))}]"))
+        else:
+            parts.append(("points", _flow((name, self._vector(z)) for name, z in places.items())))
+        slides = [self._slide(slide, fixed) for slide in self.foreign.slides if slide.runner == body.name]
+        if slides:
+            parts.append(("slides", slides[0] if len(slides) == 1 else f"[{', '.join(slides)}]"))
+        return _flow(parts)
+
+    def _slide(self, slide: Slide, fixed: list[Slide]) -> str:
+        turned = math.degrees(self.axes[slide.runner][1] - self.axes[slide.carrier][1])
+        parts = [("point", self.names[slide.point])]
+        if abs(math.remainder(turned, 360)) > SAME:
+            parts.append(("turned", _number(math.remainder(turned, 360))))
+        if slide.carrier == FRAME:
+            return _flow([("on", f"g{fixed.index(slide) + 1}"), *parts])
+        return _flow([("on", self._key(slide.carrier))]).rstrip("}") + ", " + self._guide(slide)[1:-1] + ", " + _flow(
+            parts)[1:]  # fmt: skip
+
+    def _motion(self) -> Iterator[str]:
+        it, drive = self.foreign, self.foreign.drive
+        sense = "cw" if drive.speed < 0 else "ccw"
+        speed = f"{_number(abs(drive.speed))} {drive.unit}"
+        given = [("link", self._key(drive.body)), ("speed", speed), ("turns", sense)]
+        if drive.acceleration:
+            gain = drive.acceleration * (-1 if drive.speed < 0 else 1)
+            given.append(("acceleration", f"{_number(gain)} rad/s^2"))
+        yield "driver: " + _flow(given)
+        at = _number(math.remainder(math.degrees(self.axes[drive.body][1]), 360))
+        moving = [(self.names[p], self._vector(z)) for p, z in it.places.items() if p not in it.frame]
+        turned = [
+            (self._key(body.name), _number(math.degrees(self.axes[body.name][1])))
+            for body in it.bodies
+            if body.name != drive.body and not _spread(it, body.name) and self._key(body.name) not in it.places
+        ]
+        yield "sketch: " + _flow([("at", at), *moving, *turned])
+        if it.output:
+            yield f"output: {self._key(it.output)}"
+        yield f"positions: {{at: [{at}], detail: [0]}}" if it.one_place else "positions: {count: 12}"
+
+    def _loads(self) -> Iterator[str]:
+        it = self.foreign
+        masses = [(self._key(body.name), self._mass(body)) for body in it.bodies if body.mass or body.inertia]
+        if masses:
+            yield "masses:"
+            yield from (f"  {name}: {mass}" for name, mass in masses)
+        if it.pushes:
+            yield "loads:"
+            names = _plain([push.name for push in it.pushes], (f"F{k}" for k in count(1)))
+            yield from (f"  {names[push.name]}: {self._push(push)}" for push in it.pushes)
+        if it.gravity is not None:
+            yield f"gravity: {self._vector(it.gravity)}"
+
+    def _mass(self, body: Body) -> str:
+        parts = [("mass", f"{_number(body.mass)} kg"), ("inertia", f"{_number(body.inertia)} kg*m^2")]
+        if body.centre is not None:
+            parts.append(("centre", self._vector(self._local(body.name, body.centre))))
+        return _flow(parts)
+
+    def _push(self, push: Push) -> str:
+        parts = [("on", self._key(push.body))]
+        if push.force:
+            parts.append(("at", self._vector(self._local(push.body, push.at))))
+            own = push.force * cmath.rect(1, -self.axes[push.body][1]) if push.turns else push.force
+            size = ", ".join(f"{_number(part)} N" for part in (own.real, own.imag))
+            parts.append(("force", f"[{size}]"))
+            if push.turns:
+                parts.append(("axes", "link"))
+        if push.moment:
+            parts.append(("moment", f"{_number(push.moment)} N*m"))
+        return _flow(parts)
+
+
+def _axes(foreign: Foreign, body: Body) -> tuple[complex, float]:
+    """Origin in the first point, x axis towards the next one that is elsewhere."""
+    places = [foreign.places[point] for point in body.points]
+    origin = places[0] if places else body.centre or 0j
+    away = next((z for z in places if abs(z - origin) > SAME * _size(foreign)), None)
+    return origin, 0.0 if away is None else cmath.phase(away - origin)
+
+
+def _spread(foreign: Foreign, name: str) -> bool:
+    """Whether two points of a body are in two places."""
+    body = next(body for body in foreign.bodies if body.name == name)
+    places = [foreign.places[point] for point in body.points]
+    return any(abs(z - places[0]) > SAME * _size(foreign) for z in places)
+
+
+def _size(foreign: Foreign) -> float:
+    return max((abs(z) for z in foreign.places.values()), default=1.0)
+
+
+def _plain(names: Iterable[str], others: Iterable[str]) -> dict[str, str]:
+    """A plain name for each: its own, or else the first of the others that is free."""
+    own = list(dict.fromkeys(names))
+    free = (other for other in others if other not in own)
+    return {name: name if PLAIN.fullmatch(name) else next(free) for name in own}
+
+
+def _letters() -> Iterator[str]:
+    """A, B, ..., Z, A1, B1, ...."""
+    for k in count():
+        yield from (letter + (str(k) if k else "") for letter in ascii_uppercase)
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.15g}"
+
+
+def _text(text: str) -> str:
+    return json.dumps(clean(text, 200), ensure_ascii=False)
+
+
+def _flow(parts: Iterable[tuple[str, str]]) -> str:
+    return "{" + ", ".join(f"{key}: {value}" for key, value in parts) + "}"
