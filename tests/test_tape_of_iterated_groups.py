@@ -42,10 +42,10 @@ def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
 
 
 def test_a_press_of_class_iii_is_right_to_the_last_digits():
-    """Against 50 digits, relative to the largest value of each kind."""
+    """Against 50 digits, relative to the largest value of the same point or pair; the stages have 1.3e-15."""
     press = reference("press-class-iii")
     found = errors(taped.prepare(press.case)(press.q), press.exact)
-    assert all(error < 1e-15 for error in found.values()), found
+    assert all(error < 4e-15 for error in found.values()), found
 
 
 def test_margins_are_those_of_the_whole_jacobian():
