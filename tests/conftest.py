@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import sys
 
 import mpmath as mp
@@ -23,6 +24,20 @@ def fifty_digits():
     """Arithmetic of mpmath in 50 digits."""
     with mp.workdps(50):
         yield
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Chromium, where it is installed with what drives it."""
+    api = pytest.importorskip("playwright.sync_api")
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    with api.sync_playwright() as play:
+        try:
+            opened = play.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        except api.Error:
+            pytest.skip("no Chromium is found")
+        yield opened
+        opened.close()
 
 
 gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from functools import cache
 
 import numpy as np
@@ -95,20 +94,6 @@ def test_names_from_files_are_data():
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """Chromium, where it is installed with what drives it."""
-    api = pytest.importorskip("playwright.sync_api")
-    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    with api.sync_playwright() as play:
-        try:
-            opened = play.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        except api.Error:
-            pytest.skip("no Chromium is found")
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

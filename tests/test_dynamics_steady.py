@@ -20,7 +20,7 @@ from tmm_cli.dynamics.motors import Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
 from tmm_cli.dynamics.steady import fluctuation, steady
 from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.errors import NoFlywheelError, StandstillError, WeakMotorError
+from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 from tmm_cli.groups.sequence import DriverMotion
@@ -180,6 +180,13 @@ def test_a_motor_that_gives_less_than_the_mean_of_the_loads_cannot_carry_them():
     with pytest.raises(WeakMotorError) as weak:
         steady(machine(load=-800.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
     assert weak.value.wanted == pytest.approx(400.0) and weak.value.most == pytest.approx(78.0)
+
+
+def test_a_machine_that_its_load_pushes_beyond_its_motor_runs_away():
+    with pytest.raises(RunawayError):
+        with_motor(machine(load=300.0), 0.0, Kloss.rated(12.0, 11.6, 60.0, 1.3))
+    held = with_motor(machine(load=60.0), 5.0, Kloss.rated(12.0, 11.6, 60.0, 2.2))
+    assert held.driving.total == pytest.approx(-60 * np.pi) and np.min(held.speed(np.linspace(0, 6, 50))) > 11.5
 
 
 def test_a_motor_that_a_load_stalls_on_the_way_stands_still():

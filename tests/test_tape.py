@@ -130,14 +130,6 @@ def test_what_is_not_asked_is_not_computed():
     assert np.allclose(one(Q)["x"], prepare(it)(Q)["E.x"])
 
 
-def test_groups_found_by_iteration_are_solved_one_by_one():
-    it = linkage_of("press-class-iii")
-    batch = prepare([it, replace(it, gravity=0j)])
-    assert batch.program is None
-    q = it.sketch.at + np.linspace(-0.1, 0.1, 3)
-    assert batch(q)["T.1"].shape == (2, 3)
-
-
 def test_class_ii_problems_of_the_bank():
     taped = 0
     for name in NAMES[1::2]:

@@ -14,22 +14,16 @@ from test_tape import agree, plainly
 from tmm_cli.groups.elimination import Eliminated, Order
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.variants.batch import SURE, prepare
+from tmm_cli.variants.batch import prepare
 
 ROUND = np.linspace(0.123, 6.28, 90)
 ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"
 
 
-def by_tape_alone(batch, q):
-    """Where the tape needed nothing else."""
-    found = batch.program(*batch.columns, q, *(batch.starts(q) if batch.starts else ()))
-    return found[SURE] if SURE in found else np.ones(np.shape(q), bool)
-
-
 @pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "summing-lever", "triad-six-assemblies"])
 def test_groups_of_higher_class_close_all_round_in_one_step(name):
     batch = prepare(linkage_of(name))
-    assert np.all(by_tape_alone(batch, ROUND))
+    assert np.all(batch.closed(ROUND))
     found, plain = batch(ROUND), plainly(batch, ROUND)
     plain = {n: value for n, value in plain.items() if np.max(np.abs(value)) > 1e-12}  # of guides without a couple
     agree({n: found[n] for n in plain}, plain, 1e-14)
@@ -39,7 +33,7 @@ def test_groups_of_higher_class_close_all_round_in_one_step(name):
 def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
     batch = prepare(linkage_of(name))
     q = batch.linkages[0].sketch.at + 3 * ROUND - 8  # their angles go on beyond a turn
-    assert batch.program is not None and np.all(by_tape_alone(batch, q))
+    assert batch.program is not None and np.all(batch.closed(q))
     found = batch(q)
     agree({n: found[n] for n in found}, plainly(batch, q), 1e-13)
 
@@ -53,7 +47,7 @@ def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say()
     batch = prepare(build(read_text(ROCKED, "iii.yaml")).linkage)
     low, high = batch.kernels[-1].trace.q[[0, -1]]
     q = np.sort([*np.linspace(low - 0.1, high + 0.1, 40), *(low + np.logspace(-12, -3, 10))])
-    taped, alone = by_tape_alone(batch, q), replace(batch, program=None, checks=None)
+    taped, alone = batch.closed(q), replace(batch, program=None, checks=None)
     assert np.any(taped) and not np.all(taped[(q > low) & (q < high)]) and not np.any(taped[(q < low) | (q > high)])
     sound, plain = batch.sound(q), alone.sound(q)
     for name in ("placed", "moving"):
@@ -63,6 +57,41 @@ def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say()
         there = np.isfinite(rest[name])
         assert np.allclose(found[name][~taped][there], rest[name][there], rtol=1e-13, atol=1e-16), name
     agree({n: found[n][taped] for n in found}, {n: expected[n][taped] for n in found}, 1e-12)
+
+
+def varied(it, size, seed=3):
+    """The same with links up to so much longer, one by one."""
+    random, found = np.random.default_rng(seed), [it]
+    for _ in range(3):
+        links = dict(it.links)
+        for name in it.moving:
+            by = 1 + size * float(random.random())
+            points = {point: place * by for point, place in it.links[name].points.items()}
+            links[name] = replace(it.links[name], points=points)
+        found.append(replace(it, links=links, gravity=it.gravity * by))
+    return found
+
+
+@pytest.mark.parametrize(
+    "name, size, tolerance", [("press-class-iii", 0.05, 1e-13), ("class-iv", 0.05, 1e-13), ("tilter", 0.1, 1e-12)]
+)
+def test_variants_are_followed_from_the_first_one_and_along_their_ways(name, size, tolerance):
+    batch = prepare(varied(linkage_of(name), size))
+    q = ROUND[::9]
+    assert np.all(batch.closed(q))
+    found = batch(q)
+    agree({n: found[n] for n in found}, plainly(batch, q), tolerance)
+
+
+def test_a_variant_that_does_not_go_so_far_is_solved_by_the_stages_where_it_ends():
+    it = linkage_of("press-class-iii")
+    rod = it.links["7"]
+    short = replace(it, links={**it.links, "7": replace(rod, points={n: 0.75 * p for n, p in rod.points.items()})})
+    batch, q = prepare([it, short]), ROUND[::9]
+    closed, sound, alone = batch.closed(q), batch.sound(q), prepare(short)
+    assert np.all(closed[0]) and not np.all(closed[1])
+    assert np.array_equal(sound["placed"][1], alone.sound(q)["placed"]) and np.all(sound["placed"][0])
+    agree({"S2.v": batch(q)["S2.v"][1]}, {"S2.v": alone(q)["S2.v"]}, 1e-13)
 
 
 def test_a_group_that_no_tape_holds_is_solved_by_the_stages():

@@ -169,6 +169,10 @@ class WeakMotorError(LinkageError):
         self.wanted, self.most = wanted, most
 
 
+class RunawayError(LinkageError):
+    """Loads push a machine on faster than its motor holds it."""
+
+
 class NoFlywheelError(LinkageError):
     """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
 

@@ -46,7 +46,7 @@ def _page(results: Results, count: int) -> str:
     )
     return Template(_part("page.html")).substitute(
         lang=language(),
-        policy=f"default-src 'none';style-src '{_digest(style)}';script-src '{_digest(script)}'",
+        policy=f"default-src 'none';style-src '{digest(style)}';script-src '{digest(script)}'",
         title=escape(results.problem.title),
         style=style,
         view=" ".join(f"{side:.1f}" for side in view(picture)),
@@ -76,6 +76,6 @@ def _part(name: str) -> str:
     return files("tmm_cli.animate").joinpath(name).read_text(encoding="utf-8")
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
     """How a policy names a text that it allows."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

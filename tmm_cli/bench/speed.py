@@ -1,4 +1,4 @@
-"""`tmm bench speed`: against code by hand for one mechanism, other programs, and how time grows."""
+"""`tmm bench speed`: against code by hand for one mechanism, dyads for class III, other programs, growth."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from tmm_cli.bench.methods import taped
 from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.bench.rivals import installed
+from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar, table
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.results.table import Table
@@ -111,17 +112,19 @@ class Speed(Measured):
     races: tuple[Race, ...]
     growths: tuple[Growth, ...]
     rivals: tuple[Rival, ...]
+    iterated: tuple[Iterated, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        found: tuple[Timed, ...] = (*self.races, *self.growths, *self.rivals)
+        found: tuple[Timed, ...] = (*self.races, *self.iterated, *self.growths, *self.rivals)
         return tuple(filter(None, (one.missed(slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
         return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
+            "iterated": [r.to_dict() for r in self.iterated],
             "rivals": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.rivals],
         }
 
@@ -145,7 +148,8 @@ class Speed(Measured):
             [(r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
              for r in self.rivals],
         )  # fmt: skip
-        return (races, growths, rivals) if self.rivals else (races, growths)
+        found = (races, table(self.iterated), growths)
+        return (*found, rivals) if self.rivals else found
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
@@ -154,12 +158,16 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
     for mechanism in MECHANISMS:
         progress(mechanism.name)
         races += race(mechanism, reduced)
+    iterated: list[Iterated] = []
+    for name in ITERATED:
+        progress(name)
+        iterated += against_six_bar(name, reduced)
     growths = []
     for what in GROWING:
         progress(what)
         growths.append(growth(what, reduced))
     rivals, absent = against_rivals(reduced, progress)
-    return Speed(tuple(races), tuple(growths), rivals, reduced=reduced, absent=absent)
+    return Speed(tuple(races), tuple(growths), rivals, tuple(iterated), reduced=reduced, absent=absent)
 
 
 def race(mechanism: Mechanism, reduced: bool) -> list[Race]:

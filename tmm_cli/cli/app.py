@@ -36,6 +36,7 @@ COMMANDS = {
     "sheets": "Draw sheets to hand in, framed and to scale, as PDF or DXF.",
     "note": "Write the explanatory note, formulas with numbers put in.",
     "animate": "Let the mechanism turn on a page for the browser.",
+    "gallery": "Write a page of many mechanisms, each turning.",
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 

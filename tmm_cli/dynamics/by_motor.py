@@ -22,12 +22,14 @@ from tmm_cli.dynamics.curves import FIT, NODES, SUMS, Curve, nodes
 from tmm_cli.dynamics.motion import Law
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
-from tmm_cli.errors import StandstillError, WeakMotorError
+from tmm_cli.errors import LinkageError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.tolerances import LAST_STEP
 from tmm_cli.vectors import Real
 
 STEPS = 60  # of Newton's method, at most
 TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel begins where the one before ends
+RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
+UNEVEN = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
 NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
 ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # values at the nodes to both ends
 
@@ -35,7 +37,7 @@ ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # val
 def with_motor(machine: Reduced, flywheel: float, motor: Motor) -> Law:
     """What the machine comes to when every cycle is as the one before, from the motor's speed without load on.
 
-    Raises WeakMotorError, StandstillError.
+    Raises WeakMotorError, StandstillError, RunawayError.
     """
     return Cycle.of(machine, motor).law(flywheel)
 
@@ -83,7 +85,7 @@ class Cycle:
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
     def law(self, flywheel: float) -> Law:
-        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError."""
+        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError."""
         slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
         for _ in range(STEPS):
             end, slope, values = self._run(flywheel, slip)
@@ -92,14 +94,24 @@ class Cycle:
             if slope < 1 and abs(step) <= LAST_STEP * float(np.max(np.abs(values))):
                 break
         else:
-            raise StandstillError(float(nodes(self._edges)[np.argmax(values.T)]))
-        values, self.slip = self._run(flywheel, slip)[2], slip
+            raise self._unsteady(values)
+        values = self._run(flywheel, slip)[2]
         inertia = flywheel + np.stack([panel.inertia for panel in self.panels], axis=1)
         speed = idle * (1 - values)
         energy, driving, pace = (
             Curve(self._edges, FIT @ own) for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
         )
+        if abs(driving.total + self.machine.work_of_cycle) > UNEVEN * energy.length * self.motor.most:
+            raise self._unsteady(values)  # so heavy a flywheel that a cycle's change of its energy is rounding
+        # on the rising branch of the characteristic it is a good beginning for the next flywheel
+        self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
         return Law(self.machine, flywheel, energy, driving, pace.summed())
+
+    def _unsteady(self, values: Real) -> LinkageError:
+        """A machine that runs away, or comes to rest where its slip is largest."""
+        if np.mean(values) < RUNAWAY:
+            return RunawayError()
+        return StandstillError(float(nodes(self._edges)[np.argmax(values.T)]))
 
     @property
     def _edges(self) -> Real:

@@ -24,7 +24,7 @@ from tmm_cli.dynamics.motion import Law, under_constant_moment
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.errors import NoFlywheelError, StandstillError
+from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
@@ -158,7 +158,7 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     def delta_of(flywheel: float) -> float:
         try:
             return fluctuation(cycle.law(flywheel))
-        except StandstillError:
+        except (StandstillError, RunawayError):
             return STANDS
 
     own = delta_of(task.flywheel)

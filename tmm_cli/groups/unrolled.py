@@ -36,11 +36,15 @@ class NotUnrolledError(ValueError):
 
 @dataclass(frozen=True)
 class Unrolled(Newton):
-    """A group so. starts: of its free unknowns (m, rad), arrays over positions; steps: of Newton's method."""
+    """A group so. starts: of its free unknowns (m, rad), arrays over positions; steps: of Newton's method.
+
+    enough: it has closed where the last of these was less (sizes of the group, rad).
+    """
 
     closure: Closure | None = None
     starts: tuple[Any, ...] = ()
     steps: int = STEPS
+    enough: float = LAST_STEP
 
     @classmethod
     def from_newton(cls, kernel: Newton, poses: Poses, drives: Drives, geared: Container[str] = ()) -> Unrolled:
@@ -172,7 +176,7 @@ class Unrolled(Newton):
         if diagonal:
             sizes = [np.abs(value) for value in diagonal]
             sharp = reduce(np.minimum, sizes) / reduce(np.maximum, sizes)
-        sure = (sharp > NEAR_SINGULAR) & ((size < LAST_STEP) | self.linear)
+        sure = (sharp > NEAR_SINGULAR) & ((size < self.enough) | self.linear)
         margin = margin_of(self.rows(rows), self.lengths, self.size)
         residual = np.where(sure, -1.0, 1.0) * self.size
         return Placement(own, det, margin, residual, np.zeros(np.shape(q)))

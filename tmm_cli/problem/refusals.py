@@ -19,6 +19,7 @@ from tmm_cli.errors import (
     NotOnFrameError,
     NoTurnError,
     OutOfRangeError,
+    RunawayError,
     SketchMismatchError,
     SpeedsEndError,
     StandstillError,
@@ -168,6 +169,11 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 path=("dynamics",), key=True,
                 found=_("at {place} of the driver's way").format(place=shown(place_of_rest)),
                 allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+            )  # fmt: skip
+        case RunawayError():
+            return ProblemError(
+                _("the loads push the machine on, and its motor does not hold it: it runs away"),
+                path=("dynamics", "motor"), key=True, allowed=_("a stronger motor, a heavier flywheel, smaller loads"),
             )  # fmt: skip
         case WeakMotorError(wanted=mean, most=most):
             unit = units.spelt(MOMENT)

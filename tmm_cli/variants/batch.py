@@ -32,13 +32,15 @@ from tmm_cli.quantities import ANGLE
 from tmm_cli.structure.assur import Structure
 from tmm_cli.tape import DependsOnData, Outputs, Program, record
 from tmm_cli.tape.terms import Term
+from tmm_cli.variants.marches import EACH_TURN, STEPS_OF_VARIANTS, Marches, Ways
 from tmm_cli.variants.stack import changed, parts, varying
-from tmm_cli.variants.starts import Starts, started, sure, unrolled, wants
+from tmm_cli.variants.starts import Starts, started, sure, unrolled, wants, wound
 from tmm_cli.vectors import Real
 
 Wanted = Callable[[Motion, Reactions | None], Mapping[str, Any]]
 CHECKS = ("placed", "moving", "margin")
-SURE = "sure"  # name of what tells, among the outputs of a tape, where its Newton's steps were enough
+SURE, WOUND = "sure", "wound"  # where Newton's steps were enough on a tape, where wheels turn as its tables say
+TOLD = (*CHECKS, SURE, WOUND)
 TIME = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
 
 
@@ -60,7 +62,7 @@ class Batch:
     """Linkages of one kind, ready to be solved at places of their driver; all assembled as the first one is.
 
     program is None where they cannot be written on a tape; checks tells where they can be assembled. columns: what
-    varies, (variants, 1). starts: of Newton's steps at places of the driver.
+    varies, (variants, 1). starts: of Newton's steps at places of the driver, (positions,) or (variants, positions).
     """
 
     linkages: tuple[Linkage, ...]
@@ -72,7 +74,7 @@ class Batch:
     program: Program | None
     checks: Program | None = None
     columns: tuple[Real, ...] = ()
-    starts: Starts | None = None
+    starts: Callable[[Real], list[Real]] | None = None
     others: dict[int, tuple[Kernel, ...]] = field(default_factory=dict)  # groups of linkages that were looked at alone
 
     def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
@@ -89,6 +91,16 @@ class Batch:
         its 16 digits as it has zeros. What these results are in truth is told by `solve`, with bounds, not here.
         """
         return self._one_by_one(q) if self.checks is None else self._played(self.checks, q)
+
+    def closed(self, q: Real) -> Real:
+        """Where the tape alone closes all groups, and needs no other stages, at q."""
+        if self.checks is None:
+            return np.zeros(np.shape(q), dtype=bool)
+        q = np.asarray(q, dtype=float)
+        found = self.checks.only(*({SURE} & set(self.checks.outputs)))(
+            *self.columns, q, *(self.starts(q) if self.starts else ())
+        )
+        return found[SURE] if SURE in found else np.ones(found.several_shape, dtype=bool)
 
     def _played(self, program: Program, q: Real) -> Outputs:
         """What a program gives, and the rest of it by the ordinary stages."""
@@ -107,7 +119,7 @@ class Batch:
         if k not in self.others:
             self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
         found = solved(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
-        return {name: np.broadcast_to(value, np.shape(q)) for name, value in found.items() if name != SURE}
+        return {name: np.broadcast_to(value, np.shape(q)) for name, value in found.items() if name not in (SURE, WOUND)}
 
     def _one_by_one(self, q: Real) -> Mapping[str, Real]:
         found = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
@@ -137,29 +149,50 @@ def prepare(
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
     alone = Batch(linkages, structure, kernels, wanted, forces, strokes, None)
     lines = None if apart or first.friction else straight(first, kernels)
-    if lines is None or (len(linkages) > 1 and wants(lines)):
+    if lines is None:
         return alone
     columns, together = parts(varying(linkages))
     if len(linkages) > 1 and not columns:  # all the same
         columns = [np.zeros((len(linkages), 1))]
     many = len(columns)
+    steps = STEPS_OF_VARIANTS if many else None
+
+    def varied(data: Sequence[Any]) -> Linkage:
+        found: Linkage = changed(first, together(*data)) if columns else first
+        return found
 
     def stages(*data: Any) -> Mapping[str, Any]:
-        linkage = changed(first, together(*data[:many])) if columns else first
+        linkage = varied(data[:many])
         own = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
-        own = started(own, data[many + 1 :])
+        own = started(own, data[many + 1 :], steps)
         return solved(linkage, structure, own, data[many], wanted, forces, strokes, blank=False)
 
-    axes = (*[1] * many, *[3 if own_places else 2] * (1 + wants(lines)))
+    axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * wants(lines))
     try:
         whole = record(stages, *axes, data=dict(enumerate(columns)))
     except DependsOnData:  # laws of cams
         return alone
-    starts = Starts(first, lines) if wants(lines) else None
+    starts: Callable[[Real], list[Real]] | None = None
+    if wants(lines):
+        starts = ways_of(varied, columns, first, lines) if columns else Starts(first, lines)
     own = (SURE,) if isinstance(whole.outputs[SURE][0], Term) else ()
     checks = whole.only(*CHECKS, *own)
-    program = whole.only(*(name for name in whole.outputs if name not in (*CHECKS, SURE)), *own)
+    program = whole.only(*(name for name in whole.outputs if name not in TOLD), *own)
     return replace(alone, program=program, checks=checks, columns=tuple(columns), starts=starts)
+
+
+def ways_of(
+    varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[Kernel]
+) -> Ways:
+    """Ways of all linkages as far as that of the first one goes."""
+    numbers = np.hstack(list(columns))
+    traces = [kernel.followed for kernel in lines if kernel.followed is not None]
+    low, high = max(trace.q[0] for trace in traces), min(trace.q[-1] for trace in traces)
+    turns = (high - low) / (2 * np.pi) if first.driver.kind == "turn" else 1.0
+    closed = all(trace.closed for trace in traces)
+    ones = np.ones((len(numbers), 1))
+    march = Marches(varied, numbers[0].tolist(), first, lines)
+    return march(numbers, low * ones, high * ones, int(np.ceil(EACH_TURN * turns)), closed=closed)
 
 
 def straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...] | None:
@@ -190,13 +223,9 @@ def solved(
     motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
     reactions = reactions_of(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
-    return {
-        **wanted(motion, reactions),
-        "placed": motion.placed,
-        "moving": motion.moving,
-        "margin": margin,
-        SURE: sure(motion),
-    }
+    checks = {"placed": motion.placed, "moving": motion.moving, "margin": margin}
+    turns = wound(motion)
+    return {**wanted(motion, reactions), **checks, SURE: sure(motion) & turns, WOUND: turns}
 
 
 def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:

@@ -55,12 +55,19 @@ def started(kernels: Sequence[Kernel], stands: Stands, steps: int | None = None)
 
 
 def sure(states: LinkStates) -> Any:
-    """Where the steps on a tape have closed all groups that take such, and turns of wheels are those of the table."""
+    """Where the steps on a tape have closed all groups that take such."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, Unrolled):
             found = found & (at.residual < 0)
-        elif isinstance(kernel, Closed) and kernel.winding is not None:
+    return found
+
+
+def wound(states: LinkStates) -> Any:
+    """Where turns of wheels are those of the tables that groups in closed form have."""
+    found: Any = np.ones(np.shape(states.q), dtype=bool)
+    for kernel, at in zip(states.kernels, states.placements, strict=True):
+        if isinstance(kernel, Closed) and kernel.winding is not None:
             found = found & kernel.winding.sure(kernel.group.links, at.poses, states.q)
     return found
 

@@ -1,4 +1,4 @@
-"""Variants of a linkage by its tape: for groups in closed form and loads that ask for no strokes.
+"""Variants of a linkage by its tape: for loads that ask for no strokes.
 
 Unlike a Batch, whose program is for the linkages that it was made of, this one takes numbers anew at every call; which
 assembly the groups have is that of the first linkage.
@@ -11,14 +11,19 @@ from copy import copy
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.groups.base import Closed
-from tmm_cli.linkage import Sketch
+from tmm_cli.groups.base import Kernel
+from tmm_cli.kinematics.driver_range import cycle_of
+from tmm_cli.linkage import Linkage, Sketch
 from tmm_cli.tape import Program, TracedArray, record
 from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.variants.batch import CHECKS, SURE, Wanted, solved
+from tmm_cli.variants.batch import TOLD, WOUND, Wanted, solved, straight
+from tmm_cli.variants.marches import EACH_TURN, LEAST_TURN, STEPS_OF_VARIANTS, Marches, Ways
 from tmm_cli.variants.stack import changed, numbers
+from tmm_cli.variants.starts import started, wants
 from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
 from tmm_cli.vectors import Real
 
@@ -36,31 +41,43 @@ class Taped:
         self.structure = mobile(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
         by_stroke = any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
-        if self.linkage.others or self.linkage.friction or (forces and by_stroke):
+        if self.linkage.friction or (forces and by_stroke):
             raise NoTapeError
-        if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):
-            raise NoTapeError
+        self.lines = _straight(self.linkage, self.kernels)
+        self.turns = cycle_of(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
-        if isinstance(self.start, TracedNumber):
+        # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+        apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
+        if apart or isinstance(self.start, TracedNumber):
             raise NoTapeError
         own = any(isinstance(number, TracedNumber) for number in _ends(varied))
         self.ends = record(self._ends, *[1] * len(first)) if own else None
         self.program = self._program(wanted, forces, own)
+        self.marches = Marches(self._varied, first, self.linkage, self.lines) if wants(self.lines) else None
+        self._last: tuple[bytes, Ways] | None = None
+
+    def _varied(self, data: Sequence[Any]) -> Linkage:
+        """The linkage for stand-ins of its numbers."""
+        varied = self.make([TracedNumber(x, stand) for x, stand in zip(self.first, data, strict=True)]).linkage
+        stands = {path: number.stand for path, number in numbers(varied) if isinstance(number, TracedNumber)}
+        found: Linkage = replace(changed(varied, stands), sketch=self.linkage.sketch)
+        return found
 
     def _program(self, wanted: Wanted, forces: bool, own: bool) -> Program:
         """Of the varying numbers, each (variants, 1), and the driver's places; own: each variant has its own."""
 
-        def stages(*data: TracedArray) -> Mapping[str, Any]:
-            varied = self.make([TracedNumber(x, stand) for x, stand in zip(self.first, data[:-1], strict=True)]).linkage
-            stands = {path: number.stand for path, number in numbers(varied) if isinstance(number, TracedNumber)}
-            linkage = replace(changed(varied, stands), sketch=self.linkage.sketch)
-            kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
-            structure = self.structure.rebind(linkage)
-            return solved(linkage, structure, kernels, data[-1], wanted, forces, None, blank=False, start=self.start)
+        many = len(self.first)
 
-        whole = record(stages, *[1] * len(self.first), 3 if own else 2)
-        return whole.only(*(name for name in whole.outputs if name not in (*CHECKS, SURE)))
+        def stages(*data: TracedArray) -> Mapping[str, Any]:
+            linkage, q, stands = self._varied(data[:many]), data[many], data[many + 1 :]
+            kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
+            kernels = started(kernels, stands, STEPS_OF_VARIANTS)
+            structure = self.structure.rebind(linkage)
+            return solved(linkage, structure, kernels, q, wanted, forces, None, blank=False, start=self.start)
+
+        whole = record(stages, *[1] * many, 3 if own else 2, *[3] * wants(self.lines))
+        return whole.only(*(name for name in whole.outputs if name not in TOLD), WOUND)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
         """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""
@@ -72,14 +89,14 @@ class Taped:
     def driver_range(self, columns: Real) -> DriverRanges:
         """The crank's turn, or the range of the driver."""
         if self.ends is None:
-            return DriverRanges.of(self.variant, len(columns), self.linkage.turns, self.start)
+            return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
         found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
         numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
         variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
         variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
-        return DriverRanges.of(variant, len(columns), self.linkage.turns, self.start)
+        return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
     def without(self, part: str) -> Taped:
         """Without results whose names have such a part."""
@@ -90,13 +107,43 @@ class Taped:
     def sketch(self, numbers: Real) -> Sketch:
         """How one variant looks at the place of the sketch."""
         linkage = self.make([float(number) for number in numbers]).linkage
-        return sketch_of(linkage, [kernel.rebind(linkage) for kernel in self.kernels])
+        kernels: Sequence[Kernel] = [kernel.rebind(linkage) for kernel in self.lines]
+        if self.marches is not None:
+            kernels = started(kernels, list(self.marches.sketched(np.array([numbers]))[0]), STEPS_OF_VARIANTS)
+        return sketch_of(linkage, kernels)
 
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
         q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
-        found = self.program(*(columns[:, k : k + 1] for k in range(columns.shape[1])), q)
+        data = [columns[:, k : k + 1] for k in range(columns.shape[1])]
+        played = self.program(*data, q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        found: Mapping[str, Real] = played.without(WOUND)
+        if not np.all(played[WOUND]):  # wheels have gone round otherwise than those of the first linkage
+            found = {name: np.where(played[WOUND], value, np.nan) for name, value in found.items()}
         return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
+
+    def _ways(self, columns: Real, ranges: DriverRanges) -> Ways:
+        """Of variants through their ranges; those that are asked for again and again are kept."""
+        assert self.marches is not None
+        key = columns.tobytes()
+        if self._last is None or self._last[0] != key:
+            low = ranges.low + np.zeros((len(columns), 1))
+            turns = float(np.max(ranges.span)) / (2 * np.pi) if self.linkage.driver.kind == "turn" else 1.0
+            count = int(np.ceil(EACH_TURN * max(turns, LEAST_TURN)))
+            self._last = key, self.marches(columns, low, low + ranges.span, count, closed=ranges.closed)
+        return self._last[1]
+
+
+def _straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...]:
+    """The groups as a tape of variants can hold them. Raises NoTapeError."""
+    lines = straight(linkage, kernels)
+    if lines is None:
+        raise NoTapeError
+    for kernel in lines:
+        trace = kernel.followed
+        if trace is not None and trace.dead.size:  # on the other side of it the determinant has another sign
+            raise NoTapeError
+    return lines
 
 
 def _ends(variant: Variant) -> tuple[Any, ...]:

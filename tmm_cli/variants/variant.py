@@ -19,7 +19,7 @@ WANTED = "wanted"  # name of what is wanted at places asked about, among the out
 
 
 class NoTapeError(ValueError):
-    """The stages cannot be written on a tape: iterated groups, friction, several drivers, loads by strokes."""
+    """No tape holds the stages: friction, loads by strokes, passive constraints, dead positions that are passed."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from tmm_cli.vectors import Real
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
 EACH = 24  # positions of the search in each turn of a cycle of many, at least
 SCAN, SCAN_EACH = 720, 240  # places where peaks are looked for before the polish; in each turn of many, at least
-BLOCK = 125  # candidates at once
+BLOCK, FOLLOWED = 125, 500  # candidates at once; where groups are followed, which takes many calls a block
 POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
 GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
 FEW, FEW_GENERATIONS = 8, 15  # a parameter, where candidates are moved one by one, which takes 5 to 100 ms each
@@ -143,7 +143,8 @@ class Candidates:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // BLOCK))]
+        block = FOLLOWED if isinstance(self.program, Taped) and self.program.marches else BLOCK
+        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:

@@ -1,0 +1,63 @@
+"""`tmm gallery`."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli.animate.gallery.card import Card, card
+from tmm_cli.animate.gallery.page import page
+from tmm_cli.cli.common import refusing
+from tmm_cli.cli.drawing import by_all_cores
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, say
+from tmm_cli.language import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.results.files import write_whole
+
+DEPTHS = ("*.yaml", "*/*.yaml")  # a folder's problems, and those of the folders in it
+
+
+def gallery(
+    paths: Annotated[list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where index.html is written.")] = Path(
+        "outputs/gallery"
+    ),
+) -> None:
+    """Write a page of many mechanisms, each turning, found by class, group, purpose and property; it needs no network.
+
+    A file that cannot be computed is said and left out: exit code 1.
+    """
+    files = [file for path in paths for file in (_within(path) if path.is_dir() else [path])]
+    if not files:
+        folders = ", ".join(map(str, paths))
+        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
+        raise typer.Exit(BAD_INPUT)
+    made = list(by_all_cores([partial(_made, str(file)) for file in dict.fromkeys(files)]))
+    cards = [one for one in made if isinstance(one, Card)]
+    for one in made:
+        if isinstance(one, str):
+            say(_("error: {error}").format(error=one))
+    if not cards:
+        raise typer.Exit(BAD_INPUT)
+    with refusing():
+        target = out / "index.html"
+        write_whole(target, page(cards).encode())
+        say(_("written: {folder}").format(folder=target))
+    if len(cards) < len(made):
+        say(_("left out: {count}").format(count=len(made) - len(cards)))
+        raise typer.Exit(CHECK_FAILED)
+
+
+def _made(file: str) -> Card | str:
+    """A card, or why there is none."""
+    try:
+        return card(file)
+    except ProblemError as error:
+        return str(error)
+
+
+def _within(folder: Path) -> list[Path]:
+    return [file for depth in DEPTHS for file in sorted(folder.glob(depth))]

@@ -1,0 +1,213 @@
+"""Where Newton's steps begin for many variants at once: each is followed from the first linkage, then along its way.
+
+At the place of the sketch numbers go from those of the first linkage to those of each variant; from there all variants
+go along their driver ranges, up and down at once, predicted by their rates and these by the last two, and closed on a
+tape. A step that corrects too much, or comes to another side of a dead position, is none: it is halved, and a variant
+whose quarter steps lead nowhere either has come to its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.groups.base import Kernel
+from tmm_cli.groups.sequence import link_states
+from tmm_cli.groups.unrolled import Unrolled
+from tmm_cli.linkage import Linkage
+from tmm_cli.tape import TracedArray, record
+from tmm_cli.tolerances import CONVERGED, SAME_STATE
+from tmm_cli.variants.starts import started, unknowns, wants
+from tmm_cli.vectors import Real
+
+CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
+STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
+ROUNDS = 12  # at most from the first linkage to a variant
+AT_NODE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
+SHORTEST = 0.25  # of a step
+EACH_TURN, LEAST_TURN = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
+STEPS_OF_VARIANTS = 2  # of Newton's method, from ways in such steps
+
+Varied = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each (variants, 1)
+
+
+@dataclass(frozen=True)
+class Ways:
+    """Unknowns of variants along their ways from `at` on: x and their rates v (unknowns, variants, 2 n + 1).
+
+    steps: their lengths down and up (variants, 1), 0 where nothing was looked at. gain: by what unknowns grow in a
+    cycle, (unknowns, variants, 1); None where there is none. nan where a variant was not followed.
+    """
+
+    at: float
+    x: Real
+    v: Real
+    steps: tuple[Real, Real]
+    gain: Real | None
+
+    def __call__(self, q: Real) -> list[Real]:
+        """Starts at places (variants, positions)."""
+        unknowns, variants, many = self.x.shape
+        n, (down, up) = many // 2, self.steps
+        q = np.broadcast_to(q, (variants, q.shape[-1])) - self.at
+        whole: Any = 0.0
+        if self.gain is not None:
+            whole = np.floor((q + n * down) / (2 * n * up))
+            q = q - whole * (2 * n * up)
+        step = np.where(q < 0, down, up)
+        share = q / np.where(step > 0, step, 1.0)
+        k = np.clip(np.floor(share + AT_NODE), -n, n - 1)
+        t = share - k
+        flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
+        x, v = (part.reshape(unknowns, -1) for part in (self.x, self.v))
+        a, b = x.take(flat, axis=1), x.take(flat + 1, axis=1)
+        # the step of the piece: the piece from -1 to 0 is one of the way down
+        one, other = (step * v.take(f, axis=1) for f in (flat, flat + 1))
+        found = a + t * (one + t * (3 * (b - a) - 2 * one - other + t * (2 * (a - b) + one + other)))
+        found = np.where(np.abs(t) <= AT_NODE, a, found)  # a node, whatever lies after it
+        if self.gain is not None:
+            found = np.where(whole == 0, found, found + whole * self.gain)
+        return list(found)
+
+
+class Marches:
+    """Of linkages of one kind; kernels: those of the first one, as straight lines; first: its numbers."""
+
+    def __init__(self, varied: Varied, first: Sequence[float], linkage: Linkage, kernels: Sequence[Kernel]) -> None:
+        self.first, self.at, many = np.array(first, dtype=float), linkage.sketch.at, len(first)
+        self.own = [kernel for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear]
+        unknown = [(kernel, column) for kernel in self.own for column in kernel.free]
+        self.x = np.array([_first(kernel, column) for kernel, column in unknown])
+        self.scale = np.array([1.0 if column % 3 == 2 else float(kernel.size) for kernel, column in unknown])
+        self.turning = np.array([column % 3 == 2 for _, column in unknown])
+
+        def stages(*data: TracedArray) -> Mapping[str, Any]:
+            other = varied(data[:many])
+            own = started([_rough(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], STEPS)
+            states = link_states(other, own, data[many], 1, blank=False)  # type: ignore[arg-type]
+            dets = {
+                f"det{k}": at.det
+                for k, at in enumerate(
+                    at for kernel, at in zip(own, states.placements, strict=True)
+                    if isinstance(kernel, Unrolled) and not kernel.linear
+                )
+            }  # fmt: skip
+            return {**unknowns(states), **dets}
+
+        self.program = record(stages, *[1] * (many + 1 + wants(kernels)))
+        _, _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
+
+    def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real, Real]:
+        """Unknowns (unknowns, variants) closed from x; their rates; signs of the determinants (groups, variants).
+
+        signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
+        """
+        data = [*(numbers[:, k : k + 1] for k in range(numbers.shape[1])), q[:, None], *(part[:, None] for part in x)]
+        found = self.program(*data)
+        dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
+        sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
+        lost = np.where(sound, 0.0, np.nan)
+        place, rate = (np.stack([found.part(f"{part}{k}")[:, 0] for k in range(len(x))]) for part in "xv")
+        return place + lost, rate, dets
+
+    def _near(self, found: Real, start: Real) -> Real:
+        """Which variants closed near to their start."""
+        with np.errstate(invalid="ignore"):
+            near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < CORRECTION
+        return near
+
+    def sketched(self, numbers: Real) -> tuple[Real, Real]:
+        """Unknowns of variants (variants, n) at the place of the sketch, and their rates; nan where they are lost."""
+        variants = len(numbers)
+        x = np.repeat(self.x[:, None], variants, axis=1)
+        v = np.full_like(x, np.nan)
+        gone, stride = np.zeros(variants), np.ones(variants)
+        slope = np.zeros_like(x)
+        for _ in range(ROUNDS):
+            share = np.minimum(gone + stride, 1.0)
+            start = x + slope * (share - gone)
+            between = self.first + share[:, None] * (numbers - self.first)
+            found, rates, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
+            good = self._near(found, start) & (gone < 1)
+            moved = np.where(good, share - gone, 1.0)
+            slope = np.where(good, (found - x) / moved, slope)
+            x, v = np.where(good, found, x), np.where(good & (share == 1), rates, v)
+            stride = np.where(good, 2 * stride, stride / 2)
+            gone = np.where(good, share, gone)
+            if np.all(gone == 1):
+                break
+        return np.where(gone == 1, x, np.nan), v
+
+    def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> Ways:
+        """Ways of variants over ranges (variants, 1), in so many steps up and down at most.
+
+        closed: they come round again after a range, which is then laid about the sketch.
+        """
+        if closed:
+            half = (high - low) / 2
+            low, high = self.at - half, self.at + half
+        x, v = self.sketched(numbers)
+        n = -(-count // 2) if closed else count
+        ends = np.stack([low[:, 0], high[:, 0]]) - self.at
+        ends[0], ends[1] = np.minimum(ends[0], 0.0), np.maximum(ends[1], 0.0)
+        x, v = self._marched(numbers, x, v, ends / n, n)
+        gain = None
+        if closed:
+            gain = x[:, :, -1:] - x[:, :, :1]
+            around = np.where(self.turning[:, None, None], 2 * np.pi * np.round(gain / (2 * np.pi)), 0.0)
+            with np.errstate(invalid="ignore"):
+                other = np.any(np.abs(gain - around) > SAME_STATE * self.scale[:, None, None], axis=(0, 2))
+            x[:, other] = np.nan  # a cycle later it is assembled otherwise
+        return Ways(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
+
+    def _marched(self, numbers: Real, x: Real, v: Real, steps: Real, n: int) -> tuple[Real, Real]:
+        """Unknowns and rates (unknowns, variants, 2 n + 1) from those at the sketch on.
+
+        steps: their lengths down and up, (2, variants).
+        """
+        variants = len(numbers)
+        sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
+        both = np.tile(numbers, (len(sides), 1))
+        h = np.concatenate([steps[side] for side in sides])
+        now, rate = (np.tile(part, (1, len(sides))) for part in (x, v))
+        places, rates = (np.full((len(x), len(h), n + 1), np.nan) for _ in range(2))
+        places[:, :, 0], rates[:, :, 0] = now, rate
+        bend = np.zeros_like(now)
+        gone, size = np.zeros(len(h)), np.ones(len(h))  # in steps
+        going = np.isfinite(now[0])
+        while np.any(going):
+            step = h * size
+            start = now + step * (rate + step / 2 * bend)
+            found, new, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
+            good = self._near(found, start) & going
+            with np.errstate(invalid="ignore", divide="ignore"):
+                bend = np.where(good & (step != 0), (new - rate) / step, bend)
+            now, rate = np.where(good, found, now), np.where(good, new, rate)
+            gone = gone + size * good
+            whole = np.flatnonzero(good & (gone == np.floor(gone)))
+            node = gone[whole].astype(np.intp)
+            places[:, whole, node], rates[:, whole, node] = now[:, whole], rate[:, whole]
+            size = np.where(good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * size), size), size / 2)
+            going = going & (gone < n) & (size >= SHORTEST)
+        ways = []
+        for part, there in ((places, x), (rates, v)):
+            side = {k: part[:, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
+            none = np.full((len(x), variants, n), np.nan)
+            down = side[0][:, :, :0:-1] if 0 in side else none
+            ways.append(np.concatenate([down, there[:, :, None], side[1][:, :, 1:] if 1 in side else none], axis=2))
+        return ways[0], ways[1]
+
+
+def _rough(kernel: Kernel) -> Kernel:
+    """A group that is closed as well as starts need be."""
+    return replace(kernel, enough=CONVERGED) if isinstance(kernel, Unrolled) else kernel
+
+
+def _first(kernel: Unrolled, column: int) -> float:
+    """A free unknown of a group at the sketch."""
+    assert kernel.start is not None
+    x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]
+    return float((x.real, x.imag, angle)[column % 3])
