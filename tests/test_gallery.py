@@ -62,7 +62,7 @@ def test_a_card_says_class_groups_purposes_and_properties():
 def test_a_chain_in_space_has_a_card_without_a_drawing():
     arm = card_of("manipulator-open")
     assert arm.turning is None and arm.purposes == ("space",)
-    assert {fact.name: fact.number for fact in arm.facts}["mobility W in space"] == 7
+    assert {fact.number for fact in arm.facts if "mobility" in fact.name} == {7}
 
 
 def value(course, unit, at, loops):
@@ -162,6 +162,8 @@ def transforms(tab, number):
     [
         ("#words", "SLOTTED rpr", ["slotted-lever"]),
         ("#words", "no such word", []),
+        ("#words", "link 3 = thet", ["slotted-lever"]),
+        ("#words", "I(0,1", ["crank-slider", "slotted-lever", "cam-lever", "double-crank"]),
         ("#fact", "swing", ["slotted-lever", "excavator"]),
         ("#fact", "k > 1,5", ["slotted-lever"]),
         ("#fact", "stroke H >= 100", ["crank-slider"]),

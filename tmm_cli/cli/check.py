@@ -22,15 +22,15 @@ def check(
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem again and compare it with expected/<problem>.json beside it; grade examples again too.
+    """Compute every problem again, also in folders of DIR, and compare it with expected/<problem>.json beside it.
 
-    What is expected is a golden run: what an earlier version computed. Every quantity of result.json is compared,
-    relative to its largest value in the cycle; the tolerance is in the expected file. Exit code 1 when something
-    differs.
+    Graded examples are graded again too. What is expected is a golden run: what an earlier version computed. Every
+    quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the expected
+    file. Exit code 1 when something differs.
     """
     tables = [table for path in paths if path.is_dir() for depth in EXAMPLES for table in sorted(path.glob(depth))]
     tasks = [table.with_name("task.yaml") for table in tables if table.with_name("task.yaml").is_file()]
-    plain = [f for path in paths for f in (sorted(path.glob("*.yaml")) if path.is_dir() else [path])]
+    plain = [file for path in paths for file in (_within(path) if path.is_dir() else [path])]
     files = [*(f for f in plain if f not in tasks), *tasks]
     if not files:
         folders = ", ".join(map(str, paths))
@@ -47,3 +47,8 @@ def check(
     differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
     say(_("{count} problems, {differing} differ").format(count=len(outcomes), differing=differing))
     raise typer.Exit(max(outcome.code for outcome in outcomes))
+
+
+def _within(folder: Path) -> list[Path]:
+    """Its problems, and then those of the folders in it."""
+    return [file for depth in ("*.yaml", "*/*.yaml") for file in sorted(folder.glob(depth))]
