@@ -121,5 +121,5 @@ def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
     summary, law = walk(results, ("dynamics", "law-of-motion"))
     assert summary.notes[0] == "the run ends: the time of 3600 s is over before its way is gone"
     assert np.all(np.isfinite(law.columns[2].values))
-    assert {load.link for load in results.loads if load.has_moment} == {"2"}  # positions not come to do not count
+    assert "3" not in {load.link for load in results.loads if load.has_moment}  # a slider, with nan where it is not
     assert any("the run of driver 1 ends before positions" in said for said in warnings(results))
