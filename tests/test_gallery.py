@@ -95,6 +95,13 @@ def layers_of(picture):
     return dict(picture.layers()).items()
 
 
+def test_what_is_asked_for_a_single_position_moves_as_far_as_its_driver_can_go(tmp_path):
+    text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
+    (tmp_path / "x.yaml").write_text(re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M), "utf-8")
+    turning = card(str(tmp_path / "x.yaml")).turning
+    assert turning.bodies and not turning.loops
+
+
 def hostile_folder(folder):
     text = (PROBLEMS / "crank-slider.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^title: .*$", lambda _: f"title: {json.dumps(HOSTILE)}", text, flags=re.M)
