@@ -24,6 +24,8 @@ ROWS = 33
 LACKING: dict[int, str] = {
     14: "structure only: its links move in space",
     18: "the way with the slide in its slot is solved; that the flange stands for the rest of the turn follows from it",
+    20: "of Figs. 23 to 29 only Fig. 24 has a file; the others set one length or angle, which `--set` does",
+    21: "the rods of Figs. 31b (with a spring) and 34 have no files of their own",
     26: "each stroke is a file; wheel and pawl change between them, which no one run shows",
     31: "structure only: its links move in space",
 }

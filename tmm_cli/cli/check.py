@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import progress, refusing
+from tmm_cli.cli.common import problems_in, progress, refusing
 from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
-from tmm_cli.cli.talk import BAD_INPUT, say
+from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 
 EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
@@ -30,12 +30,7 @@ def check(
     """
     tables = [table for path in paths if path.is_dir() for depth in EXAMPLES for table in sorted(path.glob(depth))]
     tasks = [table.with_name("task.yaml") for table in tables if table.with_name("task.yaml").is_file()]
-    plain = [file for path in paths for file in (_within(path) if path.is_dir() else [path])]
-    files = [*(f for f in plain if f not in tasks), *tasks]
-    if not files:
-        folders = ", ".join(map(str, paths))
-        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
-        raise typer.Exit(BAD_INPUT)
+    files = [*(f for f in problems_in(paths, tasks) if f not in tasks), *tasks]
     outcomes = [
         compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)
         for name in progress([str(f) for f in files])
@@ -47,8 +42,3 @@ def check(
     differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
     say(_("{count} problems, {differing} differ").format(count=len(outcomes), differing=differing))
     raise typer.Exit(max(outcome.code for outcome in outcomes))
-
-
-def _within(folder: Path) -> list[Path]:
-    """Its problems, and then those of the folders in it."""
-    return [file for depth in ("*.yaml", "*/*.yaml") for file in sorted(folder.glob(depth))]
