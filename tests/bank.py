@@ -14,9 +14,14 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.note import note
 from tmm_cli.note.blocks import Note
 
-NAMES = [  # chains given by pairs alone have no dimensions: test_spatial
+AT_THE_TOP = [  # chains given by pairs alone have no dimensions: test_spatial
     path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "\nstructure:" not in path.read_text(encoding="utf-8")
 ]
+IN_FOLDERS = [  # by chapters of the sources: folder/name
+    f"{path.parent.name}/{path.stem}" for path in sorted(PROBLEMS.glob("*/*.yaml"))
+]
+EVERY = [*AT_THE_TOP, *IN_FOLDERS]
+NAMES = [*AT_THE_TOP, *IN_FOLDERS[::3]]  # what each whole-bank test goes through: of the small ones in folders a third
 
 
 @cache

@@ -18,7 +18,7 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
-from bank import NAMES, solved
+from bank import EVERY, solved
 from rich.console import Console
 
 from tmm_cli.cli.app import COMMANDS, main
@@ -231,7 +231,7 @@ def test_above_the_limit_of_the_lever_the_run_says_so_and_exits_1(tmp_path):
 
 
 def test_the_lever_of_every_problem_agrees_in_what_it_is_checked_against():
-    for name in NAMES:
+    for name in EVERY:
         file = ROOT / "problems" / f"{name}.yaml"
         assert "Property to see:" in file.read_text(encoding="utf-8")
         expected = json.loads((file.parent / "expected" / f"{file.stem}.json").read_text(encoding="utf-8"))

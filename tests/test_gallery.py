@@ -62,7 +62,7 @@ def test_a_card_says_class_groups_purposes_and_properties():
 def test_a_chain_in_space_has_a_card_without_a_drawing():
     arm = card_of("manipulator-open")
     assert arm.turning is None and arm.purposes == ("space",)
-    assert {fact.name: fact.number for fact in arm.facts}["mobility W in space"] == 7
+    assert {fact.number for fact in arm.facts if "mobility" in fact.name} == {7}
 
 
 def value(course, unit, at, loops):
@@ -93,6 +93,13 @@ def test_bodies_are_in_their_places_between_the_frames(name):
 
 def layers_of(picture):
     return dict(picture.layers()).items()
+
+
+def test_what_is_asked_for_a_single_position_moves_as_far_as_its_driver_can_go(tmp_path):
+    text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
+    (tmp_path / "x.yaml").write_text(re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M), "utf-8")
+    turning = card(str(tmp_path / "x.yaml")).turning
+    assert turning.bodies and not turning.loops
 
 
 def hostile_folder(folder):
@@ -162,6 +169,8 @@ def transforms(tab, number):
     [
         ("#words", "SLOTTED rpr", ["slotted-lever"]),
         ("#words", "no such word", []),
+        ("#words", "link 3 = thet", ["slotted-lever"]),
+        ("#words", "I(0,1", ["crank-slider", "slotted-lever", "cam-lever", "double-crank"]),
         ("#fact", "swing", ["slotted-lever", "excavator"]),
         ("#fact", "k > 1,5", ["slotted-lever"]),
         ("#fact", "stroke H >= 100", ["crank-slider"]),

@@ -20,7 +20,8 @@ SLIDER = (PROBLEMS / "crank-slider-offset.yaml").read_text(encoding="utf-8")
 
 def file_with(tmp_path, block, text=SLIDER):
     path = tmp_path / "shows.yaml"
-    path.write_text(f"{text}shows:\n  it: {block}\n", encoding="utf-8")
+    own = text.split("reference:")[0]  # what the file itself shows stands last
+    path.write_text(f"{own}shows:\n  it: {block}\n", encoding="utf-8")
     return path
 
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from bank import IN_FOLDERS
 from test_commands import tmm
 
 ROOT = Path(__file__).parent.parent
@@ -64,5 +65,5 @@ def test_what_a_page_links_to_is_there(page):
 
 def test_every_problem_of_the_bank_has_its_row():
     rows = (ROOT / "problems/README.md").read_text(encoding="utf-8")
-    for file in (ROOT / "problems").glob("*.yaml"):
-        assert f"({file.name})" in rows, file.name
+    for name in [path.stem for path in (ROOT / "problems").glob("*.yaml")] + IN_FOLDERS:
+        assert f"({name}.yaml)" in rows, name

@@ -120,6 +120,14 @@ def test_over_two_parameters_each_line_is_a_sweep_over_one():
         assert lengths[0] + lengths[3] == pytest.approx(lengths[1] + lengths[2], rel=1e-9)
 
 
+def test_a_double_crank_goes_but_its_output_has_no_swing():
+    # the frame of 100 mm is the shortest link, and 100 + 350 < 300 + 250: the crank turns, and so does link 3
+    turning = sweep("crank-rocker", ["l4=100..400:2", "l1=100..300:2"], ["psi"])
+    (row,) = np.flatnonzero(np.all(turning.points == [100, 300], axis=1))
+    assert turning.state[row] in (WORKS, LIMIT) and np.isnan(turning.values[row, 0])
+    assert turning.why[row] == "there is no working stroke"
+
+
 def test_an_output_that_turns_back_more_often_is_still_told():
     # the toggle of the press passes its straight position twice with a longer crank: four strokes in a turn
     found = sweep("toggle-press", ["OA=35..60:2"], ["H,M_b"])

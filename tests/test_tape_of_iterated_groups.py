@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 from models import CLASS_III, linkage_of
 from test_tape import agree, plainly
 
+from tmm_cli.bench.methods import taped
+from tmm_cli.bench.methods.case import errors
+from tmm_cli.bench.references import reference
 from tmm_cli.groups.elimination import Eliminated, Order
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -36,6 +39,13 @@ def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
     assert batch.program is not None and np.all(batch.closed(q))
     found = batch(q)
     agree({n: found[n] for n in found}, plainly(batch, q), 1e-13)
+
+
+def test_a_press_of_class_iii_is_right_to_the_last_digits():
+    """Against 50 digits, relative to the largest value of the same point or pair; the stages have 1.3e-15."""
+    press = reference("press-class-iii")
+    found = errors(taped.prepare(press.case)(press.q), press.exact)
+    assert all(error < 4e-15 for error in found.values()), found
 
 
 def test_margins_are_those_of_the_whole_jacobian():

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import progress, refusing
+from tmm_cli.cli.common import problems_in, progress, refusing
 from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
-from tmm_cli.cli.talk import BAD_INPUT, say
+from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 
 EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
@@ -22,20 +22,15 @@ def check(
         Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem again and compare it with expected/<problem>.json beside it; grade examples again too.
+    """Compute every problem again, also in folders of DIR, and compare it with expected/<problem>.json beside it.
 
-    What is expected is a golden run: what an earlier version computed. Every quantity of result.json is compared,
-    relative to its largest value in the cycle; the tolerance is in the expected file. Exit code 1 when something
-    differs.
+    Graded examples are graded again too. What is expected is a golden run: what an earlier version computed. Every
+    quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the expected
+    file. Exit code 1 when something differs.
     """
     tables = [table for path in paths if path.is_dir() for depth in EXAMPLES for table in sorted(path.glob(depth))]
     tasks = [table.with_name("task.yaml") for table in tables if table.with_name("task.yaml").is_file()]
-    plain = [f for path in paths for f in (sorted(path.glob("*.yaml")) if path.is_dir() else [path])]
-    files = [*(f for f in plain if f not in tasks), *tasks]
-    if not files:
-        folders = ", ".join(map(str, paths))
-        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
-        raise typer.Exit(BAD_INPUT)
+    files = [*(f for f in problems_in(paths, tasks) if f not in tasks), *tasks]
     outcomes = [
         compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)
         for name in progress([str(f) for f in files])

@@ -112,6 +112,17 @@ def _refuse_one_name(files: Sequence[str]) -> None:
             raise typer.Exit(BAD_INPUT)
 
 
+def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Path]:
+    """These files, of each folder its problems and those of the folders in it, and further ones. Raises typer.Exit."""
+    depths = ("*.yaml", "*/*.yaml")
+    files = [f for p in paths for f in ([f for d in depths for f in sorted(p.glob(d))] if p.is_dir() else [p])]
+    if not files and not further:
+        folders = ", ".join(map(str, paths))
+        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
+        raise typer.Exit(BAD_INPUT)
+    return list(dict.fromkeys([*files, *further]))
+
+
 def progress(files: Sequence[Any]) -> Iterable[Any]:
     """The same, counted by a bar when there are several."""
     if len(files) < 2:

@@ -10,14 +10,12 @@ import typer
 
 from tmm_cli.animate.gallery.card import Card, card
 from tmm_cli.animate.gallery.page import page
-from tmm_cli.cli.common import refusing
+from tmm_cli.cli.common import problems_in, refusing
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import write_whole
-
-DEPTHS = ("*.yaml", "*/*.yaml")  # a folder's problems, and those of the folders in it
 
 
 def gallery(
@@ -30,12 +28,7 @@ def gallery(
 
     A file that cannot be computed is said and left out: exit code 1.
     """
-    files = [file for path in paths for file in (_within(path) if path.is_dir() else [path])]
-    if not files:
-        folders = ", ".join(map(str, paths))
-        say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
-        raise typer.Exit(BAD_INPUT)
-    made = list(by_all_cores([partial(_made, str(file)) for file in dict.fromkeys(files)]))
+    made = list(by_all_cores([partial(_made, str(file)) for file in problems_in(paths)]))
     cards = [one for one in made if isinstance(one, Card)]
     for one in made:
         if isinstance(one, str):
@@ -57,7 +50,3 @@ def _made(file: str) -> Card | str:
         return card(file)
     except ProblemError as error:
         return str(error)
-
-
-def _within(folder: Path) -> list[Path]:
-    return [file for depth in DEPTHS for file in sorted(folder.glob(depth))]

@@ -129,6 +129,8 @@ def _balance(motion: Motion, balance: Balance, k: int, moment: float | None, *, 
         yield Acting(symbol, "reaction", driver.link, 0j, 0j, total, DRIVE)
         return
     own, base = (_first(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base))
+    if own == base:  # of several drivers one may be at rest: what holds it acts in the pole
+        return
     force = (own - base) * (total / abs(own - base) ** 2)
     yield Acting(symbol, "reaction", driver.link, TURNED * own, force, pair=DRIVE)
     if driver.base != FRAME:

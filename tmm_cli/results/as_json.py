@@ -14,6 +14,7 @@ from tmm_cli.analysis.checks import checks
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import ENGLISH, spoken
+from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.results.properties import properties_shown
@@ -40,6 +41,7 @@ from tmm_cli.structure.redundancy import space
 from tmm_cli.synthesis.check import measured_on
 
 FORMAT = 1
+SI = UnitSystem({"length": "m", "angle": "rad"})
 
 
 def _synthesis(results: Results) -> dict[str, Any]:
@@ -57,6 +59,7 @@ PROPERTY = record(
     "a property that the file shows",
     Field("property", TEXT, "in its words", "name"),
     Field("value", NUMBER, "SI"),
+    Field("unit", TEXT, "of the value; empty for a number", lambda one: SI.symbol(one.dimension)),
     Field("expected", optional(NUMBER), "what the file expects; null where it expects nothing"),
 )
 CHECK = record(

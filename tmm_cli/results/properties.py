@@ -138,7 +138,7 @@ def _with_settings(task: Shown, results: Results) -> Results:
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
     stage = stage if results.reactions is None else "forces"
     inputs = replace(results.inputs, linkage=other.linkage, request=other.request, extended=None)
-    return pipeline.solve(inputs, stage, problem=other)
+    return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
 
 
 def _broken(hinge: str, results: Results) -> Results:

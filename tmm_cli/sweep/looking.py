@@ -94,7 +94,7 @@ class _View:
             rows = np.flatnonzero((does == WORKS) & sure)
             if self.turning.strokes and rows.size:
                 low = np.nonzero(turns[rows])[1].reshape(-1, 2)
-                slopes = Closely(self.turning.close.only("slope"), self.columns[rows])
+                slopes = Closely(self.turning.part("slope"), self.columns[rows])
                 ends[rows] = _ends(lambda q: slopes(q)["slope"], self.at(low), self.at(low + 1))
         works = does == WORKS
         peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
@@ -117,7 +117,7 @@ class _View:
             gap = self.found[name]
             rows, at = near_peaks(gap, np.zeros(len(gap)), (does == WORKS)[:, None])
             if rows.size:
-                close = Closely(self.turning.close.only(name, f"slack{k}"), self.columns[rows])
+                close = Closely(self.turning.part(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
                 place, value = least(_negative(close, name), q - self.step, q + self.step)
                 does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = STOPS
@@ -131,7 +131,7 @@ class _View:
         level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
         rows, at = near_peaks(curve, level, works[:, None])
         if rows.size:
-            close = Closely(self.turning.close.only(name), self.columns[rows])
+            close = Closely(self.turning.part(name), self.columns[rows])
             before, here, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
             peaks = peaks_between(lambda q: close(q)[name], self.at(at), self.step, (before, here, after))
             np.maximum.at(top, rows, peaks)
@@ -162,7 +162,7 @@ def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant)
     """Of variants that work, as arrays (variants, 1)."""
     if turning.output is None:
         return None
-    curve = _Output(turning, Closely(turning.close.only("place"), columns))
+    curve = _Output(turning, Closely(turning.part("place"), columns))
     if not turning.strokes:
         return Strokes(turning.output, curve.kind, (), "")
     return named_strokes(turning.linkage, curve, looked.ends, resisted(varied.linkage, turning.output))

@@ -124,7 +124,10 @@ class Mechanisms:
         for row in otherwise[DOUBTS:]:
             found.state[row] = REFUSED
             found.why[row] = _("one of very many that are built otherwise than the file's own")
-        self._one_by_one(points, [*unsure[:DOUBTS], *otherwise[:DOUBTS]], found)
+        self._one_by_one(points, otherwise[:DOUBTS], found)
+        for row in unsure[:DOUBTS]:
+            state, found.why[row], found.values[row] = self._alone(points[row])
+            found.state[row] = found.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
         return found
 
     def _one_by_one(self, points: Real, rows: Iterable[int], found: Found) -> None:

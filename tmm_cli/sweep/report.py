@@ -74,10 +74,12 @@ def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
 
 def _why(text: str, state: int) -> str:
     """For people."""
-    if state != LIMIT:
-        return text
     kind, _space, thing = text.partition(" ")
-    return {"pressure": _("pressure angle of link {link}"), "slot": _("slot of pair {link}")}[kind].format(link=thing)
+    if state == LIMIT and kind == "pressure":
+        return _("pressure angle of link {link}").format(link=thing)
+    if state == LIMIT and kind == "slot":
+        return _("slot of pair {link}").format(link=thing)
+    return text
 
 
 def _kind(one: Any) -> str:

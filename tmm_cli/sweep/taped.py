@@ -79,6 +79,13 @@ class Turning:
             lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 5), 3
         )  # fmt: skip
         self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
+        self._parts: dict[tuple[str, ...], Program] = {}
+
+    def part(self, *names: str) -> Program:
+        """Some of the curves at places of each variant; made once."""
+        if names not in self._parts:
+            self._parts[names] = self.close.only(*names)
+        return self._parts[names]
 
     @cached_property
     def strokes(self) -> int:

@@ -41,19 +41,17 @@ class Block(Strict):
 
 
 def one_of(
-    shape: Block, sets: Sequence[tuple[str, ...]], what: str, others: Sequence[str] = ()
+    shape: Block, sets: Sequence[tuple[str, ...]], refusal: str, others: Sequence[str] = ()
 ) -> tuple[str, ...]:  # fmt: skip
-    """Which of these sets of keys is given, and none else of them, nor of others. Raises ProblemError, which says that
-    they do not determine `what`.
-    """
+    """Which of these sets of keys is given, and none else of them, nor of others. Raises ProblemError: the refusal."""
     keys = dict.fromkeys([*(key for one in sets for key in one), *others])
     here = tuple(key for key in keys if getattr(shape, key) is not None)
     for one in sets:
         if set(one) == set(here):
             return one
     raise ProblemError(
-        _("these keys do not determine {what}").format(what=what), found=", ".join(here) or "none of them",
-        allowed="; or ".join(" and ".join(one) or "nothing" for one in sets), key=True,
+        refusal, found=", ".join(here) or _("none of them"),
+        allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets), key=True,
     )  # fmt: skip
 
 

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.tape.program import Outputs, Program
+from tmm_cli.tape.outputs import Outputs
+from tmm_cli.tape.program import Program
 from tmm_cli.tape.terms import Tape
 from tmm_cli.tape.traced_array import DependsOnData, TracedArray
 

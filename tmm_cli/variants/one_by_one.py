@@ -1,7 +1,7 @@
 """Variants of a linkage one after another, each as a file of its own: for whatever no tape can be written of.
 
-Groups that are found by iteration are followed beside those of the variant nearest to it, or else anew: that takes ten
-or a hundred times as long as by a tape.
+Groups that are found by iteration are followed beside those of the variant nearest to it, or else anew: that takes a
+hundred or a thousand times as long as by a tape.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
-from tmm_cli.results.properties import properties_shown
+from tmm_cli.results.properties import MET, properties_shown
 from tmm_cli.results.table import with_unit
 from tmm_cli.structure.assur import ROMAN
 
@@ -79,7 +79,9 @@ def card(file: str) -> Card:
 
 def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
     problem = results.problem
-    values = [(_("mobility W in space"), float(results.chain.mobility), NUMBER), *_shown(results)]
+    values = list(_shown(results))
+    if all(task.of != "W" for task in problem.shows.values()):
+        values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
     about = problem.description or remark(file)
     facts = tuple(_told(values, problem.units))
     return Card(
@@ -129,7 +131,8 @@ def _stroke(linkage: Linkage, found: Strokes | Travel) -> str:
 
 
 def _shown(results: Results | ChainResults) -> Iterable[Value]:
-    return [(one.name, one.value, one.dimension) for one in properties_shown(results)]
+    for one in properties_shown(results):
+        yield one.name, 0.0 if abs(one.value) <= MET else one.value, one.dimension
 
 
 def _told(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:

@@ -128,7 +128,8 @@ function plain(text) {
   return text.toLowerCase().normalize("NFD").replace(/\p{M}/gu, "").replace(/\u2212/g, "-").replace(/\s+/g, " ").trim();
 }
 
-const parts = (text) => text.split(" ").filter(Boolean);
+const parts = (text) => text.split(" ").filter(Boolean).map((word) => word.replace(/[\\^$.*+?()[\]{}|/]/g, "\\$&"));
+const LETTER = "[\\p{L}\\p{N}_]";
 const COMPARED = {"<": (a, b) => a < b, ">": (a, b) => a > b, "<=": (a, b) => a <= b, ">=": (a, b) => a >= b,
   "=": (a, b) => Math.abs(a - b) <= 5e-3 * Math.abs(b)};
 
@@ -139,24 +140,28 @@ function factSought() {
   const words = compared ? compared[1] : text;
   if (!words) return () => true;
   // a word of three letters or less is whole, or k would be found in "kinematic"
-  const has = parts(words).map((word) => word.replace(/[^\p{L}\p{N}_]/gu, "\\$&")).map((word) =>
-    new RegExp(word.length > 3 ? word : `(?<![\\p{L}\\p{N}_])${word}(?![\\p{L}\\p{N}_])`, "u"));
+  const has = parts(words).map((word) => new RegExp(word.length > 3 ? word : `(?<!${LETTER})${word}(?!${LETTER})`, "u"));
   const number = compared && Number(compared[3].replace(",", "."));
   return (card) => card.facts.some((fact) => has.every((word) => word.test(fact.name)) &&
     (!compared || COMPARED[compared[2]](fact.number, number)));
 }
 
+const tags = document.querySelectorAll("[data-field]");
+
 function search() {
-  const words = parts(plain(byId("words").value)), fact = factSought();
+  // a number is whole: M1 is not M15
+  const words = parts(plain(byId("words").value)).map((word) => new RegExp(/\d$/.test(word) ? `${word}(?!\\d)` : word, "u"));
+  const fact = factSought();
   const number = byId("number").value, group = byId("group").value, purpose = byId("purpose").value;
   let shown = 0;
   for (const card of cards) {
     const {number: own, groups, purposes} = card.data;
-    const found = words.every((word) => card.text.includes(word)) && fact(card) && (!number || own === number) &&
+    const found = words.every((word) => word.test(card.text)) && fact(card) && (!number || own === number) &&
       (!group || groups.includes(group)) && (!purpose || purposes.includes(purpose));
     card.element.hidden = !found;
     shown += found;
   }
+  for (const tag of tags) tag.setAttribute("aria-pressed", byId(tag.dataset.field).value === tag.dataset.value);
   byId("none").hidden = shown > 0;
   byId("told").textContent = byId("told").dataset.told.replace("#", shown).replace("#", cards.length);
 }

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.kinematics.strokes import Strokes
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results, at_positions
+from tmm_cli.kinematics.strokes import Strokes, output_run
 from tmm_cli.language import N_
 
 QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
+STILL, DWELL = 0.01, 60  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
 
 PURPOSES: Final = {
     "slides": N_("output slides to and fro"),
@@ -55,9 +58,21 @@ def _purposes(results: Results) -> Iterable[str]:
             yield "quick"
         if len(one.strokes) > 2:
             yield "strokes"
-        if any(stroke.rest for stroke in one.strokes):
+        if any(stroke.rest for stroke in one.strokes) or _dwells(results, one.link):
             yield "dwell"
     if len(outputs) > 1:
         yield "outputs"
     if len(linkage.drivers) > 1:
         yield "drivers"
+
+
+def _dwells(results: Results, link: str) -> bool:
+    """Whether an output hardly moves at an end of its way, while the crank goes on."""
+    motion = at_positions(results, results.closely(360 * results.turns + 1)[:-1])
+    run = output_run(motion, link)[0]
+    run = np.unwrap(run) if results.linkage.output_swings(link) else run
+    for near in (run - np.min(run), np.max(run) - run):
+        still = np.flatnonzero(np.r_[near, near] > STILL * np.ptp(run))  # twice: it may go over the seam
+        if np.max(np.diff(still), initial=0) > DWELL:
+            return True
+    return False

@@ -13,6 +13,7 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.animate.bodies import Body, Picture
 from tmm_cli.animate.content import SECONDS, picture_of, view
 from tmm_cli.draw.formats.svg import element
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import Real
 
@@ -39,16 +40,10 @@ class Turning:
 
 
 def turning(results: Results) -> Turning:
-    """Results that have a motion, as it is shown: over the cycle, or over the way that is asked for."""
+    """Of results with kinematics."""
     turns = results.turns or 1
-    motion = at_positions(results, results.closely(min(FRAMES * turns, MOST_FRAMES) + 1), 0)
-    moves = motion.moving
-    if not moves.all() and np.any(moves):
-        motion = at_positions(results, motion.q[moves], 0)
-    still = np.ptp(motion.q) == 0 or not np.any(moves)
-    if still:  # a single position, or none that is reached on the way
-        assert results.motion is not None
-        motion = at_positions(results, results.motion.q[results.motion.moving][:1], 0)
+    motion = _motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
+    still = len(motion.q) < 2
     picture = picture_of(results, motion)
     drawn = list(picture.layers())
     moving = [] if still else [name for name in dict.fromkeys(name for name, __ in drawn) if name != FRAME]
@@ -58,6 +53,17 @@ def turning(results: Results) -> Turning:
     )
     bodies = tuple(_courses(picture.bodies[name]) for name in moving)
     return Turning(svg, view(picture), bodies, results.turns > 0, SECONDS * turns)
+
+
+def _motion(results: Results, count: int) -> Motion:
+    """Where it moves over what is asked for, or else as far as its driver can go; or the sketch alone."""
+    reach = results.driver_range
+    assert reach is not None
+    for q in (results.closely(count), np.linspace(reach.start, reach.end, count)):
+        motion = at_positions(results, q, 0)
+        if np.count_nonzero(motion.moving) > 1 and np.ptp(q) > 0:
+            return motion if motion.moving.all() else at_positions(results, q[motion.moving], 0)
+    return at_positions(results, np.array([results.linkage.sketch.at]), 0)
 
 
 def _attributes(picture: Picture, name: str, moving: list[str]) -> str:

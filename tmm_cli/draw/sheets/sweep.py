@@ -21,6 +21,7 @@ from tmm_cli.quantities import ANGLE
 from tmm_cli.sweep.grid import Axis
 from tmm_cli.sweep.quantities import Shown
 from tmm_cli.sweep.record import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
+from tmm_cli.vectors import Real
 
 PANELS = 4  # of a sheet
 LEVELS = 12  # lines of equal value at most
@@ -102,10 +103,10 @@ def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     panel.numbers_across(0.2 * ROW)
     sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_words(across), PLAIN, ha="center")
     sheet.text(complex(low.real, high.imag - ROW / 2), _axis_words(up), PLAIN)
-    steps = [max(1, -(-len(axis.values) // NODES)) for axis in sweep.axes]
-    values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[:: steps[0], :: steps[1]]
-    state = sweep.state.reshape(sweep.shape)[:: steps[0], :: steps[1]]
-    lines = _Grid(panel, sweep, steps)
+    columns, rows = (_drawn(len(axis.values)) for axis in sweep.axes)
+    values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
+    state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
+    lines = _Grid(panel, sweep, (columns, rows))
     drawn = [
         (fails, name) for fails, name in ((True, _("no such mechanism")), (False, _("beyond a limit")))
         if np.any((state >= STOPS) if fails else (state == LIMIT))
@@ -117,12 +118,17 @@ def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     return sheet.finish()
 
 
-class _Grid:
-    """Nodes of a sweep on a panel. steps: every how many of them are drawn."""
+def _drawn(count: int) -> Real:
+    """Which of so many nodes are drawn, the ends among them."""
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, NODES))).astype(int))
 
-    def __init__(self, panel: Panel, sweep: Swept, steps: Sequence[int]) -> None:
+
+class _Grid:
+    """Nodes of a sweep on a panel. drawn: which of each parameter."""
+
+    def __init__(self, panel: Panel, sweep: Swept, drawn: Sequence[Real]) -> None:
         self.panel = panel
-        axes = [axis.values[::step] for axis, step in zip(sweep.axes, steps, strict=True)]
+        axes = [axis.values[nodes] for axis, nodes in zip(sweep.axes, drawn, strict=True)]
         self.x, self.y = axes
         self.marks: dict[tuple[int, int], list[float]] = {}  # by the parameter and the line along which they lie
         for mark in sweep.marks:

@@ -86,7 +86,7 @@ def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) 
     if shape.pivots_within is None:
         return None
     if count != 4 or len(sides) == 2:
-        why = f"{count} positions" if count != 4 else "both links are given"
+        why = _("{count} positions").format(count=count) if count != 4 else _("both links are given")
         raise ProblemError(
             _("a box is for pivots that are free"), path=("pivots_within",), found=why,
             allowed=_("four positions, and AB or DC free"), key=True,
@@ -99,8 +99,8 @@ def _side(shape: Shape, values: ValueReader, name: str, count: int) -> Side | No
     """What is given of a dyad, which must be just what the count of positions needs."""
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
-    what = _("{link} with {count} positions").format(link=name, count=count)
-    given = one_of(shape, sets, what, (pivot, pin, name, turn, near))
+    refusal = _("these keys do not determine {link} with {count} positions").format(link=name, count=count)
+    given = one_of(shape, sets, refusal, (pivot, pin, name, turn, near))
     if not given:
         return None
     found: dict[str, Any] = {

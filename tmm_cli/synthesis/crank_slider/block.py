@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED
@@ -39,5 +40,5 @@ class Shape(Block):
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
     for sets in (STROKES, PAIRS):
-        one_of(shape, sets, "a crank-slider")
+        one_of(shape, sets, _("these keys do not determine a crank-slider"))
     return Task(**numbers(shape, values, WANTS))

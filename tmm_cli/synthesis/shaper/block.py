@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
@@ -35,5 +36,5 @@ class Shape(Block):
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
     for ways in (FRAMES, RODS):
-        one_of(shape, [(key,) for key in ways], "a shaper")
+        one_of(shape, [(key,) for key in ways], _("these keys do not determine a shaper"))
     return Task(**numbers(shape, values, {"stroke": LENGTH, "k": NUMBER, **FRAMES, **RODS}))
