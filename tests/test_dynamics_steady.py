@@ -25,6 +25,9 @@ from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
+from tmm_cli.library import problem_of
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.reader import read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -183,8 +186,13 @@ def test_a_motor_that_gives_less_than_the_mean_of_the_loads_cannot_carry_them():
 
 
 def test_a_machine_that_its_load_pushes_beyond_its_motor_runs_away():
-    with pytest.raises(RunawayError):
+    with pytest.raises(RunawayError) as away:
         with_motor(machine(load=300.0), 0.0, Kloss.rated(12.0, 11.6, 60.0, 1.3))
+    assert away.value.pushing == pytest.approx(150.0) and away.value.most == pytest.approx(78.0)
+    assert away.value.place == pytest.approx(np.pi / 2, abs=0.1)  # of the largest push
+    with pytest.raises(RunawayError) as late:  # in the mean it could be held
+        with_motor(machine(load=300.0, until=1.5), 0.0, Kloss.rated(12.0, 11.6, 60.0, 1.3))
+    assert late.value.pushing == pytest.approx(300 * 1.5 / TURN) and late.value.speed > 24.0
     held = with_motor(machine(load=60.0), 5.0, Kloss.rated(12.0, 11.6, 60.0, 2.2))
     assert held.driving.total == pytest.approx(-60 * np.pi) and np.min(held.speed(np.linspace(0, 6, 50))) > 11.5
 
@@ -262,3 +270,30 @@ def test_tangents_touch_where_the_speed_does_not_change(name):
     for tangent in found.tangents:
         beside = found.law.acceleration(tangent.x + np.array([-1e-6, 0.0, 1e-6]))
         assert abs(beside[1]) < 1e-7 * np.min(np.abs(beside[::2])) and beside[0] * beside[2] < 0
+
+
+def test_the_flywheel_takes_what_the_links_leave_of_the_driving_moment():
+    results = solved("shaper-motor")
+    motion, running = results.motion, results.running
+    driving = running.sense * running.driving(motion.q)
+    taken = running.steady.law.flywheel * motion.acceleration
+    assert results.reactions.balance.moment + taken == pytest.approx(driving, rel=1e-9)
+
+
+def test_links_too_heavy_for_their_motor_are_refused_and_nothing_else():
+    text = (PROBLEMS / "shaper-motor.yaml").read_text().replace("5: {mass: 52 kg", "5: {mass: 5e19 kg")
+    problem = problem_of(read_text(text, "shaper.yaml"))
+    with np.errstate(all="raise"), pytest.raises(ProblemError, match="no flywheel keeps this fluctuation"):
+        solve(problem)
+
+
+@pytest.mark.parametrize(
+    ("flywheel", "how"), [("", "without any flywheel"), (", inertia: 9", "with the flywheel that is given")]
+)
+def test_a_fluctuation_that_is_kept_already_is_told_with_what_keeps_it(flywheel, how):
+    text = (PROBLEMS / "four-stroke-engine.yaml").read_text()
+    text = text.replace(
+        "delta: 1/80, flywheel: {shape: rim", f"mean speed: 6000 rpm, delta: 0.9, flywheel: {{shape: rim{flywheel}"
+    )
+    with pytest.raises(ProblemError, match=f"the fluctuation is smaller than this {how}"):
+        solve(problem_of(read_text(text, "engine.yaml")))

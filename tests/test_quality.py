@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
 from models import SI, results_of
 
+from tmm_cli import solve
 from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.library import problem_of
+from tmm_cli.problem.reader import read_text
+from tmm_cli.results.reports import walk
 
+PROBLEMS = Path(__file__).parents[1] / "problems"
 DIGITS = 1e-12  # rad (m for a cylinder)
 
 
@@ -262,3 +268,15 @@ def test_strokes_of_a_class_iii_group():
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), stroke.start)
         root = mp.findroot(lambda *v, f=stops: (*equations(*v), f(*v)), tuple(map(mp.mpf, start)))
         near([stroke.start], [root[3]])
+
+
+def test_strokes_of_a_four_stroke_engine_are_counted_from_position_0_on():
+    text = (PROBLEMS / "four-stroke-engine.yaml").read_text()
+    for start, first in ((0, 0.0), (90, 0.0), (200, 180.0)):
+        results = solve(problem_of(read_text(text.replace("from: 0", f"from: {start}"), "engine.yaml")))
+        (table,) = walk(results, ("quality",))
+        rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
+        assert [rows[f"stroke {n} starts at"] for n in (1, 2, 3, 4)] == pytest.approx(
+            np.mod(first + 180 * np.arange(4), 720), abs=1e-6
+        )
+        assert not any("working" in name or "idle" in name for name in rows)

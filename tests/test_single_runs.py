@@ -14,6 +14,8 @@ from tmm_cli.errors import StandstillError
 from tmm_cli.library import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.results.reports import walk
+from tmm_cli.results.warnings import warnings
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -110,3 +112,14 @@ def test_a_run_of_very_many_turns_is_refused():
     with pytest.raises(ProblemError) as refused:
         problem_of(read_text(text, "press.yaml"))
     assert str(refused.value).split("\n", 1)[1] == "  found:   -90000\n  allowed: within 20 turns of the x axis"
+
+
+def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
+    slow = "{run: {from: 90, to: 100, speed: 1e-9, drive: 1e-12}, flywheel: {inertia: 1e6}}"
+    text = (PROBLEMS / "crank-slider.yaml").read_text() + f"\ndynamics: {slow}\n"
+    results = solve(problem_of(read_text(text, "slow.yaml")))
+    summary, law = walk(results, ("dynamics", "law-of-motion"))
+    assert summary.notes[0] == "the run ends: the time of 3600 s is over before its way is gone"
+    assert np.all(np.isfinite(law.columns[2].values))
+    assert "3" not in {load.link for load in results.loads if load.has_moment}  # a slider, with nan where it is not
+    assert any("the run of driver 1 ends before positions" in said for said in warnings(results))

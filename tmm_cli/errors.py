@@ -6,6 +6,7 @@ A stage says what is wrong in numbers and names; the words are put where files a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -162,15 +163,27 @@ class StandstillError(LinkageError):
 
 
 class WeakMotorError(LinkageError):
-    """A motor gives `most` (N m, or N) at its best, and the loads of a cycle want `wanted` in the mean."""
+    """A motor gives `most` (N m, or N) at its best, and the loads of a cycle want `wanted` in the mean.
 
-    def __init__(self, wanted: float, most: float) -> None:
+    place: where on the way of the cycle (rad) they want most.
+    """
+
+    def __init__(self, wanted: float, most: float, place: float) -> None:
         super().__init__(wanted, most)
-        self.wanted, self.most = wanted, most
+        self.wanted, self.most, self.place = wanted, most, place
 
 
 class RunawayError(LinkageError):
-    """Loads push a machine on faster than its motor holds it."""
+    """Loads push a machine on, with `pushing` (N m, or N) in the mean, and its motor holds `most` at its best.
+
+    place: where on the way of its cycle (rad) they push most, or the machine is quickest, as far as it was followed;
+    speed: there (rad/s, or m/s), nan where it was not: `pushing` is no less than `most` then. idle: speed at which the
+    motor neither drives nor holds.
+    """
+
+    def __init__(self, pushing: float, most: float, idle: float, place: float, speed: float = nan) -> None:
+        super().__init__(pushing, most)
+        self.pushing, self.most, self.idle, self.place, self.speed = pushing, most, idle, place, speed
 
 
 class NoFlywheelError(LinkageError):

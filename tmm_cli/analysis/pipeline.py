@@ -141,6 +141,12 @@ class Results:
         reach = self.driver_range
         return reach.turns if reach is not None and reach.full and self.linkage.driver.kind == "turn" else 0
 
+    @property
+    def counts_strokes(self) -> bool:
+        """Whether strokes are counted from position 0 on: those of a longer cycle of loads, as of a four-stroke engine,
+        do not work by turns."""
+        return self.linkage.turns > 1 and not any(load.working_stroke_only for load in self.linkage.loads)
+
     def closely(self, count: int) -> Real:
         """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
         driver = self.linkage.driver

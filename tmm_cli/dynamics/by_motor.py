@@ -77,10 +77,13 @@ class Cycle:
 
     @classmethod
     def of(cls, machine: Reduced, motor: Motor) -> Cycle:
-        """Raises WeakMotorError."""
+        """Raises WeakMotorError, RunawayError."""
         wanted = -machine.work_of_cycle / machine.length
+        x = machine.moment.places()
         if wanted >= motor.most:
-            raise WeakMotorError(wanted, motor.most)
+            raise WeakMotorError(wanted, motor.most, float(x[np.argmin(machine.moment(x))]))
+        if -wanted >= motor.holds:
+            raise RunawayError(-wanted, motor.holds, motor.idle, float(x[np.argmax(machine.moment(x))]))
         edges = machine.moment.edges.tolist()
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
@@ -109,9 +112,12 @@ class Cycle:
 
     def _unsteady(self, values: Real) -> LinkageError:
         """A machine that runs away, or comes to rest where its slip is largest."""
+        x, slips = nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
-            return RunawayError()
-        return StandstillError(float(nodes(self._edges)[np.argmax(values.T)]))
+            pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
+            speed = self.motor.idle * (1 - float(slips[quickest]))
+            return RunawayError(pushing, self.motor.holds, self.motor.idle, float(x[quickest]), speed)
+        return StandstillError(float(x[np.argmax(slips)]))
 
     @property
     def _edges(self) -> Real:
@@ -146,9 +152,12 @@ class Cycle:
         for _ in range(STEPS):
             speed = idle * (1 - values)
             driving, by_slip = self.motor.at_slip(values)
-            under = inertia * speed
-            rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
-            by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
+            with np.errstate(all="ignore"):  # at rest the rate is not finite, and there is no solution
+                under = inertia * speed
+                rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
+                by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
+            if not np.all(np.isfinite(by_rate)):
+                return None
             right[:, 0] = begin - sums @ rate - values
             found: Real = np.linalg.solve(np.eye(NODES) - sums * by_rate, right)
             step, found[:, 0] = found[:, 0].copy(), values + found[:, 0]

@@ -28,6 +28,11 @@ class Motor(Protocol):
     def most(self) -> float:
         """Its largest moment from that speed down to rest, N m, or N."""
 
+    @property
+    @abstractmethod
+    def holds(self) -> float:
+        """The largest moment with which it holds a machine that is pushed beyond that speed, N m, or N."""
+
     @abstractmethod
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
         """N m (N of a slider), and its slope by the slip."""
@@ -51,6 +56,10 @@ class Linear(Motor):
     @property
     def most(self) -> float:
         return self.stall
+
+    @property
+    def holds(self) -> float:
+        return float("inf")
 
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
         return self.stall * slip, self.stall + 0.0 * slip
@@ -79,6 +88,10 @@ class Kloss(Motor):
 
     @property
     def most(self) -> float:
+        return self.breakdown
+
+    @property
+    def holds(self) -> float:
         return self.breakdown
 
     def at_slip(self, slip: Real) -> tuple[Real, Real]:

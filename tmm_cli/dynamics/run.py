@@ -22,6 +22,7 @@ from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import RunTask
 from tmm_cli.errors import StandstillError
 from tmm_cli.roots import roots
+from tmm_cli.tolerances import SEAM
 from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
@@ -59,6 +60,9 @@ class Run:
     def at(self, way: Real) -> tuple[Real, Real]:
         """Time (s) and speed when the driver has come so far; nan where it does not."""
         way = np.asarray(way, float)
+        if self.steps:
+            last = float(self.steps[-1](self.steps[-1].ts[-1])[0])
+            way = np.where((way > last) & (way < last + SEAM), last, way)
         time, speed = np.full(way.shape, np.nan), np.full(way.shape, np.nan)
         for step in self.steps:
             low, high = step.ts[0], step.ts[-1]

@@ -24,8 +24,9 @@ class Applied:
 
     @property
     def has_force(self) -> bool:
-        return bool(np.any(self.force != 0))
+        """Somewhere; positions that are not come to, with nan, do not count."""
+        return bool(np.any(np.abs(self.force) > 0))
 
     @property
     def has_moment(self) -> bool:
-        return bool(np.any(self.moment != 0))
+        return bool(np.any(np.abs(self.moment) > 0))

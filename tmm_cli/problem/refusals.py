@@ -32,7 +32,7 @@ from tmm_cli.errors import (
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.record import Problem
-from tmm_cli.quantities import ANGLE, LENGTH, MOMENT
+from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT
 from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
@@ -60,6 +60,9 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
         if isinstance(value, complex):
             return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
         return f"{units.from_si(value, ANGLE):.6g} {units.spelt(ANGLE)}"
+
+    def turning(speed: float) -> str:
+        return f"{units.from_si(speed, ANGULAR_SPEED):.4g} {units.spelt(ANGULAR_SPEED)}"
 
     crank = problem.linkage.driver.kind == "turn"
     at = units.from_si(problem.linkage.sketch.at, ANGLE if crank else LENGTH)
@@ -170,17 +173,32 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 found=_("at {place} of the driver's way").format(place=shown(place_of_rest)),
                 allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
             )  # fmt: skip
-        case RunawayError():
+        case RunawayError(pushing=pushing, most=most) as away:
+            unit, held = units.spelt(MOMENT), f"{units.from_si(most, MOMENT):.4g}"
+            found = _(
+                "{moment} {unit} in the mean push the driver, most at {place} of its way; its motor holds {most} "
+                "{unit} at its best"
+            )
+            wanted = _("a motor that holds more, a larger ratio, smaller loads")
+            if not math.isnan(away.speed):
+                found = _(
+                    "{speed} at {place} of the driver's way and still quicker, without load {idle}; {moment} "
+                    "{unit} in the mean push the driver, its motor holds {most} {unit} at its best"
+                )
+                wanted = _("a heavier flywheel, a stronger motor, smaller loads")
             return ProblemError(
                 _("the loads push the machine on, and its motor does not hold it: it runs away"),
-                path=("dynamics", "motor"), key=True, allowed=_("a stronger motor, a heavier flywheel, smaller loads"),
+                path=("dynamics", "motor"), key=True, allowed=wanted,
+                found=found.format(moment=f"{units.from_si(pushing, MOMENT):.4g}", unit=unit, most=held,
+                                   place=shown(away.place), speed=turning(away.speed), idle=turning(away.idle)),
             )  # fmt: skip
-        case WeakMotorError(wanted=mean, most=most):
+        case WeakMotorError(wanted=mean, most=most, place=hardest):
             unit = units.spelt(MOMENT)
             return ProblemError(
                 _("the motor cannot carry the load: over the cycle this wants more than it gives at its best"),
                 path=("dynamics", "motor"), key=True,
-                found=_("{moment} {unit} on the driver").format(moment=f"{units.from_si(most, MOMENT):.4g}", unit=unit),
+                found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way")
+                .format(moment=f"{units.from_si(most, MOMENT):.4g}", unit=unit, place=shown(hardest)),
                 allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio")
                 .format(moment=f"{units.from_si(mean, MOMENT):.4g}", unit=unit),
             )  # fmt: skip
@@ -190,8 +208,11 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                     _("no flywheel keeps this fluctuation with this motor"), path=("dynamics", "delta"),
                     found=f"{delta:.6g}", allowed=_("a larger delta"),
                 )  # fmt: skip
+            text = _("the fluctuation is smaller than this without any flywheel")
+            if problem.dynamics is not None and problem.dynamics.flywheel:
+                text = _("the fluctuation is smaller than this with the flywheel that is given")
             return ProblemError(
-                _("the fluctuation is smaller than this without any flywheel"), path=("dynamics", "delta"),
+                text, path=("dynamics", "delta"),
                 found=f"{delta:.6g}", allowed=_("less than {own}, or no delta").format(own=f"{own:.4g}"),
             )  # fmt: skip
         case TableBeyondCycleError(path=path, argument=argument, cycle=cycle):

@@ -146,10 +146,16 @@ def _unreached(results: Results, motion: Motion) -> Iterable[str]:
     stopped = np.flatnonzero(~np.isfinite(motion.rate))
     if stopped.size:
         said = [str(results.numbers[k]) for k in stopped[:FEW]] + ["..."] * (stopped.size > FEW)
-        yield _(
+        text = _(
             "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
             "it does not come to"
-        ).format(link=results.linkage.driver.link, numbers=", ".join(said))
+        )
+        if results.single is not None and results.single.run.ending != "standstill":
+            text = _(
+                "the run of driver {link} ends before positions {numbers}: no velocities and forces there, as it does "
+                "not come to them"
+            )
+        yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
 
 
 def _near(results: Results, motion: Motion) -> Iterable[str]:

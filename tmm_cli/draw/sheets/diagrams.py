@@ -125,9 +125,8 @@ def _strokes(results: Results) -> list[tuple[float, float, bool]]:
 
 
 def _named(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
-    """What the strokes are called. Those of a longer cycle of loads, as of a four-stroke engine, do not work by turns:
-    they are counted from position 0 on."""
-    if results.linkage.turns == 1 or any(load.working_stroke_only for load in results.linkage.loads):
+    """What the strokes are called."""
+    if not results.counts_strokes:
         return [_("working stroke") if working else _("idle stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
     if len(strokes) % 2:  # position 0 is within a stroke, and this is its other part

@@ -70,7 +70,7 @@ def tables(results: Results) -> Iterable[Table]:
     columns += _balance(results)
     if not bool(np.all(motion.moving & ~results.locked)):
         columns.append(Column(N_("state"), states(results)))
-    yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage),))
+    yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage), *_beside_flywheel(results)))
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
@@ -109,6 +109,19 @@ def _balance(results: Results) -> Iterable[Column]:
     yield Column(Phrase("reduced to {link}, force plan", link=first.link), power(motion, reactions), size)
     yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
     yield difference
+
+
+def _beside_flywheel(results: Results) -> Iterable[str]:
+    """Where a law of motion is computed, what balances the driver is not what drives the machine."""
+    if results.reactions is None or not any((
+        results.steady is not None and results.steady.steady.law.flywheel,
+        results.single is not None and results.single.task.flywheel,
+    )):  # fmt: skip
+        return
+    if results.linkage.driver.kind == "turn":
+        yield _("The flywheel is not a link: M_b moves the links alone, and what drives is M_d = M_b + J_f epsilon.")
+    else:
+        yield _("The flywheel is not a link: F_b moves the links alone, and what drives is F_d = F_b + m_f a.")
 
 
 def states(results: Results) -> list[str]:

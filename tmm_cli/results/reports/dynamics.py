@@ -51,7 +51,10 @@ def tables(results: Results) -> Iterable[Table]:
 def _driving(steady: Steady) -> Iterable[Row]:
     low, high = steady.speeds
     yield _("work of the loads in a cycle, J"), steady.machine.work_of_cycle, NUMBER
-    yield _("mean driving moment"), steady.moment, MOMENT
+    if steady.moment < 0 and steady.task.motor is None:
+        yield _("mean moment of resistance"), -steady.moment, MOMENT
+    else:
+        yield _("mean driving moment"), steady.moment, MOMENT
     yield _("least speed of the driver"), low, ANGULAR_SPEED
     yield _("largest speed of the driver"), high, ANGULAR_SPEED
     yield _("mean of both"), (low + high) / 2, ANGULAR_SPEED
@@ -82,6 +85,8 @@ def _law(results: Results) -> Table:
     motion, running = results.motion, results.running
     assert motion is not None and isinstance(running, Running)
     driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
+    resists = running.steady.moment < 0 and running.task.motor is None
+    notes = (_("The loads do work; the driving moment is that of the resistance which takes it."),) if resists else ()
     return Table(
         "law-of-motion", _("Law of motion of the driver"),
         (
@@ -92,13 +97,15 @@ def _law(results: Results) -> Table:
             Column(N_("driving moment"), driving, MOMENT),
             Column(N_("work of all moments, J"), work, NUMBER),
         ),
+        notes=notes,
     )  # fmt: skip
 
 
 def _single(results: Results, single: SingleRun) -> Iterable[Table]:
     """A single run: its sums, and as many of its steps as one reads."""
     run, turns = single.run, results.linkage.driver.kind == "turn"
-    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": _("the time is over")}
+    time = _("the time of {time} s is over before its way is gone").format(time=numeral(run.time[-1], ".6g"))
+    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": time}
     place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
     rows: list[Row] = [
         (_("begins at"), single.first, place),

@@ -9,12 +9,12 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.kinematics.driver_range import SCAN
-from tmm_cli.kinematics.strokes import OutputCurve, Strokes, Travel
+from tmm_cli.kinematics.strokes import OutputCurve, Stroke, Strokes, Travel
 from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
-from tmm_cli.tolerances import CAME_BACK
+from tmm_cli.tolerances import CAME_BACK, SEAM_OF_EXTREMES
 
 Row = tuple[str, Any, Dimension]
 
@@ -31,7 +31,7 @@ def tables(results: Results) -> Iterable[Table]:
         rows += [(_("driver can go from"), driver_range.start, place), (_("driver can go to"), driver_range.end, place)]
     for strokes in (results.strokes, *results.further):
         if strokes is not None and strokes.strokes:
-            rows += _strokes(results.linkage, strokes, place)
+            rows += _strokes(results, strokes, place)
         elif strokes is not None and driver_range.full and results.linkage.output_swings(strokes.link):
             rows.append(
                 (_("link {link} turns in a cycle by").format(link=strokes.link), _turned(results, strokes), ANGLE)
@@ -43,8 +43,9 @@ def tables(results: Results) -> Iterable[Table]:
         yield Table("quality", _("Quality"), of_rows(rows, results))
 
 
-def _strokes(linkage: Linkage, strokes: Strokes, place: Dimension) -> Iterable[Row]:
+def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[Row]:
     """Strokes of an output that goes there and back as the driver turns."""
+    linkage = results.linkage
     link, run = strokes.link, place_dimension(strokes.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name = _("swing psi of link {link}") if guide is None else _("stroke H of link {link}")
@@ -54,14 +55,39 @@ def _strokes(linkage: Linkage, strokes: Strokes, place: Dimension) -> Iterable[R
         name = _("stroke H of link {link} along link {carrier}")
     yield name.format(link=link, carrier=guide.carrier if guide is not None else ""), strokes.travel, run
     yield _("coefficient of change of mean speed k"), strokes.k, NUMBER
-    for stroke in strokes.strokes:
-        yield _("working stroke starts at") if stroke.working else _("idle stroke starts at"), stroke.start, place
+    every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
+    if results.counts_strokes:
+        every = list(enumerate(_in_order(results, strokes), 1))
+    for number, stroke in every:
+        starts, lasts, dwell = _of_stroke(stroke, number)
+        yield starts, stroke.start, place
         then = _("link {link} is then at") if point is None else _("{link} is then at")
         yield then.format(link=link), stroke.low, run
-        yield _("working stroke lasts") if stroke.working else _("idle stroke lasts"), stroke.length, place
+        yield lasts, stroke.length, place
         if stroke.rest:
-            name = _("dwell after the working stroke") if stroke.working else _("dwell after the idle stroke")
-            yield name, stroke.rest, place
+            yield dwell, stroke.rest, place
+
+
+def _in_order(results: Results, strokes: Strokes) -> list[Stroke]:
+    """From position 0 on; the first of them begins before it where it is within a stroke."""
+
+    def gone(stroke: Stroke) -> float:
+        way = results.linkage.driver.sense * (stroke.start - results.start)
+        return float(np.mod(way + SEAM_OF_EXTREMES, strokes.cycle)) - SEAM_OF_EXTREMES
+
+    found = sorted(strokes.strokes, key=gone)
+    return found if gone(found[0]) <= SEAM_OF_EXTREMES else [found[-1], *found[:-1]]
+
+
+def _of_stroke(stroke: Stroke, number: int) -> tuple[str, str, str]:
+    """What its start, its length and the dwell after it are called; number: 0 of one that is not counted."""
+    if number:
+        names = _("stroke {number} starts at"), _("stroke {number} lasts"), _("dwell after stroke {number}")
+        starts, lasts, dwell = (name.format(number=number) for name in names)
+        return starts, lasts, dwell
+    if stroke.working:
+        return _("working stroke starts at"), _("working stroke lasts"), _("dwell after the working stroke")
+    return _("idle stroke starts at"), _("idle stroke lasts"), _("dwell after the idle stroke")
 
 
 def _turned(results: Results, strokes: Strokes) -> float:
