@@ -84,7 +84,7 @@ class Run:
 
 
 def run(machine: Reduced, task: RunTask) -> Run:
-    """From the beginning of the machine's way to its end. Raises StandstillError, where it does not start; LongRunError."""
+    """From the beginning of the way to its end. Raises StandstillError where it does not start, and LongRunError."""
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
