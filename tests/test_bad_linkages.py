@@ -154,8 +154,9 @@ CASES = {
         blocks.GEARED, "gears:", "gear:", "gear",
         "gear: unknown key\n"
         "  found:   'gear'\n"
-        "  allowed: tmm, lang, title, description, units, parameters, synthesis, variants, grading, points, guides, "
-        "links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
+        "  allowed: tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, "
+        "points, guides, links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, "
+        "loads, gravity, output, "
         "cycle, positions, checks, dynamics, balancing, sheet\n"
         "  did you mean 'gears'?",
     ),

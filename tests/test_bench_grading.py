@@ -10,11 +10,13 @@ from test_commands import ROOT, tmm
 from tmm_cli.bench import grading
 from tmm_cli.bench.grading import Figure, Grades
 from tmm_cli.bench.groups import text
+from tmm_cli.library import load, problem_of
+from tmm_cli.problem.reader import read_text
 
 
 def test_the_task_is_the_six_bar_of_the_bank_with_twelve_answers():
-    bank = (ROOT / "problems" / "six-bar.yaml").read_text(encoding="utf-8")
-    assert text().startswith(bank[bank.index("tmm: 1") :])
+    bank = load(str(ROOT / "problems" / "six-bar.yaml"))
+    assert problem_of(read_text(text(), "six-bar")).linkage == bank.linkage
     assert len(grading.group(2).task.asked) == 12
 
 

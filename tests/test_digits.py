@@ -254,6 +254,13 @@ def test_a_heavy_link_that_does_not_turn_has_the_error_of_its_couple_all_the_sam
     assert "1.5e+18" in text and beyond(solve(problem_of(read_text(text, "screen.yaml")))) is None
 
 
+def test_a_force_next_to_nothing_acts_far_away_and_that_is_known_no_better_than_the_force():
+    text = (PROBLEMS / "planetary-dwell-press.yaml").read_text(encoding="utf-8")
+    text = re.sub(r"positions:.*", "positions: {count: 24, from: 9.000000000000001e-08}", text)
+    results = solve(problem_of(read_text(text, "press.yaml")))
+    assert "9.0000" in text and beyond(results) is None
+
+
 def test_digits_are_judged_when_they_are_asked_for_only(tmp_path):
     done = tmm("forces", SHAPER, "-o", tmp_path)
     result = json.loads((tmp_path / "shaper" / "result.json").read_text(encoding="utf-8"))

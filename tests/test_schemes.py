@@ -247,7 +247,7 @@ def test_the_command_writes_a_problem_a_scheme_and_nothing_else(tmp_path):
     assert names == ["scheme-01-II-RRR.yaml", "scheme-02-II-RRP.yaml", "scheme-03-II-RRP.yaml"]
     assert all(name in done.stdout for name in names) and "3 schemes" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["in"]
-    assert tmm("structure", *sorted(out.iterdir())).stdout.count("I(0,1) -> II(2,3)") == 3
+    assert tmm("structure", *sorted(out.iterdir())).stdout.count("I(0,1) → II(2,3)") == 3
     run = tmm("run", out / names[1], "-o", tmp_path / "out", "--no-drawings")
     assert run.returncode == 0 and "error" not in run.stderr
 

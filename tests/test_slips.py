@@ -30,9 +30,9 @@ sketch: {at: 60, B: [250, 190]}
 TWINS = "this name looks like another one, but its letters differ"
 ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
-    "tmm, lang, title, description, units, parameters, synthesis, variants, grading, points, guides, links, driver, "
-    "gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, cycle, positions, "
-    "checks, dynamics, balancing, sheet"
+    "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
+    "links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
+    "cycle, positions, checks, dynamics, balancing, sheet"
 )
 
 

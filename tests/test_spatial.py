@@ -538,7 +538,8 @@ def test_a_slip_beside_or_in_the_name_of_the_block_is_told_in_terms_of_such_a_fi
     with pytest.raises(ProblemError) as error:
         spatial(f"pairs: {PAIRS}", "tmm: 1\ndriver: {link: 1}\nstructure:\n  spatial:\n")
     assert str(error.value) == (
-        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n  allowed: tmm, lang, title, description, structure"
+        "x.yaml:2:1: driver: unknown key\n  found:   'driver'\n"
+        "  allowed: tmm, lang, title, description, reference, shows, structure"
     )
 
 
@@ -562,10 +563,10 @@ def test_untrusted_chains_are_bounded():
 
 def test_tmm_structure_shows_chains_and_tells_planar_linkages_their_redundant_constraints():
     told = tmm("structure", "problems/spatial-six-bar.yaml").stdout
-    assert "6*5 - 5*3 - 4*1 - 3*3 = 2" in told and "1 + 1 - 2 = 0" in told
+    assert "6·5 − 5·3 − 4·1 − 3·3 = 2" in told and "1 + 1 − 2 = 0" in told
     assert "turns about the line of both centres" in told
     told = tmm("structure", "problems/six-bar.yaml").stdout
-    assert "1 + 0 - (-5) = 6" in told and "0-3-4-5-0" in told
+    assert "1 + 0 − (−5) = 6" in told and "0-3-4-5-0" in told
     assert "complex: the driver and several groups" in told
     held = tmm("structure", "problems/manipulator-open.yaml", "--json")
     assert json.loads(held.stdout)["chain"]["manoeuvrability"] == 1
@@ -582,7 +583,7 @@ def test_run_writes_the_structure_of_a_chain_and_check_compares_it(tmp_path):
     done = tmm("run", "problems/swashplate.yaml", "-o", tmp_path)
     assert done.returncode == 0, done.stderr
     names = {path.name for path in (tmp_path / "swashplate").iterdir()}
-    assert names == {"structure.csv", "pairs.csv", "contours.csv", "local.csv", "result.json"}
+    assert names == {"structure.csv", "pairs.csv", "contours.csv", "local.csv", "properties.csv", "result.json"}
     assert tmm("check", "problems/swashplate.yaml", "problems/manipulator-open.yaml").returncode == 0
 
 

@@ -114,7 +114,7 @@ def _refusal(
         )
     if kind == "missing":
         named = get_args(field.annotation) if field and get_origin(field.annotation) is Literal else ()
-        described = ", ".join(named) or described
+        described = ", ".join(word for word in named if isinstance(word, str)) or described
         return ProblemError(_("the key `{path}` is missing").format(path=path[-1]), path=path, allowed=described)
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.quantities import FORCE, MOMENT, NUMBER, SPEED, Dimension
+from tmm_cli.quantities import FORCE, LENGTH, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
 
@@ -38,7 +38,10 @@ def by_margins(
     over = RATIOS.get((table.name, column.header))
     if over is not None:
         force = np.abs(next(other.array for other in table.columns if other.header == over))
-        known = force > np.repeat(relative, table.rows // len(relative)) * sizes[FORCE]
+        share = np.repeat(relative, table.rows // len(relative))
+        known = force > share * sizes[FORCE]
+        if column.dimension == LENGTH:  # both what stands over the force and the force are known to the share
+            bound = bound + share * values
         return np.where(known, bound * (sizes[FORCE] / np.where(known, force, 1.0)), np.inf)
     return np.asarray(np.minimum(bound, HUGE))
 

@@ -47,7 +47,8 @@ def map_of(value: JsonType) -> JsonType:
 
 def optional(shape: JsonType) -> JsonType:
     """Null where there is nothing."""
-    schema = {**shape.schema, "type": [shape.schema["type"], "null"]}
+    own = shape.schema["type"]
+    schema = {**shape.schema, "type": own if "null" in own else [own, "null"]}
     return replace(shape, schema=schema, content=lambda found: None if found is None else shape.content(found))
 
 
