@@ -169,7 +169,7 @@ def test_letters_of_the_law_of_motion_are_those_of_the_course():
 
 
 def test_the_data_of_the_motor_are_told():
-    (table,) = (one for one in given(load(PROBLEMS / "shaper-motor.yaml")) if one.name == "machine")
+    (table,) = (one for one in given(problem("shaper-motor")) if one.name == "machine")
     rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
     assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
     assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
