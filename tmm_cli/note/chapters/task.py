@@ -34,7 +34,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield paragraph(problem.description.strip())
     sentence = _("The sizes of the links are given in table {table}.")
     if problem.synthesis is not None:
-        sentence = _("The sizes of the links are in table {table}; those that are not given are found by synthesis.")
+        sentence = _(
+            "The sizes of the links are given in table {table}; those that the task leaves open are found by synthesis."
+        )
     yield said(sentence, table=Ref("sizes"))
     yield _sizes(subject)
     sentence = _("The coordinates of the fixed points are given in table {table}.")
@@ -203,4 +205,6 @@ def _wanted(subject: Subject) -> Iterable[str]:
         else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
     )  # fmt: skip
     if subject.acts:
-        yield _("reactions in the pairs, and what balances the driving link, checked by the Zhukovsky lever.")
+        yield _(
+            "the reactions in the pairs and the balancing load of the driving link, checked by the Zhukovsky lever."
+        )
