@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from tmm_cli.dynamics.motors import Kloss, Linear, Motor
+from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
 from tmm_cli.language import _, numeral
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
@@ -22,18 +23,11 @@ from tmm_cli.quantities import (
 from tmm_cli.results.shown import show
 from tmm_cli.results.table import Table, table_of_words
 
-if TYPE_CHECKING:  # nothing of it is imported unless a file asks for it
-    from tmm_cli.dynamics.motors import Motor
-    from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
-
 Fact = tuple[str, str]
 
 
-def law_of_motion(problem: Problem) -> Iterable[Table]:
+def law_of_motion(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
     """Motor and flywheel, and the rows of what drives."""
-    task = problem.dynamics
-    if task is None:
-        return
     rows = [*(_steady(problem, task) if task.cyclic else _run(problem, task))]
     title, note = _("Data of the law of motion"), _("Moments, inertia and speeds are reduced to the driver.")
     yield table_of_words("machine", title, (_("what"), _("value")), rows, (note,))
@@ -77,15 +71,11 @@ def _run(problem: Problem, task: RunTask) -> Iterable[Fact]:
 
 
 def _profile(task: RunTask) -> Profile | None:
-    from tmm_cli.dynamics.task import Profile
-
     return task.drive if isinstance(task.drive, Profile) else None
 
 
 def _motor(problem: Problem, motor: Motor, *, turns: bool) -> Iterable[Fact]:
     """By its own numbers, as the note's formulas have them."""
-    from tmm_cli.dynamics.motors import Kloss, Linear
-
     speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case Kloss():
