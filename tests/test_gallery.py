@@ -16,10 +16,12 @@ from test_commands import tmm
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.animate.content import picture_of
 from tmm_cli.animate.gallery.card import card
+from tmm_cli.animate.gallery.chains import ROW, places_of
 from tmm_cli.animate.gallery.page import page
 from tmm_cli.animate.gallery.turning import PLACE, TURN
 from tmm_cli.language import spoken
 from tmm_cli.linkage import FRAME
+from tmm_cli.structure.spatial import SpatialChain, SpatialPair
 
 NAMES = ("crank-slider", "slotted-lever", "cam-lever", "excavator", "double-crank", "manipulator-open")
 MOST = 3_000_000 / 60  # bytes of a mechanism
@@ -59,9 +61,10 @@ def test_a_card_says_class_groups_purposes_and_properties():
     assert {"slides", "dwell"} <= set(card_of("cam-lever").purposes)
 
 
-def test_a_chain_in_space_has_a_card_without_a_drawing():
+def test_a_chain_in_space_has_a_card_with_a_scheme_that_stands():
     arm = card_of("manipulator-open")
-    assert arm.turning is None and arm.purposes == ("space",)
+    assert arm.turning.bodies == () and arm.purposes == ("space",) and arm.formula == "W = 6·3 − 5·1 − 3·2 = 7"
+    assert re.findall(r">(\w+)</text>", arm.turning.svg) == ["3", "1", "3", "0", "1", "2", "3"]  # pairs, then links
     assert {fact.number for fact in arm.facts if "mobility" in fact.name} == {7}
 
 
@@ -89,6 +92,14 @@ def test_bodies_are_in_their_places_between_the_frames(name):
             turn = value(body[2], TURN, half / 2, turning.loops)
             assert x - 1j * y == pytest.approx(own.place[half], abs=0.1)
             assert -turn == pytest.approx(own.angle[half], abs=2e-3)
+
+
+def test_links_of_a_chain_stand_in_rows_above_what_they_hang_on():
+    ends = ("ab", "ac", "bd", "cd", "0a")
+    pairs = tuple(SpatialPair(f"p{k}", i, j, 1) for k, (i, j) in enumerate(ends))
+    places = places_of(SpatialChain(tuple("abcd"), pairs))
+    assert [places[link].imag / ROW for link in "0abcd"] == [0, 1, 2, 2, 3]
+    assert len(set(places.values())) == 5
 
 
 def layers_of(picture):

@@ -12,14 +12,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bank import NAMES, solved, written
+from bank import NAMES, moved, solved, written
 from formulas import formula, formulas, maths
 from models import PROBLEMS
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.language import spoken
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Found, Heading
+from tmm_cli.note.blocks import Found, Heading, Rows
 from tmm_cli.note.expression import Sum
 from tmm_cli.note.formats.html import html
 from tmm_cli.quantities import KINDS
@@ -196,3 +197,21 @@ def test_what_a_note_refers_to_is_in_it():
 def test_a_note_without_loads_has_no_chapter_on_forces():
     headings = {block.text for block in written("four-positions").blocks if isinstance(block, Heading)}
     assert "Kinematic analysis" in headings and "Force analysis" not in headings
+
+
+def test_usual_names_of_links_are_said_in_the_reader_s_language():
+    problem = moved("press-class-iii").problem
+    links = dict(problem.linkage.links)
+    links |= {"5": replace(links["5"], label="тяга"), "6": replace(links["6"], label="")}
+    results = solve(replace(problem, linkage=replace(problem.linkage, links=links)), "kinematics")
+    with spoken("ru"):
+        sizes = next(block for block in note(results, drawn=False).blocks if isinstance(block, Rows))
+    names = ["".join(map(str, cells[1])) for cells in sizes.rows]
+    assert names == ["кривошип", "рычаг", "шатун", "ползун", "тяга", "качающийся ползун", "коромысло"]
+
+
+def test_a_large_group_is_told_in_the_table_as_in_the_drawings():
+    groups = next(
+        block for block in written("press-class-iii").blocks if isinstance(block, Rows) and block.key == "groups"
+    )
+    assert ("5R1P",) in groups.rows[0], "not RRRRRP"

@@ -80,8 +80,9 @@ class Rows:
 
     @cached_property
     def numeric(self) -> list[bool]:
-        """Of each column, whether its cells have figures only or are empty."""
-        return [all(_is_number(row[k]) for row in self.rows) for k in range(len(self.head))]
+        """Of each column, whether it has figures only, and dashes where there are none."""
+        columns = [[row[k] for row in self.rows] for k in range(len(self.head))]
+        return [all(map(_is_number, cells)) and any(map(_has_digits, cells)) for cells in columns]
 
 
 @dataclass(frozen=True)
@@ -210,3 +211,7 @@ def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
 def _is_number(cell: Line) -> bool:
     text = "".join(part if isinstance(part, str) else "x" for part in cell)
     return not text.strip("0123456789.,−-–— ·⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def _has_digits(cell: Line) -> bool:
+    return any(isinstance(part, str) and any(map(str.isdigit, part)) for part in cell)

@@ -40,6 +40,11 @@ def rows_of(
     return Rows(caption or table.title, tuple(head), rows, key)
 
 
+def unbroken(text: str) -> str:
+    """Kept on one line of a cell."""
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
+
+
 def _told_apart(table: Table, shown: list[list[str]]) -> None:
     """Units that stand after the names of quantities go into the column of units: "time, s" is "time" and "s"."""
     headers = [column.header for column in table.columns]

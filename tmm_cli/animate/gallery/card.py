@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
+from tmm_cli.animate.gallery.chains import scheme
 from tmm_cli.animate.gallery.purposes import all_strokes, purposes
 from tmm_cli.animate.gallery.turning import Turning, turning
 from tmm_cli.kinematics.strokes import Strokes, Travel
-from tmm_cli.language import _, signed
+from tmm_cli.language import _, signed, typeset
 from tmm_cli.library import count, problem_of, solve
 from tmm_cli.linkage import Linkage
 from tmm_cli.problem.build import is_chain
@@ -45,7 +46,7 @@ class Card:
     """A mechanism; texts are as the file has them, and may be anything.
 
     number: of its class, empty in space; groups: with class and type, II RRR; purposes: keys of PURPOSES.
-    language: of the file. turning: None of a chain given by pairs alone, which has no dimensions.
+    language: of the file. turning: of a chain given by pairs alone, which has no dimensions, its scheme.
     """
 
     file: str
@@ -58,7 +59,7 @@ class Card:
     groups: tuple[str, ...]
     purposes: tuple[str, ...]
     facts: tuple[Fact, ...]
-    turning: Turning | None
+    turning: Turning
 
 
 def card(file: str) -> Card:
@@ -82,10 +83,10 @@ def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
     values = list(_shown(results))
     if all(task.of != "W" for task in problem.shows.values()):
         values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
-    about = problem.description or remark(file)
-    facts = tuple(_told(values, problem.units))
     return Card(
-        file, _language(tree), problem.title, problem.reference, about, "", "", (), ("space",), facts, None
+        file, _language(tree), problem.title, problem.reference, problem.description or remark(file), "",
+        typeset(f"W = {results.chain.chain.count}"), (), ("space",), tuple(_told(values, problem.units)),
+        scheme(results.chain.chain),
     )  # fmt: skip
 
 

@@ -174,6 +174,7 @@ byId("cards").addEventListener("click", (event) => {
   if (!field) return;
   byId(field).value = byId(field).value === value ? "" : value;
   search();
+  event.target.closest(".card").scrollIntoView({block: "nearest"});
 });
 document.addEventListener("keydown", (event) => {
   if (event.key !== "/" || event.ctrlKey || event.altKey || event.metaKey || event.target.matches("input,select")) return;

@@ -59,9 +59,9 @@ def _data(card: Card) -> dict[str, Any]:
         "groups": card.groups,
         "purposes": card.purposes,
         "facts": [[fact.name, fact.number] for fact in card.facts],
-        "bodies": turning.bodies if turning is not None else (),
-        "loops": turning is not None and turning.loops,
-        "seconds": turning.seconds if turning is not None else 0,
+        "bodies": turning.bodies,
+        "loops": turning.loops,
+        "seconds": turning.seconds,
     }
 
 
@@ -86,13 +86,14 @@ def _card(card: Card) -> str:
 
 def _picture(card: Card) -> str:
     turning = card.turning
-    if turning is None:
-        return f'<div class="space">{_text(_("a chain in space, given by pairs alone: nothing to draw"))}</div>'
     sides = " ".join(f"{round(side, 1):g}" for side in turning.view)
-    name = _text(_("{title}: turn or stop").format(title=card.title))
     svg = f'<svg viewBox="{sides}" aria-hidden="true">{turning.svg}</svg>'
-    pressed = ' aria-pressed="true"' if turning.bodies else ' aria-disabled="true"'
-    return f'<button class="picture" type="button"{pressed} aria-label="{name}">{svg}</button>'
+    if not turning.bodies:
+        name = _("{title}: links, and pairs with their freedoms") if "space" in card.purposes else "{title}"
+        return f'<div class="picture" role="img" aria-label="{_text(name.format(title=card.title))}">{svg}</div>'
+    name = _("{title}: turn or stop")
+    label = _text(name.format(title=card.title))
+    return f'<button class="picture" type="button" aria-pressed="true" aria-label="{label}">{svg}</button>'
 
 
 def _tag(field: str, value: str, words: str) -> str:

@@ -20,12 +20,12 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Force analysis"))
     yield said(
-        _("The reactions in the kinematic pairs, and what balances the driving link, are found by the method of "
-          "kinetostatics: when the forces of inertia are added to the forces that act (principle of d'Alembert), every "
-          "group of links is in equilibrium. The groups are taken in the order opposite to that of the kinematic "
-          "analysis, and the driving link last. A reaction {R} has the numbers of two links: the first one acts on the "
-          "second. The figures show all forces in the senses that they really have, so their magnitudes are positive; "
-          "their arms {h} are measured there."),
+        _("The reactions in the kinematic pairs and the balancing load of the driving link are found by the method "
+          "of kinetostatics: when the forces of inertia are added to the acting forces (d'Alembert's principle), "
+          "every group of links is in equilibrium. The groups are taken in the order opposite to that of the "
+          "kinematic analysis, the driving link last. The subscript of a reaction {R} has the numbers of two links: "
+          "the first one acts on the second. The figures show all forces in their actual senses, so that their "
+          "magnitudes are positive; the arms {h} are measured in the figures."),
         R=Symbol("R"), h=Symbol("h"),
     )  # fmt: skip
     for k in subject.detail:

@@ -38,18 +38,18 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
     if here.first:
         yield said(
             _(
-                "Velocities are found by plans: of the driving links first, then of the groups in the order of the "
-                "formula of structure. Of a vector under which two lines stand the size and the direction are "
-                "known, of one with a single line its direction only."
+                "Velocities are found from plans: first for the driving links, then for the groups in the order of "
+                "the structural formula. A vector underlined twice is known in magnitude and direction, one "
+                "underlined once in direction only."
             )
         )
         slid = next((e for step in every for e in step.equations if isinstance(e, Along)), None)
         if slid is not None:
             yield said(
                 _(
-                    "The point of a guide that a stone covers in this position has the number of the guide's link in "
-                    "its name: {under} of link {link} lies at {point}; its distances to other points of the link are "
-                    "those of this position."
+                    "The point of a guide that coincides with the stone in this position is named after the link of "
+                    "the guide: {under} of link {link} lies at {point}; its distances to other points of the link "
+                    "are those in this position."
                 ),
                 under=name_of(slid.base), link=slid.slide.carrier, point=slid.point.at,
             )  # fmt: skip
@@ -64,16 +64,16 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
     if here.first:
         yield said(
             _(
-                "The acceleration of a point relative to another one of its link has a normal part, towards that other "
-                "point, and a tangential one, perpendicular to their line."
+                "The acceleration of a point relative to another point of its link has a normal component, directed "
+                "towards that other point, and a tangential one, perpendicular to the line between them."
             )
         )
         if any(isinstance(e, Along) for step in every for e in step.equations):
             yield said(
                 _(
-                    "The acceleration of a stone relative to the point of the guide that it covers has a part along "
-                    "the guide and, where the guide turns, that of Coriolis: it has the direction of the relative "
-                    "velocity turned through 90° in the sense of the guide's rotation."
+                    "The acceleration of a stone relative to the coincident point of the guide has a component "
+                    "along the guide and, if the guide turns, the Coriolis component, whose direction is that of "
+                    "the relative velocity turned through 90° in the sense of the guide's rotation."
                 )
             )
     yield from subject.figures(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.draw.sheets.structure import parts
+from tmm_cli.draw.sheets.structure import counted, parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, line, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
 from tmm_cli.note.math import Words
-from tmm_cli.note.tables import NONE
+from tmm_cli.note.tables import NONE, unbroken
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.structure import PAIRS, ROLES
 from tmm_cli.results.stages import link_name
@@ -146,8 +146,8 @@ def _group(group: Group) -> tuple[Line, ...]:
     w = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + (f" − {drivers}" if drivers else "")
     own = f"{w} = {3 * n - 2 * lower - higher - drivers}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
-    outer = ", ".join(_("{pair} (to {link})").format(pair=pair, link=link) for pair, link in known)
+    outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
     return (
-        line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(group.type),
+        line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(counted(group.type)),
         line(", ".join(pair.name for pair in group.inner) or NONE), line(outer), line(own),
     )  # fmt: skip

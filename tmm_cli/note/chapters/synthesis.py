@@ -32,18 +32,18 @@ def blocks(subject: Subject) -> Iterable[Block]:
     tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
     asked = tables.pop("synthesis-asked", None)
     if asked is None:
-        yield paragraph(_("The sizes of the mechanism are found from what it must do."))
+        yield paragraph(_("The sizes of the mechanism are found from its requirements."))
     else:
-        yield said(_("The sizes of the mechanism are found from what it must do (table {table})."), table=Ref("asked"))
-        yield rows_of(subject, asked, _("What is asked"), "asked", FOUND)
+        yield said(_("The sizes of the mechanism are found from its requirements (table {table})."), table=Ref("asked"))
+        yield rows_of(subject, asked, _("Requirements"), "asked", FOUND)
     source = by_hand(translated(task.outcome.source).rstrip("."))
-    yield paragraph(_("The way of the solution: {source}.").format(source=source))
+    yield paragraph(_("Method of solution: {source}.").format(source=source))
     yield from _formulas(task)
     found = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
     if found is not None:
-        yield said(_("What is found is in table {table}."), table=Ref("found"))
-        yield rows_of(subject, found, _("What is found"), "found", FOUND)
+        yield said(_("The results are given in table {table}."), table=Ref("found"))
+        yield rows_of(subject, found, _("Results of the synthesis"), "found", FOUND)
         yield from (paragraph(by_hand(translated(note))) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
     diagrams = [drawn for drawn in task.outcome.drawings if isinstance(drawn, Diagram)]
@@ -58,10 +58,10 @@ def blocks(subject: Subject) -> Iterable[Block]:
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
         yield said(
-            _("The same quantities, measured on the mechanism with these sizes, are in table {table}."),
+            _("The same quantities, measured on the mechanism with these sizes, are given in table {table}."),
             table=Ref("measured"),
         )  # fmt: skip
-        yield rows_of(subject, measured, _("What was asked, measured on the mechanism"), "measured", FOUND)
+        yield rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
 
 
 def _formulas(task: Synthesised) -> Iterable[Block]:

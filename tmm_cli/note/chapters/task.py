@@ -11,12 +11,12 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said, several
 from tmm_cli.note.context import Subject, with_degrees
-from tmm_cli.note.tables import NONE, rows_of
+from tmm_cli.note.tables import NONE, rows_of, unbroken
 from tmm_cli.plans.bodies import named
 from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.results.given import given
-from tmm_cli.results.reports.structure import ROLES
+from tmm_cli.results.reports.structure import ROLES, called
 from tmm_cli.results.stages import heavy, link_name
 from tmm_cli.results.understood import motion
 
@@ -33,7 +33,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield paragraph(problem.description.strip())
     sentence = _("The sizes of the links are given in table {table}.")
     if problem.synthesis is not None:
-        sentence = _("The sizes of the links are in table {table}; those that are not given are found by synthesis.")
+        sentence = _(
+            "The sizes of the links are given in table {table}; those that the task leaves open are found by synthesis."
+        )
     yield said(sentence, table=Ref("sizes"))
     yield _sizes(subject)
     sentence = _("The coordinates of the fixed points are given in table {table}.")
@@ -90,7 +92,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        (line(name), line(link.label or _(ROLES[roles[name]])), _lengths(subject, link) or line(NONE))
+        (line(name), line(called(link.label) or _(ROLES[roles[name]])), _lengths(subject, link) or line(NONE))
         for name, link in linkage.links.items() if name != FRAME
     )  # fmt: skip
     head = (line(_("link")), line(_("is called")), line(_("sizes")))
@@ -109,7 +111,7 @@ def _lengths(subject: Subject, link: Link) -> Line:
     if any(np.any(np.imag(place) != 0) for place in link.points.values()):
         for point, place in link.points.items():
             x, y = _place(subject, place)
-            found.append(line(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}"))
+            found.append(line(unbroken(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}")))
     return tuple(part for k, one in enumerate(found) for part in ((", ", *one) if k else one))
 
 
@@ -202,4 +204,6 @@ def _wanted(subject: Subject) -> Iterable[str]:
         else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
     )  # fmt: skip
     if subject.acts:
-        yield _("reactions in the pairs, and what balances the driving link, checked by the Zhukovsky lever.")
+        yield _(
+            "the reactions in the pairs and the balancing load of the driving link, checked by the Zhukovsky lever."
+        )

@@ -52,17 +52,17 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
 
 def _of_turning() -> str:
     return _(
-        "The balancing moment is checked by the lever of Zhukovsky: the velocity plan, drawn for 1 rad/s of the "
-        "driving link and turned by 90° clockwise, is taken for a rigid lever that can turn about its pole {p}. All "
-        "forces act on it at the ends of the velocities of their points, and it is in equilibrium."
+        "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for 1 rad/s of the "
+        "driving link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. "
+        "All forces act on it at the ends of the velocities of their points, and it is in equilibrium."
     )
 
 
 def _of_sliding() -> str:
     return _(
-        "The balancing force is checked by the lever of Zhukovsky: the velocity plan, drawn for 1 m/s of the driving "
-        "link and turned by 90° clockwise, is taken for a rigid lever that can turn about its pole {p}. All forces act "
-        "on it at the ends of the velocities of their points, and it is in equilibrium."
+        "The balancing force is checked by the Zhukovsky lever: the velocity plan, drawn for 1 m/s of the driving "
+        "link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. All forces "
+        "act on it at the ends of the velocities of their points, and it is in equilibrium."
     )
 
 
@@ -70,8 +70,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     """Couples as pairs of forces, or turned at the ratio of speeds."""
     if plan.pairs:
         yield said(
-            _("A couple on a link becomes a pair of forces, {P} and {Pp}, across the line of two of its points, "
-              "which are {l} apart:"),
+            _("A couple on a link is replaced by a pair of forces, {P} and {Pp}, perpendicular to the line through "
+              "two of its points, a distance {l} apart:"),
             P=Symbol("P"), Pp=Symbol("P").primed, l=Symbol("l"),
         )  # fmt: skip
     for pair in plan.pairs:
@@ -84,8 +84,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
     if turned:
         yield said(
-            _("Any other couple acts on the lever as {M}, in the ratio of the speed of its link to that of the driving "
-              "link:"),
+            _("The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
+              "of the driving link:"),
             M=Symbol("M").primed,
         )  # fmt: skip
     for load, size in turned:
@@ -148,8 +148,8 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     if not largest:
         return
     yield said(
-        _("The difference {delta} from {plan} of the force plan is in percent of {largest}, the largest size in all "
-          "positions:"),
+        _("The difference {delta} from the value {plan} of the force plan is given in percent of {largest}, the "
+          "largest magnitude in all positions:"),
         delta=Symbol("Δ"), plan=Symbol(name.letter, name.below, "R"), largest=Symbol(name.letter, "max"),
     )  # fmt: skip
     gap = Function("abs", Sum(((1, Leaf(Symbol(name.letter, name.below, "R"), plan)), (-1, Leaf(name, own)))))

@@ -48,9 +48,9 @@ def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     if not found:
         return
     explanation = (
-        _("The force of inertia {U} of a link acts in its centre of mass against the acceleration of this point, and "
-          "the couple {M} of the forces of inertia acts against the angular acceleration {epsilon} of the link; {J} is "
-          "its moment of inertia about the centre of mass:")
+        _("The force of inertia {U} of a link acts at its centre of mass and is opposite to the acceleration of "
+          "this point; the couple {M} of the forces of inertia is opposite to the angular acceleration {epsilon} of "
+          "the link; {J} is its moment of inertia about the centre of mass:")
         if explained
         else _("Forces and couples of inertia:")
     )  # fmt: skip
@@ -61,9 +61,9 @@ def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     yield from map(Found, there)
     nothing = [one.name for one in found if one not in there]
     if nothing:
-        text = _("These are zero, as the accelerations are: {names}.")
+        text = _("These vanish together with the accelerations: {names}.")
         if len(nothing) == 1:
-            text = _("This is zero, as the acceleration is: {names}.")
+            text = _("This vanishes together with the acceleration: {names}.")
         yield said(text, names=listed(nothing))
 
 
@@ -185,7 +185,7 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             rows.append((line(couple), line(load.link), line(told), line(sense(moment))))
     if rows:
         yield said(
-            _("Table {table} has all that acts on the links in this position except reactions."),
+            _("Table {table} lists everything that acts on the links in this position except the reactions."),
             table=Ref(f"loads-{k}"),
         )
         head = (line(_("acts")), line(_("on link")), line(_("size")), line(_("angle from x, or sense")))

@@ -57,9 +57,8 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
     """A sum along a guide."""
     node, found = along_guide(forces)
     yield said(
-        _("The sum of the projections of the forces on the guide {guide} (link {link}) gives {symbol}; {angles} "
-          "are the "
-          "acute angles between the forces and the guide:"),
+        _("The sum of the projections of the forces onto the guide {guide} (link {link}) gives {symbol}; {angles} "
+          "are the acute angles between the forces and the guide:"),
         guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
     )  # fmt: skip
     yield from (Equation(node), Found(found))
@@ -70,14 +69,12 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     given = listed(dict.fromkeys(one.symbol for one in part.given))
     if part.forces is None:
         yield said(
-            _("The driving link is taken last. These are known on it: {given}. It is required to find:"),
+            _("The driving link is taken last. Known are: {given}. It is required to find:"),
             given=given or _("nothing"),
         )
     elif given:
         yield said(
-            _("The group {group} is separated from the mechanism. These are known on its links: {given}. It is "
-              "required "
-              "to find:"),
+            _("The group {group} is separated from the mechanism. Known are: {given}. It is required to find:"),
             group=part.forces.group.title, given=given,
         )  # fmt: skip
     else:
@@ -90,7 +87,8 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
     yield listed_below((*unknown, *drives))
     yield from part.subject.figures(
-        "group-loads", _("All that acts is shown in figure {figure}: forces without scale, their arms to scale."),
+        "group-loads", _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to "
+                         "scale."),
         _("Loads and reactions: {links}; {position}").format(links=links_of(part.links), position=part.caption),
         part.here.k, part.stem("group-loads"), further=_("The other arms are shown in figure {figure}."),
     )  # fmt: skip
@@ -102,22 +100,29 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     whole = reaction_symbol(*names)
     if not pair.lower:
         return filled(
-            _("pair {pair}: size of the reaction {R} along the normal of the profiles"), pair=pair.name, R=whole
+            _("in pair {pair}: magnitude of the reaction {R} along the normal to the profiles"), pair=pair.name, R=whole
         )
     if pair.slide is not None:
         return filled(
-            _("guide {guide}: size and place of the reaction {R}, which is across the guide"), guide=pair.name, R=whole
+            _(
+                "on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
+                "guide"
+            ),
+            guide=pair.name,
+            R=whole,
         )
     if lead is None or lead.axis is None:
-        return filled(_("hinge {point}: size and direction of the reaction {R}"), point=pair.point, R=whole)
+        return filled(_("at hinge {point}: magnitude and direction of the reaction {R}"), point=pair.point, R=whole)
     parts = {"R": whole, "n": reaction_symbol(*names, "n"), "t": reaction_symbol(*names, "τ")}
     if lead.rest is not None and lead.about is not None and len(lead.links) == 1:
         return filled(
-            _("hinge {point}: the reaction {R} in two parts, {n} along the line {line} and {t} across it"),
+            _("at hinge {point}: two components of the reaction {R}, {n} along the line {line} and {t} "
+              "perpendicular to it"),
             point=pair.point, line=pair.point + lead.about, **parts,
         )  # fmt: skip
     return filled(
-        _("hinge {point}: the reaction {R} in two parts, {n} along the guide of the link {link} and {t} across it"),
+        _("at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
+          "perpendicular to it"),
         point=pair.point, link=reaction.on, **parts,
     )  # fmt: skip
 
@@ -158,10 +163,10 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     vectors = part.vectors
     lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield said(
-        _("The forces make a closed polygon. Two lines are under vectors that are known whole, one is under a vector "
-          "whose line is known:")
+        _("The forces form a closed polygon. Vectors that are known completely are underlined twice, those of which "
+          "only the line of action is known once:")
         if explained
-        else _("The forces make a closed polygon:")
+        else _("The forces form a closed polygon:")
     )  # fmt: skip
     yield Equation(vector_sum([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors]))
     yield from part.subject.figures(
@@ -174,16 +179,17 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
         yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
     elif unknown:
         yield said(
-            _("The lengths of its sides times the scale factor {mu} give what is still unknown:"), mu=Symbol("μ", "F")
+            _("The lengths of its sides, multiplied by the scale factor {mu}, give what is still unknown:"),
+            mu=Symbol("μ", "F"),
         )
     else:
-        yield said(_("All its vectors are known already; that it closes is a check."))
+        yield said(_("All its vectors are known already; its closing serves as a check."))
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)
         yield Found(value(vector.symbol, size if size > least else 0.0, _("N")))
     if part.plan.full:
-        yield said(_("The whole reactions are:"))
+        yield said(_("The total reactions are:"))
     for reaction in part.outer:
         yield from _whole(part, reaction)
 
@@ -233,7 +239,7 @@ def _inner(part: Part) -> Iterable[Block]:
         symbols = [one.symbol for one in acting if not one.couple and one.symbol != own]
         yield Equation(vector_sum([*((s, 2) for s in symbols), (own, 0)]))
     elif inner:
-        yield said(_("The reactions in the inner pairs follow from the equilibrium of the links one by one:"))
+        yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))
     for reaction in inner:
         size = abs(complex(reaction.force[part.here.k]))
         yield Found(value(reaction_symbol(reaction.by, reaction.on), size, _("N")))
@@ -249,8 +255,8 @@ def _place(equation: MomentEquation) -> Iterable[Block]:
         text = _("The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
                  "beside the reaction {symbol}:")  # fmt: skip
     else:
-        text = _("The equation of moments about the point {point} ({links}) gives how far from it the line of the "
-                 "reaction {symbol} is:")  # fmt: skip
+        text = _("The equation of moments about the point {point} ({links}) gives the distance from it to the line "
+                 "of action of the reaction {symbol}:")  # fmt: skip
     yield said(text, point=equation.about, links=links_of(equation.links), symbol=symbol)
     if found is not None:
         yield from (Equation(moments(equation)), Found(found))

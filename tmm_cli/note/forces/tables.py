@@ -86,9 +86,10 @@ def balancing(subject: Subject) -> Iterable[Block]:
         percent = 100 * lever.difference
         head.append(line(_("difference, %")))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
-    caption = _("What balances the driving link") if not several else _("What balances the driven links")
+    one, more = _("Balancing load of the driving link"), _("Balancing loads of the driven links")
+    caption = more if several else one
     yield from _signs(subject, of_all)
-    yield said(_("By both ways it is given in table {table}."), table=Ref("balance"))
+    yield said(_("The balancing load found in both ways is given in table {table}."), table=Ref("balance"))
     yield _table(subject, caption, head, columns, "balance")
 
 

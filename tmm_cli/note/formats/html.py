@@ -81,7 +81,8 @@ class Writer:
                 number, __ = next(self.headings)
                 return f'<h{block.level} id="h{number}">{number} {data(block.text)}</h{block.level}>'
             case Paragraph(line):
-                return f"<p>{self.line(line)}</p>"
+                leads = ' class="leads"' if str(line[-1]).endswith(":") else ""
+                return f"<p{leads}>{self.line(line)}</p>"
             case Items(lines):
                 return f"<ul>{''.join(f'<li>{self.line(line)}</li>' for line in lines)}</ul>"
             case Equation(node, key):

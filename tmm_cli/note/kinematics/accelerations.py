@@ -196,7 +196,7 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     found = {*known, *points_of(step)}
     for about in further(step):
         if here.first:
-            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            text = _("Point {point} belongs to link {link}, whose rotation is known:")
             yield said(text, point=name_of(about.point), link=about.link)
         if here.first and not about.base.fixed:
             yield from equations(Step((), ()), [about], "a", found - {about.point.name}, here.omega)

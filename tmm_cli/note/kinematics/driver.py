@@ -165,11 +165,11 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
     slides = strokes.kind == "slide"
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
-    text = _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = "
-             "{places}; between them it turns through {size}.")  # fmt: skip
+    text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving link; "
+             "it swings between them through {size}.")  # fmt: skip
     if slides:
-        text = _("The output, {output}, is in its extreme positions when the angle of the driving link is {phi} = "
-                 "{places}; between them it goes through {size}.")  # fmt: skip
+        text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
+                 "link; its stroke between them is {size}.")  # fmt: skip
     yield said(
         text, output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
     )  # fmt: skip

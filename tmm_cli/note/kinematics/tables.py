@@ -43,7 +43,7 @@ def tables(subject: Subject) -> Iterable[Block]:
             own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if per == "°" else values)
             columns.append(Column(line(Symbol(letter, link), f", {per}"), own))
         key = f"output-{link}"
-        yield said(_("The motion of the output in all positions is in table {table}."), table=Ref(key))
+        yield said(_("The motion of the output in all positions is given in table {table}."), table=Ref(key))
         yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
     yield from _turning(subject)
     for stem, drawing in subject.drawings("diagrams").items():
@@ -59,16 +59,16 @@ def _turning(subject: Subject) -> Iterable[Block]:
     """Of the links, in one table if it is not too wide."""
     velocities, accelerations = _rates(subject, "ω", "omega"), _rates(subject, "ε", "epsilon")
     if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
-        text = _("The angular velocities and accelerations of the links are in table {table}.")
+        text = _("The angular velocities and accelerations of the links are given in table {table}.")
         yield said(text, table=Ref("rates"))
         caption = _("Angular velocities and accelerations of the links")
         yield _table(subject, caption, [*velocities, *accelerations], "rates")
         return
     if velocities:
-        yield said(_("The angular velocities of the links are in table {table}."), table=Ref("omega"))
+        yield said(_("The angular velocities of the links are given in table {table}."), table=Ref("omega"))
         yield _table(subject, _("Angular velocities of the links"), velocities, "omega")
     if accelerations:
-        yield said(_("The angular accelerations of the links are in table {table}."), table=Ref("epsilon"))
+        yield said(_("The angular accelerations of the links are given in table {table}."), table=Ref("epsilon"))
         yield _table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
 
 

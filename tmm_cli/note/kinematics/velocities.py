@@ -136,14 +136,14 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
     """A point of a link whose rotation is known."""
     if not about.base.fixed:
         if here.first:
-            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            text = _("Point {point} belongs to link {link}, whose rotation is known:")
             yield said(text, point=name_of(about.point), link=about.link)
             yield from equations(Step((), ()), [about], "v", found, here.omega)
         yield _turned(here, about)
         yield here.v.read(here.v.of(about.point))
     else:
         if here.first:
-            text = _("Point {point} is one of link {link}, whose rotation is known:")
+            text = _("Point {point} belongs to link {link}, whose rotation is known:")
             yield said(text, point=name_of(about.point), link=about.link)
         yield _turned(here, about)
 

@@ -30,6 +30,15 @@ ROLES = {
     "cylinder": N_("cylinder"),
     "piston": N_("piston"),
 }
+COMMON = {
+    *ROLES.values(),
+    N_("connecting rod"),
+    N_("crankshaft"),
+    N_("lever"),
+    N_("piston rod"),
+    N_("ram"),
+    N_("wheel"),
+}  # names that files give to links and that every language has
 PAIRS = {
     "R": N_("turning (R)"),
     "P": N_("sliding (P)"),
@@ -61,7 +70,7 @@ def tables(results: Results) -> Iterable[Table]:
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
         "links", _("Links"), (_("link"), _("is a"), _("called"), _("points")),
-        [(x.name, _(ROLES[roles[x.name]]), x.label, ", ".join(x.points)) for x in links],
+        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points)) for x in links],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
     yield table_of_words(
@@ -75,6 +84,11 @@ def tables(results: Results) -> Iterable[Table]:
         [(", ".join(g.links), ROMAN[min(g.group_class, 10)], str(g.order), g.type, ", ".join(p.name for p in g.inner),
           ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer)) for g in structure.groups],
     )  # fmt: skip
+
+
+def called(label: str) -> str:
+    """The file's own name of a link; a usual one in the reader's language."""
+    return _(label) if label in COMMON else label
 
 
 def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
