@@ -10,7 +10,7 @@ from tmm_cli.dynamics.motors import Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
 from tmm_cli.dynamics.run import acceleration, run
 from tmm_cli.dynamics.task import Profile, RunTask
-from tmm_cli.errors import StandstillError
+from tmm_cli.errors import LongRunError, StandstillError
 from tmm_cli.library import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -105,6 +105,13 @@ def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
     motor = found.task.motor.moment(np.abs(results.motion.rate))
     speeding = found.task.flywheel * results.motion.acceleration
     assert results.reactions.balance.moment == pytest.approx(motor - speeding, rel=1e-7, abs=1e-4)
+
+
+def test_a_run_that_wants_very_many_steps_ends_with_what_it_came_to(monkeypatch):
+    monkeypatch.setattr("tmm_cli.dynamics.run.MOST", 500)
+    with pytest.raises(LongRunError) as stopped:
+        run(machine(load=-2.0, ripple=1.5), RunTask(motor=Linear(50.0, 10.0)))
+    assert 0 < stopped.value.way < TURN and stopped.value.count == 500
 
 
 def test_a_run_of_very_many_turns_is_refused():

@@ -173,6 +173,14 @@ class WeakMotorError(LinkageError):
         self.wanted, self.most, self.place = wanted, most, place
 
 
+class LongRunError(LinkageError):
+    """A run that integration does not bring to its end in so many evaluations: its time (s) and way then."""
+
+    def __init__(self, time: float, way: float, count: int) -> None:
+        super().__init__(f"{time:g} s")
+        self.time, self.way, self.count = time, way, count
+
+
 class RunawayError(LinkageError):
     """Loads push a machine on, with `pushing` (N m, or N) in the mean, and its motor holds `most` at its best.
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
+from itertools import count, pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -20,13 +20,14 @@ from scipy.integrate import solve_ivp
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import RunTask
-from tmm_cli.errors import StandstillError
+from tmm_cli.errors import LongRunError, StandstillError
 from tmm_cli.roots import roots
 from tmm_cli.tolerances import SEAM
 from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
 STRONG = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
+MOST = 100_000  # evaluations of a run, some ten seconds: those of the bank take 3 000 at the most
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
 INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
@@ -83,15 +84,15 @@ class Run:
 
 
 def run(machine: Reduced, task: RunTask) -> Run:
-    """From the beginning of the machine's way to its end. Raises StandstillError where it does not start."""
+    """From the beginning of the way to its end. Raises StandstillError where it does not start, and LongRunError."""
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
-    times, states, steps, time = [], [], [], 0.0
+    times, states, steps, time, left = [], [], [], 0.0, count(MOST, -1)
     ending: Ending = "time"
     for low, high in _pieces(machine.moment):
         for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
-            done = _until(machine, task, (low, high), (time, end), state)
+            done = _until(machine, task, (low, high), (time, end), state, left)
             times.append(done.t)
             states.append(done.y)
             steps.append(done.sol)
@@ -105,8 +106,16 @@ def run(machine: Reduced, task: RunTask) -> Run:
     return replace(record, steps=tuple(steps))
 
 
-def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real) -> Any:
-    """A piece, to its end, to rest, or as long as that."""
+def _until(
+    machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real,
+    left: Iterator[int],
+) -> Any:  # fmt: skip
+    """A piece, to its end, to rest, or as long as that. left: evaluations. Raises LongRunError where none is left."""
+
+    def rates(t: float, y: Real) -> list[float]:
+        if not next(left):
+            raise LongRunError(t, float(y[0]), MOST)
+        return _rates(machine, task, piece, t, y)
 
     def gone(t: float, y: Real) -> float:
         return float(y[0] - piece[1])
@@ -120,7 +129,7 @@ def _until(machine: Reduced, task: RunTask, piece: tuple[float, float], times: t
     energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
     method, error = ("LSODA", TOLERANCE / 10) if _stiff(machine, task) else ("DOP853", TOLERANCE)
     return solve_ivp(
-        lambda t, y: _rates(machine, task, piece, t, y), times, state, method, events=(gone, rests),
+        rates, times, state, method, events=(gone, rests),
         rtol=error, dense_output=True,
         atol=[error * machine.length, error * scale, *[error * energy] * 3],
     )  # fmt: skip

@@ -12,6 +12,7 @@ from tmm_cli.errors import (
     BySpeedError,
     GroupTooLargeError,
     LinkageError,
+    LongRunError,
     MissingStrokesError,
     MobilityError,
     NoCycleError,
@@ -160,6 +161,12 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             return ProblemError(
                 _("a law of motion is not found where forces hang on reactions or on speeds"), path=path, key=True,
                 allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
+            )  # fmt: skip
+        case LongRunError(time=time, count=count):
+            reason = _("the run is not computed to its end: after {count} evaluations it has come to {time} s")
+            return ProblemError(
+                reason.format(count=count, time=f"{time:.4g}"), path=("dynamics", "run"),
+                allowed=_("a shorter run, or inertias that differ less on the way"),
             )  # fmt: skip
         case StandstillError() if problem.dynamics is not None and not problem.dynamics.cyclic:
             return ProblemError(
