@@ -134,6 +134,47 @@ def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_load
     assert foreign.left == ("Block `dynamics`: motor and flywheel are said otherwise here.",)
 
 
+def file_of_pylinkage(**changed):
+    """A four-bar of pylinkage; changed: joints that are added, or other keys."""
+    places = {"A": [0, 0], "B": [10, 0], "C": [30, 20], "D": [40, 0]}
+    joints = [{"id": name, "type": "ground" if name in "AD" else "revolute", "position": place}
+              for name, place in places.items()]  # fmt: skip
+    links = [{"id": "ground", "type": "ground", "joints": ["A", "D"]},
+             {"id": "crank", "type": "driver", "joints": ["A", "B"], "motor_joint": "A", "angular_velocity": 1},
+             {"id": "rod", "type": "link", "joints": ["B", "C"]},
+             {"id": "bar", "type": "link", "joints": ["C", "D"]}]  # fmt: skip
+    return {"name": "four-bar", "joints": [*joints, *changed.pop("more", ())], "links": links} | changed
+
+
+NAMES = [
+    "null", "true", "nan", "5", "0", "at", "g1", "_", "", " ", "]}, x: {y: [1", "B # c", "a\"b'c\\", "Шарнир",
+    "&a *b !!python/object", "a: b", "x" * 90, "~", "2020-01-01", "<<", "²",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("old", ["A", "B", "crank", "rod"])
+def test_whatever_a_name_is_what_is_written_is_the_same_mechanism(name, old):
+    text = json.dumps(file_of_pylinkage()).replace(json.dumps(old), json.dumps(name))
+    file = json.loads(text) | {"name": name}
+    __, results = imported(json.dumps(file, ensure_ascii=False))
+    linkage = results.linkage
+    assert results.problem.title == (name or "file")
+    assert len(linkage.links) == 4 and len(linkage.links["0"].points) == 2
+    assert {len(link.points) for link in linkage.links.values()} == {2}
+
+
+def test_joints_on_no_moving_link_are_left_out_and_said():
+    more = [{"id": "X", "position": [5, 5]}, {"id": "Y", "type": "ground", "position": [7, 5]},
+            {"id": "T", "type": "tracker", "position": [2, 2], "ref_joint1_id": "T", "ref_joint2_id": "T"}]  # fmt: skip
+    foreign, results = imported(json.dumps(file_of_pylinkage(more=more)))
+    assert set(results.linkage.links["0"].points) == {"A", "D"} and set(foreign.places) == set("ABCD")
+    assert set(foreign.left) == {
+        "Joint X is on no moving link.", "Joint Y is on no moving link.",
+        "Point T follows two joints that are not on one link.",
+    }  # fmt: skip
+
+
 REFUSED = {
     "nothing of it\n":
         "file: this file is of no format that is known here\n"
@@ -145,6 +186,20 @@ REFUSED = {
         "  allowed: ground, driver, arc_driver, link\n  did you mean 'link'?",
     "joints\nid,x,y,links,type,ground,angle,input\nA,0,zero,AB,R,true,Null,true\n":
         "file:3:1: y: a number is wanted\n  found:   'zero'",
+    json.dumps(file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])):
+        "file:1:252: joints[4].id: a name is given twice\n  found:   'B'",
+    json.dumps(file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])):
+        "file:1:270: joints[4].position[0]: this is too large for a mechanism\n  found:   1e+308",
+    json.dumps(file_of_pylinkage(joints=[{}] * 501)):
+        "file:1:32: joints: this is too long: at most 500",
+    link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []):
+        "file: this link of PMKS+ cannot be read",
+    link([(INPUT | GROUND, "A", 0, 0, 0)], [("R", "AB", "A", 2, 1, 2)], [("F", "BA", 0, 0, 1, 0, 9)]):
+        "file: forces.F: there is no link of that name\n  found:   'BA'",
+    "\n" * 900_000:
+        "file: this file is of no format that is known here",
+    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}}\nbodies: {}\njoints: [{type: revolute, endpoints: []}]\n":
+        "file:4:38: joints[0].endpoints: a hinge joins two links",
     "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}, construct: [{type: point_on_ray, point: B, from: C}]}\n":
         "file:2:82: geometry.construct[0].from: this word is not known here\n  found:   'C'\n  allowed: A",
 }  # fmt: skip
@@ -177,3 +232,21 @@ def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_
     done = tmm("export", str(ROOT / "problems" / "shaper.yaml"), "--to", "pylinkage", "-o", "-", cwd=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.endswith("error: pylinkage knows sliders with one hinge on a line of the frame only\n")
+
+
+def test_what_cannot_be_a_problem_file_is_said_of_the_file_that_was_read(tmp_path):
+    links = file_of_pylinkage()["links"]
+    links[2]["joints"] = []
+    (tmp_path / "it.json").write_text(json.dumps(file_of_pylinkage(links=links)), encoding="utf-8")
+    done = tmm("import", "it.json", cwd=tmp_path)
+    assert done.returncode == 2 and not (tmp_path / "it.yaml").exists()
+    assert done.stderr.startswith(
+        "error: it.json: the problem file of it would be refused: links.rod.points: a link has at least one point\n"
+    )
+
+
+def test_a_key_with_control_characters_does_not_reach_the_terminal(tmp_path):
+    text = (FILES / "slotted-lever.yaml").read_text(encoding="utf-8") + '"\\x1b[31mred": 1\n'
+    (tmp_path / "it.yml").write_text(text, encoding="utf-8")
+    done = tmm("import", "it.yml", cwd=tmp_path)
+    assert "not taken over: Key `\\x1b[31mred` is not read.\n" in done.stderr

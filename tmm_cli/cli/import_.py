@@ -11,7 +11,7 @@ from tmm_cli.cli.common import refusing
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, clean, path_text
 from tmm_cli.problem.formats import foreign_of
 from tmm_cli.problem.formats.written import written
 from tmm_cli.problem.reader import file_text, read_text
@@ -29,7 +29,14 @@ def import_(
         foreign = foreign_of(file_text(file), file)
         target = out or Path(f"{Path(file).stem}.yaml")
         text = written(foreign, Path(file).name)
-        problem_of(read_text(text, str(target)))  # what is written can be read
+        try:
+            problem_of(read_text(text, str(target)))  # what is written can be read
+        except ProblemError as error:  # its lines are of a file that nobody sees
+            told = _("the problem file of it would be refused: {reason}")
+            reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+            raise ProblemError(
+                told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
+            ) from None
         if str(out) == "-":
             typer.echo(text, nl=False)
         elif target.exists():
@@ -39,4 +46,4 @@ def import_(
                 stream.write(text)
             say(_("written: {file}; next: tmm run {file}").format(file=target))
         for line in foreign.left:
-            say(_("not taken over: {line}").format(line=line))
+            say(_("not taken over: {line}").format(line=clean(line, 300)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-FRAME = "0"
+FRAME = "\0"  # no link of any file is called so
 Length = Literal["mm", "cm", "m", "in"]
 
 

@@ -22,7 +22,7 @@ HINGE, GUIDE = "revolute", "prismatic"
 
 def recognised(text: str) -> bool:
     """Whether the text is of this format."""
-    return re.search(r"^\s*schema:\s*[\"']?linkage/v2", text, re.MULTILINE) is not None
+    return re.search(r"^[ \t]*schema:[ \t]*[\"']?linkage/v2", text, re.MULTILINE) is not None
 
 
 def read(text: str, file: str) -> Foreign:
@@ -56,12 +56,13 @@ class _Reading:
         if (ratio := self._value(self._driven(), "q_ratio")) < 0:
             notes.append(_("q_ratio is {ratio}: the sign of omega is taken for that of the link itself.").format(
                 ratio=f"{ratio:g}"))  # fmt: skip
+        output = said.one_of(self.top["bodies"].mapping()) if (said := self.top.get("output_body")) else ""
         gravity = given.vector() if (given := self.top.get("gravity")) else None
         return Foreign(
             "linkage/v2", "", "m", places, tuple(found for (body, __), found in names.items() if body == FRAME),
             tuple(massed), self._drive(),
             tuple(Slide(s.runner, names[s.runner, s.point], s.carrier, s.through, s.angle) for s in slides),
-            tuple(self._pushes()), gravity, output.text() if (output := self.top.get("output_body")) else "", True,
+            tuple(self._pushes()), gravity, output, True,
             tuple(notes), tuple(left),
         )  # fmt: skip
 
@@ -79,6 +80,8 @@ class _Reading:
         for joint in self.top["joints"].items():
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
                 ends = joint["endpoints"].items()
+                if len(ends) < 2:
+                    raise joint["endpoints"].refused(_("a hinge joins two links"))
                 found.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
         return found
 

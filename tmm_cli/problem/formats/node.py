@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.tree import Path, Tree
+from tmm_cli.problem.values import LARGEST
 
 MOST = 500  # items of a list, keys of a mapping
 
@@ -42,9 +42,14 @@ class Node:
 
     def mapping(self) -> dict[str, Any]:
         """Its keys."""
-        if not isinstance(self.data, dict) or len(self.data) > MOST:
+        if not isinstance(self.data, dict):
             raise self.refused(_("keys with values are wanted"))
+        self._bounded(len(self.data))
         return self.data
+
+    def _bounded(self, length: int) -> None:
+        if length > MOST:
+            raise self.refused(_("this is too long: at most {max_length}").format(max_length=MOST))
 
     def pairs(self) -> Iterator[tuple[str, Node]]:
         """Its keys and their values."""
@@ -53,8 +58,9 @@ class Node:
 
     def items(self) -> list[Node]:
         """Of a list."""
-        if not isinstance(self.data, list) or len(self.data) > MOST:
+        if not isinstance(self.data, list):
             raise self.refused(_("a list [..., ...] is wanted"))
+        self._bounded(len(self.data))
         return [Node(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
@@ -71,9 +77,11 @@ class Node:
         return found
 
     def number(self) -> float:
-        """A finite number."""
-        if isinstance(self.data, bool) or not isinstance(self.data, int | float) or not math.isfinite(self.data):
+        """A number that a mechanism can have."""
+        if isinstance(self.data, bool) or not isinstance(self.data, int | float):
             raise self.refused(_("a number is wanted"))
+        if not -LARGEST <= self.data <= LARGEST:
+            raise self.refused(_("this is too large for a mechanism"))
         return float(self.data)
 
     def vector(self) -> complex:

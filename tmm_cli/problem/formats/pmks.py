@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Length, Push, Slide
 
+MOST = 500  # joints, links
 INCH, POUND = 0.0254, 4.4482216152605
 
 
@@ -66,6 +67,18 @@ class Saved:
 def foreign(saved: Saved, file: str) -> Foreign:
     """The mechanism. Raises ProblemError."""
     joints = {joint.id: joint for joint in saved.joints}
+    for each in (saved.joints, saved.links):
+        if len(each) > MOST:
+            raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MOST), file=file)
+    links = {link.id: link for link in saved.links}
+    for ids in ([joint.id for joint in saved.joints], [link.id for link in saved.links]):
+        for k, name in enumerate(ids):
+            if name in ids[:k]:
+                raise ProblemError(_("a name is given twice"), found=quote(name), file=file)
+    for force in saved.forces:
+        if force.link not in links:
+            raise ProblemError(_("there is no link of that name"), path=("forces", force.id), found=quote(force.link),
+                               near=nearest(force.link, links), file=file)  # fmt: skip
     for link in saved.links:
         for joint in link.joints:
             if joint not in joints:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import re
 from collections.abc import Mapping
 
@@ -13,6 +12,7 @@ from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.formats.foreign import Foreign
 from tmm_cli.problem.formats.pmks import Force, Joint, Link, Saved, foreign
 from tmm_cli.problem.tree import Mark
+from tmm_cli.problem.values import LARGEST
 
 PARTS = ("joints", "links", "forces", "pathPoints", "threePositions", "settings")
 MOST = 1000  # rows
@@ -96,9 +96,9 @@ def _numbers(row: Mapping[str, str], keys: tuple[str, ...], file: str, line: int
         try:
             number = 0.0 if text in ("", "Null", "undefined", "NaN") else float(text)
         except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            raise _refused(file, line, _("a number is wanted"), quote(text), key)
+            raise _refused(file, line, _("a number is wanted"), quote(text), key) from None
+        if not -LARGEST <= number <= LARGEST:
+            raise _refused(file, line, _("this is too large for a mechanism"), quote(text), key)
         found.append(number)
     return tuple(found)
 

@@ -18,6 +18,7 @@ DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
 FORM = re.compile(r"(?:https?://[^\s?]*\?)?([\w-]+\.[\w,-]*\.[\w,-]*\.[\w-]*\.\S*)\s*")
 LENGTHS: Final[tuple[Length, ...]] = ("in", "cm", "m")
 MOST = 100_000
+LONGEST = 10  # characters of a number: as many as a mechanism can have
 
 
 def recognised(text: str) -> bool:
@@ -66,6 +67,8 @@ def _items(rest: str) -> tuple[list[str], str]:
 
 def _number(text: str, *, signed: bool = True) -> int:
     """Raises ValueError."""
+    if len(text) > LONGEST:
+        raise ValueError
     negative = signed and text[:1] == "0"
     found = 0
     for char in text[negative:]:

@@ -23,15 +23,21 @@ def recognised(text: str) -> bool:
 def read(text: str, file: str) -> Foreign:
     """The mechanism of a file. Raises ProblemError."""
     top = Node(tree := read_text(text, file), tree.data)
-    joints = {joint["id"].text(): joint for joint in top["joints"].items()}
+    joints: dict[str, Node] = {}
+    for joint in top["joints"].items():
+        if joints.setdefault(joint["id"].text(), joint) is not joint:
+            raise joint["id"].refused(_("a name is given twice"))
     links = top["links"].items()
     frame = _frame(joints, links)
     places = {name: _place(joint) for name, joint in joints.items()}
     kinds = {name: _kind(joint) for name, joint in joints.items()}
-    bodies, drive, left = [], None, []
+    bodies: list[Body] = []
+    drive, left = None, []
     notes = [_("Lengths have no unit in pylinkage: they are taken for millimetres.")]
     for link in links:
         kind, name = link["type"].one_of(LINKS), link["id"].text()
+        if name in (body.name for body in bodies):
+            raise link["id"].refused(_("a name is given twice"))
         if kind == "ground":
             continue
         own = [one.one_of(joints) for one in link["joints"].items()]
@@ -54,6 +60,8 @@ def read(text: str, file: str) -> Foreign:
         if kind == "prismatic":
             joint, stone = joints[name], _stone(name, [body.name for body in bodies])
             axis = vector.vector() if (vector := joint.get("axis")) else 1 + 0j
+            if not axis:
+                raise joint["axis"].refused(_("a direction is wanted"))
             through = at.vector() if (at := joint.get("line_point")) else 0j
             bodies.append(Body(stone, (name,)))
             slides.append(Slide(stone, name, FRAME, through, cmath.phase(axis)))
@@ -61,9 +69,16 @@ def read(text: str, file: str) -> Foreign:
                 joint=name, link=stone))  # fmt: skip
         if kind == "tracker" and not any(name in body.points for body in bodies):
             left.append(_("Point {point} follows two joints that are not on one link.").format(point=name))
+    used = {point for body in bodies for point in body.points}
+    left += [
+        _("Joint {joint} is on no moving link.").format(joint=j)
+        for j in joints
+        if j not in used and kinds[j] != "tracker"
+    ]
     title = named.text() if (named := top.get("name")) and named.data else ""
     return Foreign(
-        "pylinkage", title, "mm", places, frame, tuple(bodies), drive, tuple(slides),
+        "pylinkage", title, "mm", {j: z for j, z in places.items() if j in used}, tuple(j for j in frame if j in used),
+        tuple(bodies), drive, tuple(slides),
         notes=tuple(dict.fromkeys(notes)), left=tuple(left),
     )  # fmt: skip
 

@@ -12,10 +12,11 @@ from itertools import count
 from string import ascii_uppercase
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import clean
+from tmm_cli.problem.errors import ProblemError, clean
 from tmm_cli.problem.formats.foreign import FRAME, Body, Foreign, Push, Slide
+from tmm_cli.problem.scalars import plain_value
 
-PLAIN = re.compile(r"[^\W\d]\w{0,11}|[1-9]\d?")
+PLAIN = re.compile(r"(?!at$|g\d+$)[^\W\d_]\w{0,11}|[1-9]\d?")  # `at` and g1 mean something else beside them
 SAME = 1e-9  # of the size: points so near are in one place
 ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
 
@@ -37,7 +38,7 @@ class _Writing:
 
     @classmethod
     def of(cls, foreign: Foreign) -> _Writing:
-        links = _plain([body.name for body in foreign.bodies], map(str, count(1))) | {FRAME: FRAME}
+        links = _plain([body.name for body in foreign.bodies], map(str, count(1)), digits=True)
         axes: dict[str, tuple[complex, float]] = {FRAME: (0j, 0.0)}
         for body in foreign.bodies:
             axes[body.name] = _axes(foreign, body)
@@ -73,7 +74,7 @@ class _Writing:
         yield from self._loads()
 
     def _key(self, body: str) -> str:
-        return self.links[body] if body != FRAME else "0"
+        return "0" if body == FRAME else self.links[body]
 
     def _local(self, body: str, place: complex) -> complex:
         origin, angle = self.axes[body]
@@ -184,11 +185,22 @@ def _size(foreign: Foreign) -> float:
     return max((abs(z) for z in foreign.places.values()), default=1.0)
 
 
-def _plain(names: Iterable[str], others: Iterable[str]) -> dict[str, str]:
-    """A plain name for each: its own, or else the first of the others that is free."""
+def _plain(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
+    """A plain name for each: its own, or else the first of the others that is free. digits: may be a name."""
     own = list(dict.fromkeys(names))
     free = (other for other in others if other not in own)
-    return {name: name if PLAIN.fullmatch(name) else next(free) for name in own}
+    return {name: name if _is_plain(name, digits) else next(free) for name in own}
+
+
+def _is_plain(name: str, digits: bool) -> bool:
+    """Whether YAML reads it as a name: no null, no true, no nan."""
+    if not PLAIN.fullmatch(name):
+        return False
+    try:
+        read = plain_value(name)
+    except ProblemError:
+        return False
+    return isinstance(read, str) or (digits and type(read) is int)
 
 
 def _letters() -> Iterator[str]:
