@@ -174,3 +174,8 @@ def test_the_data_of_the_motor_are_told():
     assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
     assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
     assert rows["its slip at the largest moment"] == "0.1941"  # (1 - 1430/1500) (2.2 + (2.2^2 - 1)^0.5)
+
+
+@pytest.mark.parametrize(("name", "told"), [("shaper", False), ("shaper-motor", True)])
+def test_what_balances_is_told_from_what_drives_where_there_is_a_flywheel(name, told):
+    assert ("The flywheel is not a link" in html(note(solved(name), drawn=False)).decode()) == told
