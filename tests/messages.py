@@ -28,6 +28,7 @@ KEYWORDS = {
     "N_": "",
     "Phrase": "",
     "lettered": "symbol",
+    "Lettered": "symbol",
     "symbol": "symbol",
 }  # what marks a message, and its context
 UNITS = sorted({*filter(str.isascii, SYMBOLS), "J", "W"} - {"%"})

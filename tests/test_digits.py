@@ -254,6 +254,12 @@ def test_a_heavy_link_that_does_not_turn_has_the_error_of_its_couple_all_the_sam
     assert "1.5e+18" in text and beyond(solve(problem_of(read_text(text, "screen.yaml")))) is None
 
 
+def test_a_mass_at_rest_reduces_to_nothing_within_its_bound():
+    text = (PROBLEMS / "crossed-slots.yaml").read_text(encoding="utf-8")
+    text = text.replace("inertia: 0.1", "inertia: 0")
+    assert "inertia: 0," in text and beyond(solve(problem_of(read_text(text, "slots.yaml")))) is None
+
+
 def test_a_force_next_to_nothing_acts_far_away_and_that_is_known_no_better_than_the_force():
     text = (PROBLEMS / "planetary-dwell-press.yaml").read_text(encoding="utf-8")
     text = re.sub(r"positions:.*", "positions: {count: 24, from: 9.000000000000001e-08}", text)

@@ -23,9 +23,12 @@ from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.dynamics.motors import Linear
 from tmm_cli.dynamics.sizes import Rim
 from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.language import spoken
 from tmm_cli.linkage import Load
 from tmm_cli.note import note
+from tmm_cli.note.dynamics import words
 from tmm_cli.note.formats.html import html
+from tmm_cli.results.given import given
 
 THIN = 0.05  # mm: less than half of a line
 TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor
@@ -156,3 +159,23 @@ def test_a_single_run_is_drawn_from_its_beginning_to_its_end():
     assert (energy[-1] - energy[0]).imag * mu == pytest.approx(run.kinetic[-1] - run.kinetic[0], abs=mu * THIN)
     page = html(note(results, drawn=False)).decode()
     assert "the brake" in page and all(one.true for one in formulas(page))
+
+
+def test_letters_of_the_law_of_motion_are_those_of_the_course():
+    for language, letters in (("en", "Md Jf ωm"), ("ru", "Mд Jм ωср"), ("sr", "Mp Jz ωsr")):
+        with spoken(language):
+            assert " ".join(one.plain for one in (words.DRIVING, words.FLYWHEEL, words.MEAN)) == letters
+    assert words.FLYWHEEL.primed.letter == "J′"
+
+
+def test_the_data_of_the_motor_are_told():
+    (table,) = (one for one in given(problem("shaper-motor")) if one.name == "machine")
+    rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
+    assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
+    assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
+    assert rows["its slip at the largest moment"] == "0.1941"  # (1 - 1430/1500) (2.2 + (2.2^2 - 1)^0.5)
+
+
+@pytest.mark.parametrize(("name", "told"), [("shaper", False), ("shaper-motor", True)])
+def test_what_balances_is_told_from_what_drives_where_there_is_a_flywheel(name, told):
+    assert ("The flywheel is not a link" in html(note(solved(name), drawn=False)).decode()) == told

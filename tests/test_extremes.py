@@ -10,6 +10,7 @@ from test_commands import tmm
 from tmm_cli import load, solve
 from tmm_cli.analysis.extremes import with_extremes
 from tmm_cli.analysis.pipeline import at_places
+from tmm_cli.draw.sheets.hodographs import reactions
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 
@@ -67,3 +68,10 @@ def test_extremes_and_hodographs_stand_beside_a_whole_run(tmp_path):
     names = {path.name for path in tmp_path.glob("*/*")}
     assert whole <= names  # nothing of it went
     assert {"extremes.csv", "hodograph-A.svg", "reaction-A.svg", "hodograph-x.svg"} <= names
+
+
+def test_hodographs_stand_in_axes_that_turn_with_each_link_and_in_polar_axes():
+    results, __ = found("crank-slider", "forces")
+    drawn = dict(reactions(results))
+    assert {"hodograph-A", "hodograph-A-link-1", "hodograph-A-link-2", "polar-A", "reaction-A"} <= drawn.keys()
+    assert "hodograph-x-link-3" not in drawn  # a slider does not turn

@@ -71,6 +71,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "grading.exports.group": "drawing",
     "note.chapters.balancing": "balancing, for files that ask for it",
     "note.chapters.law_of_motion": "the law of motion, for files that ask for it",
+    "results.given": "the law of motion, for files that ask for it",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",

@@ -10,6 +10,7 @@ from tmm_cli import load, solve
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.given import given
+from tmm_cli.results.warnings import warnings
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -93,3 +94,12 @@ def test_where_a_table_jumps_from_its_end_to_its_beginning_rounding_does_not_cho
     if against == "crank angle":
         at_zero = np.abs(np.sin(results.motion.q / 2)) < 1e-6
         assert results.reactions.of("B").force[at_zero].real == pytest.approx(260)
+
+
+@pytest.mark.parametrize(("last", "told"), [(100, 1), (500, 0)])
+def test_a_law_of_motion_tells_of_a_table_that_does_not_close(last, told):
+    text = CRANK_SLIDER.format(against="crank angle", table=f"[[0, 500], [90, 800], [360, {last}]]")
+    text += "masses: {3: {mass: 1}}\ndynamics: {flywheel: {inertia: 9}}\n"
+    results = solve(problem_of(read_text(text, "x.yaml")))
+    said = [one for one in warnings(results) if "begins with 500 N and ends with 100 N" in one]
+    assert len(said) == told

@@ -106,6 +106,11 @@ def known(results: Results) -> np.ndarray:
     for own in results.linkage.loads:
         if own.table is not None:  # a pressure of the file is a force in it
             found += [*own.table.arguments, *own.table.values]
+    task = results.problem.dynamics
+    if task is not None:  # the same of what drives, and a motor's numbers are reduced to the driver
+        found += [task.flywheel, *(vars(task.motor).values() if task.motor is not None else ())]
+        drive = getattr(task, "drive", None)
+        found += [*drive.arguments, *drive.values] if drive is not None else []
     for mesh in results.linkage.meshes:
         if mesh.law is not None:  # where its pieces begin and end
             found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]

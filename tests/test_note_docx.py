@@ -149,3 +149,17 @@ def test_texts_are_data(file):
     assert shown in [p.text for p in read.paragraphs]  # the title
     assert any(p.text.endswith(shown) for p in read.paragraphs if p.style.name == "Caption")
     assert not list(read.element.body.iter(f"{W}hyperlink"))
+
+
+def test_no_row_of_a_long_table_stands_alone_on_a_page():
+    rows = tuple(((str(k),),) for k in range(24))
+    file = FORMATS["docx"](Note("Long", "en", (Rows("Positions", (("position",),), rows),)))
+    (table,) = docx.Document(io.BytesIO(file)).tables
+    kept = [bool(row.cells[0].paragraphs[0].paragraph_format.keep_with_next) for row in table.rows]
+    assert [number for number, with_next in enumerate(kept) if with_next] == [0, 1, 2, 22, 23]
+    assert len(kept) == 25, "with its heading"
+
+
+def test_the_title_of_the_page_is_that_of_the_problem(file):
+    titles = [p.text for p in docx.Document(io.BytesIO(file)).paragraphs if p.style.name == "Title"]
+    assert len(titles) == 1 and "Course project" not in titles[0]

@@ -82,3 +82,12 @@ def test_tables_with_decimal_commas_stand_beside_those_of_machines(shaper, tmp_p
 def test_what_an_earlier_run_wrote_for_people_goes_with_it(shaper, tmp_path):
     write_results(shaper, tmp_path, people="xlsx")
     assert write_results(shaper, tmp_path).removed == ["tables.xlsx"]
+
+
+def test_sheets_are_named_by_whole_words():
+    titles = (
+        "Asked for: four-bar-by-k", "Loads: weights and forces of inertia",
+        "Balance of powers and of works over the whole cycle",
+    )  # fmt: skip
+    data = workbook([Table(str(k), title, (Column("x", [1.0]),)) for k, title in enumerate(titles)], UNITS)
+    assert list(sheets(data)) == ["Asked for", "Loads", "Balance of powers"]

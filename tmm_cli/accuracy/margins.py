@@ -26,6 +26,7 @@ from tmm_cli.quantities import (
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
     FORCE,
+    INERTIA,
     LENGTH,
     MOMENT,
     NUMBER,
@@ -90,11 +91,12 @@ def sizes(results: Results) -> Mapping[Dimension, float]:
     }  # fmt: skip
     if results.reactions is not None:
         applied = results.reactions.applied
-        links = results.linkage.links.values()  # one that does not turn has the error of its couple all the same
-        inertia = found[ACCELERATION] * _most(link.mass for link in links)
-        forces = max(inertia, _most(reaction.force for reaction in results.reactions.all))
-        turning = found[ANGULAR_ACCELERATION] * _most(link.inertia for link in links)
-        couples = max(turning, _most(load.moment for load in applied))
+        links = results.linkage.links.values()
+        mass, inertia = _most(link.mass for link in links), _most(link.inertia for link in links)
+        # a link that does not move has the errors of its forces all the same
+        forces = max(found[ACCELERATION] * mass, _most(reaction.force for reaction in results.reactions.all))
+        couples = max(found[ANGULAR_ACCELERATION] * inertia, _most(load.moment for load in applied))
+        found[INERTIA] = mass * v**2 + inertia * w**2  # reduced to the driver
         found[FORCE] = max(forces, _most(load.force for load in applied)) + couples / size
         found[MOMENT] = found[FORCE] * found[LENGTH]
     return found

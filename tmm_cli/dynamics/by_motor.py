@@ -144,6 +144,7 @@ class Cycle:
         self.panels = done
         return begin, slope, np.stack([panel.slips for panel in done if panel.slips is not None], axis=1)
 
+    @np.errstate(all="ignore")  # at rest the rate is not finite, and there is no solution
     def _solved(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
         """Slips at the nodes, and their slopes by that at the beginning, (nodes, 2); None where there are none."""
         idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * SUMS[:-1]
@@ -152,12 +153,9 @@ class Cycle:
         for _ in range(STEPS):
             speed = idle * (1 - values)
             driving, by_slip = self.motor.at_slip(values)
-            with np.errstate(all="ignore"):  # at rest the rate is not finite, and there is no solution
-                under = inertia * speed
-                rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
-                by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
-            if not np.all(np.isfinite(by_rate)):
-                return None
+            under = inertia * speed
+            rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
+            by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
             right[:, 0] = begin - sums @ rate - values
             found: Real = np.linalg.solve(np.eye(NODES) - sums * by_rate, right)
             step, found[:, 0] = found[:, 0].copy(), values + found[:, 0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 from tmm_cli.language import symbol
@@ -42,7 +42,24 @@ class Symbol:
     @property
     def primed(self) -> Symbol:
         """P′ of P."""
-        return replace(self, letter=f"{self.letter}′")
+        return Symbol(f"{self.letter}′", self.below, self.above)
+
+
+class Lettered(Symbol):
+    """A quantity by the letter that a course writes in the language that is spoken where it is read: M_d is M_д."""
+
+    mark: str
+
+    def __init__(self, mark: str) -> None:
+        object.__setattr__(self, "mark", mark)
+
+    @property
+    def letter(self) -> str:
+        return symbol(self.mark).partition("_")[0]
+
+    @property
+    def below(self) -> str:
+        return symbol(self.mark).partition("_")[2]
 
 
 @dataclass(frozen=True)

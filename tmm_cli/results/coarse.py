@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.quantities import FORCE, LENGTH, MOMENT, NUMBER, SPEED, Dimension
+from tmm_cli.quantities import FORCE, INERTIA, LENGTH, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.vectors import Real
 
@@ -32,8 +32,7 @@ def by_margins(
         power = sizes.get(FORCE, 0.0) * sizes[SPEED]
         size = _percent(results, table.name, power, sizes) if column.header.endswith("%") else max(power, own)
         if column.header in SLOPES and results.energy is not None:  # which has nothing of speeds in it
-            inertia = np.abs(results.energy.inertia)
-            size = 2 * sizes[NUMBER] * float(np.max(inertia, where=np.isfinite(inertia), initial=0.0))
+            size = 2 * sizes[NUMBER] * sizes[INERTIA]
     bound = np.repeat(relative, table.rows // len(relative)) * size
     over = RATIOS.get((table.name, column.header))
     if over is not None:

@@ -136,9 +136,10 @@ def _width(head: str, column: Sequence[Cell]) -> float:
 
 def _name(title: str, taken: set[str]) -> str:
     """A name that a sheet may have, and no other one has."""
-    name = FORBIDDEN.sub(" ", title).strip()
+    name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
     if len(name) > LONGEST_NAME:
         name = name[: LONGEST_NAME - 4].rpartition(" ")[0] or name[: LONGEST_NAME - 4]
+        name = re.sub(r"( \w{1,3})+$", "", name)  # not "Balance of powers and"
     name = name.rstrip(",;. ") or "-"
     names = (name if n == 1 else f"{name} {n}" for n in range(1, len(taken) + 2))
     found = next(one for one in names if one.casefold() not in taken)

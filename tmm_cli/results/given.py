@@ -43,6 +43,10 @@ def given(problem: Problem) -> Iterable[Table]:
         yield masses(problem)
     if problem.linkage.loads:
         yield from loads(problem)
+    if problem.dynamics is not None:
+        from tmm_cli.results.given_dynamics import law_of_motion
+
+        yield from law_of_motion(problem, problem.dynamics)
 
 
 def _points(problem: Problem) -> Table:

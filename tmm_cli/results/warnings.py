@@ -16,11 +16,12 @@ from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.language import _, numeral
-from tmm_cli.linkage import Load
-from tmm_cli.quantities import ANGLE, LENGTH, place_dimension
+from tmm_cli.linkage import Load, LoadTable
+from tmm_cli.quantities import ANGLE, FORCE, LENGTH, MOMENT, place_dimension
 from tmm_cli.results.reports.synthesis import missed
 from tmm_cli.results.table import with_unit
 from tmm_cli.synthesis.check import measured_on
+from tmm_cli.tolerances import SAME_PLACE, SAME_RATIO
 from tmm_cli.vectors import dot
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
@@ -301,6 +302,16 @@ def _loads(results: Results, motion: Motion) -> Iterable[str]:
             yield _(
                 "the table of load {load} does not reach as far as the {against} goes: its end value is held"
             ).format(load=given.name, against=_(given.table.against))
+    for given in loads if results.steady is not None else ():
+        if given.table is not None and _jumps_at_the_end(results, given.table):
+            first, last = (
+                with_unit(results.problem.units, value, FORCE if given.force else MOMENT)
+                for value in (given.table.values[0], given.table.values[-1])
+            )
+            yield _(
+                "the table of load {load} does not close over the cycle: it begins with {first} and ends with {last}, "
+                "and the load jumps there; with the same value in both rows it would not"
+            ).format(load=given.name, first=first, last=last)
     for name in working if results.strokes is None or not results.strokes.strokes else ():
         yield _(
             "load {load} is one of the working stroke, but there are no whole strokes on this way of "
@@ -334,6 +345,15 @@ def _short_table(results: Results, motion: Motion, load: Load) -> bool:
     first, last = load.table.arguments[0], load.table.arguments[-1]
     slack = 1e-6 * (last - first)
     return bool(np.any((argument < first - slack) | (argument > last + slack)))
+
+
+def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
+    """Whether a table against the crank, between whose rows one goes evenly, ends otherwise than it begins."""
+    rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
+    whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_PLACE
+    jump = abs(float(table.values[-1]) - float(table.values[0]))
+    largest = max(abs(float(value)) for value in table.values)
+    return table.against != "stroke" and table.between == "linear" and whole and jump > SAME_RATIO * largest
 
 
 def _lever(results: Results, motion: Motion) -> Iterable[str]:

@@ -10,7 +10,7 @@ from tmm_cli.draw.layout.tables import table
 from tmm_cli.draw.layout.values import Quantity, over_positions
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.language import _, translated
-from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.record import Lettered, Symbol
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, MOMENT, NUMBER
 from tmm_cli.results.reports import walk
@@ -40,7 +40,7 @@ def _columns(results: Results) -> list[Quantity]:
     machine, sense = running.steady.machine, running.sense
     return [
         (Symbol("J"), machine.inertia(way), INERTIA), (Symbol("M"), sense * machine.moment(way), MOMENT),
-        (Symbol("M", "d"), sense * law.driving(way), MOMENT), (_("A, J"), running.steady.work(way), NUMBER),
+        (Lettered("M_d"), sense * law.driving(way), MOMENT), (_("A, J"), running.steady.work(way), NUMBER),
         (Symbol("ω"), motion.rate, ANGULAR_SPEED), (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),
         (_("t, s"), motion.time, NUMBER),
     ]  # fmt: skip

@@ -16,7 +16,7 @@ from tmm_cli.draw.paper.ground import Ground
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, scale_words, with_unit
 from tmm_cli.language import _, numeral, spelt, symbol
-from tmm_cli.plans.record import LANDSCAPE, Symbol
+from tmm_cli.plans.record import LANDSCAPE, Lettered, Symbol
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import INERTIA as MOMENT_OF_INERTIA
 from tmm_cli.vectors import Real
@@ -133,7 +133,7 @@ def _flywheel(inertia: float, begins: float, units: UnitSystem) -> Words:
     tan, largest, least = symbol("tan"), *ANGLES
     found = units.from_si(inertia, MOMENT_OF_INERTIA)
     return (
-        Symbol("J", "f"), " = ab·", Symbol("μ", "J"), f"/({tan} ", largest, f" − {tan} ", least, ")",
+        Lettered("J_f"), " = ab·", Symbol("μ", "J"), f"/({tan} ", largest, f" − {tan} ", least, ")",
         f" − {numeral(begins, '.4g')}" if begins else "",
         f" = {numeral(found, '.4g')} {on_paper(units.spelt(MOMENT_OF_INERTIA))}",
     )  # fmt: skip

@@ -13,10 +13,12 @@ from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import DARK, LOAD, REACTION, THIN, Sheet, safe, scale_words
 from tmm_cli.draw.sheets.diagrams import closely, over_turn
 from tmm_cli.draw.sheets.over_cycle import Course, Quantities
+from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _
+from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import reaction_symbol
 from tmm_cli.quantities import FORCE
-from tmm_cli.tolerances import NO_FORCE
+from tmm_cli.tolerances import NO_FORCE, SAME_PLACE
 from tmm_cli.vectors import Vector
 
 BEYOND = 8.0  # mm of the axes beyond the curves
@@ -62,11 +64,32 @@ def reactions(results: Results) -> Iterable[tuple[str, Drawing]]:
         one = Hodograph("", cycle.force, here.force, REACTION, leaps=borders)
         if np.nanmax(np.abs(cycle.force)) > 0:
             yield safe(f"hodograph-{pair}"), hodograph(results, title, [one], "R")
+            yield from _turned(results, whole, here, cycle, borders)
             over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
             yield (
                 safe(f"reaction-{pair}"),
                 over_turn(results, over, places, borders, _parts(cycle.force, here.force)),
             )
+
+
+def _turned(
+    results: Results, whole: Results, here: Reaction, cycle: Reaction, leaps: Sequence[int]
+) -> Iterable[tuple[str, Drawing]]:
+    """The same in the axes of each link of the pair that turns, and its size in polar axes, by the crank's angle."""
+    assert results.motion is not None and whole.motion is not None
+    pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
+    for link in (here.by, here.on):
+        if link != FRAME and np.ptp(angles := whole.motion.angle(link)) > SAME_PLACE:
+            title = _("Hodograph of the reaction {name} in pair {pair}, in axes that turn with link {link}")
+            own = np.exp(-1j * angles), np.exp(-1j * results.motion.angle(link))
+            one = Hodograph("", cycle.force * own[0], here.force * own[1], REACTION, leaps=leaps)
+            named = title.format(name=symbol.name, pair=pair, link=link)
+            yield safe(f"hodograph-{pair}-link-{link}"), hodograph(results, named, [one], "R")
+    if results.turns:
+        title = _("Size of the reaction {name} in pair {pair} in polar axes, against the crank angle")
+        size = np.abs(cycle.force) * np.exp(1j * whole.motion.q)
+        one = Hodograph("", size, np.abs(here.force) * np.exp(1j * results.motion.q), REACTION, leaps=leaps)
+        yield safe(f"polar-{pair}"), hodograph(results, title.format(name=symbol.name, pair=pair), [one], "R")
 
 
 def _parts(cycle: Vector, here: Vector) -> list[Quantities]:

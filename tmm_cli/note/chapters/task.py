@@ -20,7 +20,8 @@ from tmm_cli.results.reports.structure import ROLES, called
 from tmm_cli.results.stages import heavy, link_name
 from tmm_cli.results.understood import motion
 
-FURTHER = ("drivers", "meshes", "cams", "springs", "friction")  # tables of `tmm explain` that are the file's own data
+# tables of `tmm explain` that are the file's own data
+FURTHER = ("drivers", "meshes", "cams", "springs", "friction", "machine", "drive")
 SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
 
 

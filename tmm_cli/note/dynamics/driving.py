@@ -12,11 +12,11 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, said
 from tmm_cli.note.dynamics.words import DRIVING, MOMENT, Here
 from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Substitution, Sum
-from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.record import Lettered, Symbol
 
-CYCLE, WHOLE = Symbol("A", "c"), Symbol("φ", "c")
-STALL, FREE = Symbol("M", "s"), Symbol("ω", "0")
-BREAKDOWN, SLIP, CRITICAL = Symbol("M", "k"), Symbol("s"), Symbol("s", "k")
+CYCLE, WHOLE = Lettered("A_c"), Lettered("φ_c")
+STALL, FREE = Lettered("M_s"), Symbol("ω", "0")
+BREAKDOWN, SLIP, CRITICAL = Lettered("M_k"), Symbol("s"), Lettered("s_k")
 
 
 def mean(here: Here) -> Iterable[Block]:

@@ -23,12 +23,12 @@ from tmm_cli.note.expression import (
     Sum,
 )
 from tmm_cli.note.math import Brackets, Fraction, Letter, Node, Number, Power, row
-from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.record import Lettered, Symbol
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
-GAIN, ON_SHAFT, RATIO = Symbol("ΔT"), Symbol("J", "s"), Symbol("u")
+GAIN, ON_SHAFT, RATIO = Symbol("ΔT"), Lettered("J_s"), Symbol("u")
 DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
-DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), Symbol("m", "f")
+DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), Lettered("m_f")
 
 
 def speeds(here: Here) -> Iterable[Block]:

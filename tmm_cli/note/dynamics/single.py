@@ -11,9 +11,9 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, said
 from tmm_cli.note.dynamics.words import FLYWHEEL, INERTIA, START
 from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Quotient, SquareRoot, Substitution, Sum
-from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.record import Lettered, Symbol
 
-DRIVEN, LOADED, BRAKED, END = Symbol("A", "d"), Symbol("A", "l"), Symbol("A", "b"), Symbol("T", "1")
+DRIVEN, LOADED, BRAKED, END = Lettered("A_d"), Lettered("A_l"), Lettered("A_b"), Symbol("T", "1")
 
 
 def energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:

@@ -14,10 +14,10 @@ from tmm_cli.dynamics.steady import Steady
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Leaf
-from tmm_cli.plans.record import Symbol
+from tmm_cli.plans.record import Lettered, Symbol
 
-INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Symbol("M", "d"), Symbol("A")
-FLYWHEEL, START, MEAN, DELTA = Symbol("J", "f"), Symbol("T", "0"), Symbol("ω", "m"), Symbol("δ")
+INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Lettered("M_d"), Symbol("A")
+FLYWHEEL, START, MEAN, DELTA = Lettered("J_f"), Symbol("T", "0"), Lettered("ω_m"), Symbol("δ")
 LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 

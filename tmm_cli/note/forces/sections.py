@@ -213,8 +213,8 @@ def _guide_between(part: Part) -> Iterable[Block]:
     link = outer.on
     own = reaction_symbol(inner.pair.other(link), link)
     yield said(
-        _("The reaction in the inner pair {pair} is across this guide, so two sizes are unknown in the polygon of the "
-          "forces on one link ({links}), and it gives them:"),
+        _("The reaction in the inner pair {pair} is perpendicular to this guide, so only two magnitudes are unknown "
+          "in the polygon of the forces on one link ({links}), and it gives them:"),
         pair=inner.pair.name, links=links_of([link]),
     )  # fmt: skip
     sought = {own: inner, reaction_symbol(outer.by, link): outer}

@@ -11,8 +11,10 @@ from tmm_cli.note.blocks import Block, Line, Ref, Rows, filled, line, said, seve
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
+from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE
-from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
+from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.results.reports.cycle import has_flywheel
 from tmm_cli.tolerances import NO_DIFFERENCE
 from tmm_cli.vectors import Real, Vector
 
@@ -91,6 +93,13 @@ def balancing(subject: Subject) -> Iterable[Block]:
     yield from _signs(subject, of_all)
     yield said(_("The balancing load found in both ways is given in table {table}."), table=Ref("balance"))
     yield _table(subject, caption, head, columns, "balance")
+    if has_flywheel(results) and balances[0].moment is not None:
+        yield said(
+            _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
+            balance=of_all, whole=row(
+                Letter(Lettered("M_d")), "=", Letter(of_all), "+", Letter(Lettered("J_f")), "·", Letter(Symbol("ε")),
+            ),
+        )  # fmt: skip
 
 
 def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:

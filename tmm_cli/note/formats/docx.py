@@ -41,6 +41,7 @@ from tmm_cli.note.math import Letter, Words
 from tmm_cli.plans.record import Symbol
 
 WHOLE = 13  # rows of a table that is not parted between pages
+ENDS = 3  # rows of a longer one that stay together at its beginning and at its end
 HIGH = 225.0  # mm, of a picture at most
 WIDE = 0.19  # mm, of a letter, a point of its size
 
@@ -177,7 +178,7 @@ class _Writer:
                 cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
-                paragraph.paragraph_format.keep_with_next = number < len(block.rows) <= WHOLE or None
+                paragraph.paragraph_format.keep_with_next = _with_next(number, len(block.rows)) or None
                 if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
                 self._line(paragraph, line, size=size, bold=number == 0)
@@ -194,6 +195,11 @@ class _Writer:
     def _contents(self) -> None:
         self._paragraph("ContentsHeading").add_run(_("Contents"))
         self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in self.note.headings())
+
+
+def _with_next(number: int, rows: int) -> bool:
+    """Whether a row (the heading is 0) is on the page of the next: short tables are whole, no end of others alone."""
+    return number < rows and (rows <= WHOLE or number < ENDS or number > rows - ENDS)
 
 
 def _letters(line: Line) -> float:

@@ -207,10 +207,11 @@ def title_page(document: Any, block: Title) -> None:
     centre = WD_ALIGN_PARAGRAPH.CENTER
     first = document.add_paragraph(plain(block.institution))
     first.alignment = centre
-    heading = document.add_paragraph(plain(block.heading), style="Title")
+    heading = document.add_paragraph(plain(block.heading))
+    heading.alignment = centre
     heading.paragraph_format.space_before = Pt(170)
-    title = document.add_paragraph(plain(block.title))
-    title.alignment = centre
+    heading.runs[0].font.size = Pt(15)
+    document.add_paragraph(plain(block.title), style="Title")
     for k, (role, name) in enumerate(block.people):
         line = document.add_paragraph(f"{plain(role)}: {plain(name) or '_' * 30}")
         line.paragraph_format.left_indent = Mm(80)

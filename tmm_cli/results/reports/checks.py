@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from tmm_cli.analysis.checks import Check, checks
@@ -27,7 +28,10 @@ def _place(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
     at = check.at if abs(check.at) > SAME_PLACE else 0.0
-    return with_unit(results.problem.units, at, place_dimension(results.linkage.driver.kind), 4)
+    units, dimension = results.problem.units, place_dimension(results.linkage.driver.kind)
+    place, none = (with_unit(units, each, dimension, 4) for each in (at, 0.0))
+    again = with_unit(units, 2 * math.pi * results.turns, dimension, 4) if results.turns else ""
+    return none if place == again else place
 
 
 def _said(check: Check, results: Results) -> tuple[str, str, str, str]:

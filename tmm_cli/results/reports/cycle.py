@@ -111,12 +111,16 @@ def _balance(results: Results) -> Iterable[Column]:
     yield difference
 
 
+def has_flywheel(results: Results) -> bool:
+    """Whether what drives has a flywheel to speed up besides the links, and nothing else, as a brake."""
+    if results.single is not None:
+        return bool(results.single.task.flywheel) and not results.single.task.brake
+    return results.steady is not None and bool(results.steady.steady.law.flywheel)
+
+
 def _beside_flywheel(results: Results) -> Iterable[str]:
     """Where a law of motion is computed, what balances the driver is not what drives the machine."""
-    if results.reactions is None or not any((
-        results.steady is not None and results.steady.steady.law.flywheel,
-        results.single is not None and results.single.task.flywheel,
-    )):  # fmt: skip
+    if results.reactions is None or not has_flywheel(results):
         return
     if results.linkage.driver.kind == "turn":
         yield _("The flywheel is not a link: M_b moves the links alone, and what drives is M_d = M_b + J_f epsilon.")
