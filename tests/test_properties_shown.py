@@ -67,6 +67,16 @@ def test_an_expectation_that_is_not_met_ends_with_exit_code_1(tmp_path):
     assert done.returncode == 1
 
 
+@pytest.mark.parametrize(
+    "command", [("forces",), ("forces", "--extremes"), ("kinematics", "--position", "2"), ("dynamics",)]
+)
+def test_what_ends_with_exit_code_1_is_shown_whatever_else_is(tmp_path, command):
+    text = (PROBLEMS / "balanced-crank-slider.yaml").read_text(encoding="utf-8")
+    done = tmm(*command, file_with(tmp_path, "{of: H, expected: 5}", text))
+    assert done.returncode == 1, done.stderr
+    assert "Properties" in done.stdout
+
+
 def test_they_stand_in_result_json_as_far_as_stages_have_run(tmp_path):
     path = file_with(tmp_path, "{of: M_b, at: 0}")
     problem = load(str(path))
