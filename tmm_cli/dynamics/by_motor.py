@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import isfinite
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -31,6 +32,7 @@ TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel
 RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
 UNEVEN = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
 NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
+EYE = np.eye(NODES)
 ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # values at the nodes to both ends
 
 
@@ -129,7 +131,7 @@ class Cycle:
         while left:
             panel = left.pop()
             found = self._solved(panel, flywheel, begin)
-            largest = size if found is None else max(size, float(np.max(np.abs(found[:, 0]))))
+            largest = size if found is None else max(size, float(np.abs(found[:, 0]).max()))
             if found is None or _rough(found[:, 0], begin, largest):
                 if panel.high - panel.low < NARROWEST * self.machine.length:
                     raise StandstillError(panel.low)
@@ -157,12 +159,14 @@ class Cycle:
             rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
             by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
             right[:, 0] = begin - sums @ rate - values
-            found: Real = np.linalg.solve(np.eye(NODES) - sums * by_rate, right)
-            step, found[:, 0] = found[:, 0].copy(), values + found[:, 0]
+            found: Real = np.linalg.solve(EYE - sums * by_rate, right)
+            last = float(np.abs(found[:, 0]).max())
+            found[:, 0] += values
             own = found[:, 0]
-            if not np.all(np.isfinite(own)):
+            largest = float(np.abs(own).max())
+            if not isfinite(largest):
                 return None
-            if np.all(own < 1) and np.max(np.abs(step)) <= LAST_STEP * np.max(np.abs(own)):
+            if own.max() < 1 and last <= LAST_STEP * largest:
                 return found
             values = np.minimum(own, (1 + values) / 2)
         return None
@@ -170,5 +174,5 @@ class Cycle:
 
 def _rough(values: Real, begin: float, size: float) -> bool:
     """Whether slips are no polynomial that begins where it is to, beside the largest of all."""
-    tail = max(float(np.max(np.abs(FIT[-2:] @ values))), abs(float(ENDS[0] @ values) - begin))
+    tail = max(float(np.abs(FIT[-2:] @ values).max()), abs(float(ENDS[0] @ values) - begin))
     return tail > TAIL * size

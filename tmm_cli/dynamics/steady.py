@@ -25,6 +25,7 @@ from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
 from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError
+from tmm_cli.roots import least
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
@@ -108,9 +109,14 @@ class Steady:
 
 
 def extremes(law: Law) -> tuple[float, float]:
-    """The least and the largest speed over the cycle."""
-    places = law.energy.places()
-    return lowest(law.speed, places)[1], -lowest(lambda x: -law.speed(x), places)[1]
+    """The least and the largest speed over the cycle, both searched for at once."""
+    places, signs = law.energy.places(), np.array([1.0, -1.0])
+    values = law.speed(places)
+    best = np.argmin(signs[:, None] * values, axis=1)
+    low, high = (places[np.clip(best + side, 0, len(places) - 1)] for side in (-1, 1))
+    found = least(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
+    slowest, quickest = signs * np.minimum(found, signs * values[best])
+    return float(slowest), float(quickest)
 
 
 def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
