@@ -189,7 +189,7 @@ def widths(rows):
     return [bound / max(error, ROUNDOFF / 4 * size) for _, size, error, bound in rows if error > 0]
 
 
-def test_no_error_is_beyond_its_bound_in_any_class_and_nine_of_ten_bounds_are_narrow():
+def test_no_error_is_beyond_its_bound_in_any_class_and_bounds_are_narrow():
     linkages = [made(seed, kinds) for seed, kinds in CLASSES]
     rows = [row for it in linkages for row in judged(it, it.sketch.at + np.array([0.0, 0.01]), assembled(it)[0])[0]]
     assert len(rows) > 1000
@@ -216,10 +216,10 @@ def test_bounds_hold_near_the_ends_of_the_way_of_every_class(kinds, many_digits)
     assert [row for row in rows if not row[2] <= row[3]] == []
 
 
-def test_nine_of_ten_bounds_are_narrow_near_dead_positions(many_digits):
+def test_bounds_are_narrow_near_dead_positions(many_digits):
     some = [(seed, kinds) for kinds in (("RRR",), ("RRP",), ("RPR",), ("IV",)) for seed in range(2)]
     found = widths([row for seed, kinds in some for row in near_the_ends(seed, kinds)])
-    assert np.mean(np.array(found) <= 100) >= 0.9
+    assert np.mean(np.array(found) <= 100) >= 0.95
 
 
 DIMENSIONS = {

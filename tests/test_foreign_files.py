@@ -223,6 +223,16 @@ def test_what_is_exported_to_pylinkage_comes_back_as_the_same_linkage(tmp_path):
         assert places(other, angle, "AB") == pytest.approx(places(one, angle, "AB"), abs=1e-14)
 
 
+def test_lengths_in_other_units_come_back_too(tmp_path):
+    text = (ROOT / "problems" / "crank-rocker.yaml").read_text(encoding="utf-8").replace("length: mm", "length: m")
+    (tmp_path / "ours.yaml").write_text(text, encoding="utf-8")
+    for command in (("export", "ours.yaml", "--to", "pylinkage", "-o", "it.json"), ("import", "it.json")):
+        done = tmm(*command, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    one, other = (solve(load(str(tmp_path / file)), "kinematics") for file in ("ours.yaml", "it.yaml"))
+    assert places(other, 1.0, "AB") == pytest.approx(places(one, 1.0, "AB"), rel=1e-13)
+
+
 def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_path):
     (tmp_path / "it.pmks").write_text(SLIDER, encoding="utf-8")
     (tmp_path / "it.yaml").write_text("mine\n", encoding="utf-8")

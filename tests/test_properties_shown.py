@@ -67,6 +67,16 @@ def test_an_expectation_that_is_not_met_ends_with_exit_code_1(tmp_path):
     assert done.returncode == 1
 
 
+@pytest.mark.parametrize(
+    "command", [("forces",), ("forces", "--extremes"), ("kinematics", "--position", "2"), ("dynamics",)]
+)
+def test_what_ends_with_exit_code_1_is_shown_whatever_else_is(tmp_path, command):
+    text = (PROBLEMS / "balanced-crank-slider.yaml").read_text(encoding="utf-8")
+    done = tmm(*command, file_with(tmp_path, "{of: H, expected: 5}", text))
+    assert done.returncode == 1, done.stderr
+    assert "Properties" in done.stdout
+
+
 def test_they_stand_in_result_json_as_far_as_stages_have_run(tmp_path):
     path = file_with(tmp_path, "{of: M_b, at: 0}")
     problem = load(str(path))
@@ -95,6 +105,10 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
             "shows.it.of: in one position, between two, or over the way of the driver\n  found:   'v of A'",
         ),
         ("{of: H, per: k}", "shows.it.per: a quantity of the same kind is wanted\n  found:   'k'"),
+        ("{of: v of A, between: [0, 99]}", "shows.it.between[1]: there is no such position\n  found:   99\n"),
+        ("{of: H, over: range}", "shows.it.over: this belongs to the mechanism, and to no position\n  found:   'H'"),
+        ("{of: H, within: 2}", "shows.it.within: this belongs to the mechanism, and to no position\n  found:   'H'"),
+        ("{of: H, without: A}", "shows.it.of: without a hinge only the structure is known\n  found:   'H'"),
         ("{of: W, without: Q}", "shows.it.without: there is no hinge of that name\n  found:   'Q'"),
         ("{of: H, set: {Q: 3}}", "there is no parameter of that name\n  found:   'Q'"),
     ],

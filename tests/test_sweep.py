@@ -159,6 +159,13 @@ def test_a_range_that_cannot_be_is_refused(over, message):
     assert str(refused.value) == message
 
 
+def test_a_parameter_that_the_file_computes_of_others_is_swept_by_bare_numbers():
+    file = ROOT / "problems" / "shaper.yaml"
+    task = Task(with_settings(read_file(file), ["DE=2*OA - 10"]))
+    (axis,) = read_axes(task, ["DE=100..200:3"])
+    assert axis.values.tolist() == [100, 150, 200] and (axis.unit, axis.dimension, axis.factor) == ("", None, 1)
+
+
 def test_the_nearest_quantity_is_proposed():
     task = Task(read_file(str(PROBLEMS / "crank-rocker.yaml")))
     with pytest.raises(ProblemError) as refused:

@@ -27,7 +27,7 @@ from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
 STRONG = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
-MOST = 100_000  # evaluations of a run, some ten seconds: those of the bank take 3 000 at the most
+MOST = 50_000  # evaluations of a run, some five seconds: those of the bank take 3 000 at the most
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
 INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet

@@ -20,6 +20,7 @@ from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
+from tmm_cli.problem.tree import Path
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.roots import bisect, least
 from tmm_cli.structure.assur import analyse
@@ -92,6 +93,8 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
     if task.without is not None:
         results = _broken(task.without, results)
     quantity = _known(task.of, "of", results)
+    if task.without is not None and quantity.stage != "structure":
+        raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
     if not _ran(quantity, results):
         return None
     value = _one(quantity, task, results)
@@ -151,16 +154,22 @@ def _broken(hinge: str, results: Results) -> Results:
 
 def _one(quantity: Quantity, task: Shown, results: Results) -> float:
     """The number that a task asks of a quantity."""
-    if quantity.whole:
-        return float(np.asarray(quantity.read(results)).ravel()[0])
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
+    if quantity.whole:
+        if ways or task.within is not None:
+            message = _("this belongs to the mechanism, and to no position")
+            raise ProblemError(message, path=((*ways, "within")[0],), found=quote(task.of))
+        return float(np.asarray(quantity.read(results)).ravel()[0])
     if len(ways) != 1 or (task.within is not None and ways != ["at"]):
         wanted = _("in one position, between two, or over the way of the driver")
         raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
     read = partial(_read, quantity, results)
     if task.over is not None:
         return _over(read, task.over, results, quantity.dimension == ANGLE)
-    places = [_place(number, results) for number in ([task.at] if task.at is not None else task.between or [])]
+    numbers = [(task.at, ("at",))] if task.at is not None else [
+        (number, ("between", k)) for k, number in enumerate(task.between or [])
+    ]  # fmt: skip
+    places = [_place(number, path, results) for number, path in numbers]
     if task.within is not None:
         most = results.problem.values.positive(task.within, quantity.dimension, ("within",))
         return _zone(read, places[0], most, results)
@@ -179,11 +188,11 @@ def _read(quantity: Quantity, results: Results, q: Real) -> Real:
     return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
 
 
-def _place(number: int | None, results: Results) -> float:
+def _place(number: int, path: Path, results: Results) -> float:
     asked = results.asked
-    if number is None or number >= len(asked):
+    if number >= len(asked):
         raise ProblemError(
-            _("there is no such position"), path=("at",), found=str(number),
+            _("there is no such position"), path=path, found=str(number),
             allowed=_("0 to {last}").format(last=len(asked) - 1),
         )  # fmt: skip
     return float(asked[number])

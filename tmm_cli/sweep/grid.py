@@ -69,9 +69,8 @@ def _axis(task: Task, text: str, usual: int) -> Axis:
         )
     name, *ends, count = found.groups()
     (own,) = task.dimensions((name,))
-    written = NUMBER.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
-    units = [part[2] for part in (*map(NUMBER.fullmatch, ends[::-1]), written) if part]
-    unit = next(filter(None, units), "")
+    units = [part[2] for part in map(NUMBER.fullmatch, ends[::-1]) if part]
+    unit = next(filter(None, units), "") or _own_unit(task, name)
     said: list[Any] = []
     for end in ends:
         part = NUMBER.fullmatch(end)
@@ -97,6 +96,16 @@ def _axis(task: Task, text: str, usual: int) -> Axis:
     values = np.linspace(low, high, steps)
     unit = unit or (task.units.symbol(dimension) if dimension else "")
     return Axis(name, values, unit, dimension, task.number(task.value(f"1 {unit}"), dimension) if unit else 1.0)
+
+
+def _own_unit(task: Task, name: str) -> str:
+    """In which the file writes the parameter; none of arithmetic on others."""
+    written = NUMBER.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
+    try:
+        task.value(f"1 {written[2]}" if written else "")
+    except ProblemError:
+        return ""
+    return written[2] if written else ""
 
 
 def grid(axes: Sequence[Axis]) -> Real:

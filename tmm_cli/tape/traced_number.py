@@ -54,8 +54,8 @@ class TracedNumber(NDArrayOperatorsMixin):
         return TracedNumber(np.imag(self.value), np.imag(self.stand), self.otherwise)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: Any) -> Any:
-        if method != "__call__":
-            raise DependsOnData(f"{ufunc.__name__}.{method} cannot be written on a tape")
+        if method != "__call__" or ufunc is np.floor:  # what is whole for one linkage may not be so for another
+            raise DependsOnData(f"{ufunc.__name__}, {method}, cannot be written on a tape")
         value = ufunc(*(_value(x) for x in inputs))
         otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)
         if isinstance(value, bool | np.bool_):

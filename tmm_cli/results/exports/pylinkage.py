@@ -1,4 +1,4 @@
-"""pylinkage: JSON that its `mechanism_from_json` reads, in the place of the sketch."""
+"""pylinkage: JSON that its `mechanism_from_json` reads, in the place of the sketch; in mm, as it is read back."""
 
 from __future__ import annotations
 
@@ -12,26 +12,24 @@ from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage, Slide
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.quantities import LENGTH
 
 
 def pylinkage(results: Results) -> tuple[str, list[str]]:
     """The text, and what it does not hold. Raises ProblemError where pylinkage has no such mechanism."""
-    linkage, units = results.linkage, results.problem.units
+    linkage = results.linkage
     _refuse(linkage)
     motion = at_places(results, np.array([linkage.sketch.at])).motion
     assert motion is not None
 
     def place(point: str) -> list[float]:
-        z = complex(motion.named(point).x[0])
-        return [units.from_si(part, LENGTH) + 0.0 for part in (z.real, z.imag)]
+        return _coordinates(complex(motion.named(point).x[0]))
 
     frame = linkage.links[FRAME].points
     slides = {slide.runner: slide for slide in linkage.slides}
     links = [name for name in linkage.moving if name not in slides]
     points = list(dict.fromkeys([*frame, *(point for name in links for point in linkage.links[name].points)]))
     on_line = {slide.point: slide for slide in slides.values()}
-    joints = [_joint(point, place(point), point in frame, on_line.get(point), units) for point in points]
+    joints = [_joint(point, place(point), point in frame, on_line.get(point)) for point in points]
     driver = linkage.driver
     pivot = linkage.shared(FRAME, driver.link)
     made: list[dict[str, Any]] = [{"id": "ground", "type": "ground", "joints": list(frame)}]
@@ -48,6 +46,10 @@ def pylinkage(results: Results) -> tuple[str, list[str]]:
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n", left
 
 
+def _coordinates(z: complex) -> list[float]:
+    return [1000 * part + 0.0 for part in (float(z.real), float(z.imag))]
+
+
 def _refuse(linkage: Linkage) -> None:
     reason = None
     if linkage.driver.kind != "turn" or linkage.driver.base != FRAME or linkage.others:
@@ -60,10 +62,14 @@ def _refuse(linkage: Linkage) -> None:
         raise ProblemError(reason)
 
 
-def _joint(point: str, place: list[float], fixed: bool, slide: Slide | None, units: Any) -> dict[str, Any]:
+def _joint(point: str, place: list[float], fixed: bool, slide: Slide | None) -> dict[str, Any]:
     joint: dict[str, Any] = {"id": point, "type": "ground" if fixed else "revolute", "position": place}
     if slide is not None:
         along = cmath.rect(1, float(slide.direction))
-        through = [units.from_si(part, LENGTH) for part in (slide.through.real, slide.through.imag)]
-        joint |= {"type": "prismatic", "axis": [along.real, along.imag], "line_point": through, "slide_distance": 0.0}
+        joint |= {
+            "type": "prismatic",
+            "axis": [along.real, along.imag],
+            "line_point": _coordinates(slide.through),
+            "slide_distance": 0.0,
+        }
     return joint
