@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_commands import SHAPER
+from test_commands import ROOT, SHAPER
 
 from tmm_cli import solve
 from tmm_cli.grading.grade import grade, numbers_of
@@ -54,6 +54,44 @@ def test_loads_that_vary_are_those_of_the_variants_one_by_one(force):
     for n, row in enumerate(table.rows.values()):
         single = solve(own.variant(dict(zip(table.names, row, strict=True))))
         assert together.reactions.balance.moment[n] == pytest.approx(single.reactions.balance.moment, rel=1e-12)
+
+
+HIGHER = {
+    "press-class-iii": (("OA", "CE"), [("85", "310"), ("88", "300"), ("80", "325")]),
+    "class-iv": (("OA", "BD"), [("52", "260"), ("50", "270"), ("55", "255")]),
+}
+
+
+@pytest.mark.parametrize("name", HIGHER)
+def test_groups_of_higher_classes_go_their_ways_together(name):
+    names, rows = HIGHER[name]
+    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8")
+    own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
+    table = VariantTable(names, {str(n): row for n, row in enumerate(rows)})
+    together = solved(family_of(own, table))
+    assert len(together.family) == len(rows)
+    for n, row in enumerate(rows):
+        single = solve(own.variant(dict(zip(names, row, strict=True))))
+        moment = single.reactions.balance.moment
+        assert together.motion.q[n] == pytest.approx(single.motion.q, abs=1e-14)
+        assert together.reactions.balance.moment[n] == pytest.approx(moment, abs=1e-13 * np.max(np.abs(moment)))
+        assert abs(together.family.strokes.strokes[0].run[n, 0]) == pytest.approx(single.strokes.travel, rel=1e-13)
+
+
+def test_a_crank_that_is_driven_to_and_fro_is_asked_about_in_its_stroke():
+    text = SHAPER.read_text(encoding="utf-8").replace("speed: n1", "speed: n1, stroke: [20, 120]")
+    own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
+    q = np.degrees(family_of(own).q)
+    assert np.min(q) == pytest.approx(20) and np.max(q) == pytest.approx(120)
+
+
+def test_a_variant_that_its_sketch_shows_badly_is_found_alone():
+    text = (ROOT / "problems/shaking-screen.yaml").read_text(encoding="utf-8")
+    own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
+    table = VariantTable(("CE",), {"1": ("180",), "2": ("185",), "3": ("230",)})
+    dimensions, columns = numbers_of(own, table, list(table.rows))
+    found = list(families(lambda numbers: own.make(table.names, dimensions, numbers), columns))
+    assert [rows.tolist() for rows, _ in found] == [[0, 1], [2]]
 
 
 def test_bare_numbers_of_a_table_are_in_the_units_of_the_file():

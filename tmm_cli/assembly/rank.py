@@ -60,9 +60,7 @@ def _closed(kernel: Newton, linkage: Linkage) -> tuple[State, Mapping[str, Pose]
     drives = drives_at(linkage, q)
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     links = len(linkage.moving)
-    starts = (
-        np.random.default_rng(1).uniform(-np.pi, np.pi, (STARTS, links)) if unwrapped is None else unwrapped[None, :]
-    )
+    starts = np.random.default_rng(1).uniform(-np.pi, np.pi, (STARTS, links)) if unwrapped is None else unwrapped
     state, closed = close_from_afar(kernel, poses, drives, placed_by_angles(kernel, poses, drives, starts))
     if not bool(np.any(closed)):
         return None

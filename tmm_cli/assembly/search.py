@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from tmm_cli.groups.linear import least_over_largest, solve
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.groups.state import Drives, Placement, Pose, State
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group
 from tmm_cli.structure.cycle import turns_of_cycle
 from tmm_cli.tolerances import CONVERGED, DEAD_SKETCH, LAST_STEP_AFAR, SAME_ASSEMBLY
@@ -147,7 +148,7 @@ def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     if unwrapped is None:
         return None
-    start = placed_by_angles(kernel, poses, drives, unwrapped[None, :])
+    start = placed_by_angles(kernel, poses, drives, unwrapped)
     state, closed = close_from_afar(kernel, poses, drives, start)
     if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > CLOSE:
         return None
@@ -158,14 +159,14 @@ def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drive
 
 
 def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
-    """Angles of the group's links read off the sketch; None when it does not show all of them."""
-    angles = {name: float(np.angle(pose.z)[0]) for name, pose in poses.items()}
+    """Angles of the group's links read off the sketch, (..., links); None when it does not show all of them."""
+    angles: dict[str, Any] = {name: np.angle(pose.z) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
     for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
         if driver.kind == "turn" and driver.base in angles:
-            angles[driver.link] = angles[driver.base] + float(drives[driver.link].value[0])
-    points = {p: complex(pose.at(at)[0]) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
-    points = {**linkage.sketch.points, **points}
+            angles[driver.link] = angles[driver.base] + drives[driver.link].value
+    known = {p: pose.at(at) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
+    points: Mapping[str, Any] = {**linkage.sketch.points, **known}
     for link in kernel.group.links:
         shown = [(local, points[p]) for p, local in linkage.links[link].points.items() if p in points]
         if link in angles or len(shown) < 2:
@@ -173,8 +174,8 @@ def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose],
         middle = sum(local for local, _ in shown) / len(shown)
         centre = sum(place for _, place in shown) / len(shown)
         turned = sum((place - centre) * (local - middle).conjugate() for local, place in shown)
-        if abs(turned) > 0:
-            angles[link] = float(np.angle(turned))
+        if np.all(np.abs(turned) > 0):
+            angles[link] = np.angle(turned)
     for _ in kernel.group.links:
         for slide in linkage.slides:
             if slide.carrier in angles and slide.runner not in angles:
@@ -185,7 +186,8 @@ def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose],
         angles = dict.fromkeys(kernel.group.links, 0.0) | angles
     if any(link not in angles for link in kernel.group.links):
         return None
-    return np.array([angles[link] for link in kernel.group.links])
+    still = np.zeros(np.shape(poses[FRAME].x))
+    return np.stack([angles[link] + still for link in kernel.group.links], axis=-1)
 
 
 def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State:

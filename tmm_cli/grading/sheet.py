@@ -162,7 +162,7 @@ def _scale(quantity: Quantity, solution: Solution) -> Real:
 def _nearby(family: Family) -> Iterator[Family]:
     """The family with the lengths of one link after the other a little longer, and with the driver a little on.
 
-    All of them as one family, the variants again and again, where its groups are in closed form; else each.
+    All of them as one family, the variants again and again; each alone where a group is not plain.
     """
     of = {
         link: [path for path, value in numbers(family.linkage)
@@ -170,7 +170,7 @@ def _nearby(family: Family) -> Iterator[Family]:
         for link in family.linkage.links
     }  # fmt: skip
     links = [link for link, paths in of.items() if paths]
-    if all(isinstance(kernel, Closed) and kernel.plain for kernel in family.kernels):
+    if all(not isinstance(kernel, Closed) or kernel.plain for kernel in family.kernels):
         which = np.repeat(np.arange(len(links) + 1), len(family))[:, None]
         parts = [(which, family.take(np.tile(np.arange(len(family)), len(links) + 1)))]
     else:

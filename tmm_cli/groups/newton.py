@@ -193,7 +193,8 @@ class Newton(Kernel):
                 break
         return state, size
 
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def begun(self, poses: Poses, q: Real, drives: Drives) -> tuple[State, Real]:
+        """States from which Newton's method begins, and how far q is beyond where the group goes (see BranchTrace)."""
         if self.trace is not None:
             start, residual = self.trace.start(q)
             start = State(
@@ -204,6 +205,10 @@ class Newton(Kernel):
             shape = (*np.shape(q), len(self.group.links))
             start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
             residual = np.full(np.shape(q), -1.0)
+        return start, residual
+
+    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+        start, residual = self.begun(poses, q, drives)
         with np.errstate(all="ignore"):
             state, step = self.close(start, poses, drives)
         dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))

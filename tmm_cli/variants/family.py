@@ -1,7 +1,8 @@
 """Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
 
-All stages then run over (variants, positions) at once. What cannot be told for all alike (groups that are followed or
-iterated, several drivers, outputs of more than two strokes) is a family of one variant, found as a file of its own.
+All stages then run over (variants, positions) at once. What cannot be told for all alike (groups that no tape takes,
+several drivers, drivers with a stroke, outputs of more than two strokes) is a family of one variant, found as a file
+of its own.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.solvable import mobile
 from tmm_cli.errors import LinkageError
 from tmm_cli.groups.base import Closed, Kernel
+from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import link_states, towards
+from tmm_cli.kinematics.driver_range import cycle_of
 from tmm_cli.kinematics.strokes import OutputCurve, Stroke, Strokes, output_slope, resisted
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.roots import roots
@@ -26,8 +29,9 @@ from tmm_cli.structure.naming import output_link
 from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.variants.marched import Marched, marched
 from tmm_cli.variants.stack import changed, numbers
-from tmm_cli.variants.variant import Make
+from tmm_cli.variants.variant import Make, NoTapeError
 from tmm_cli.vectors import Real, mapped
 
 SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one another than that are no task
@@ -55,7 +59,8 @@ class Family:
     def take(self, rows: Sequence[int] | Real) -> Family:
         """Some of the variants, or some of them again and again."""
         rows = np.asarray(rows)
-        new = self.changed(rows_of(self.linkage, rows), self.q[rows])
+        kernels = tuple(kernel.take(rows) if isinstance(kernel, Marched) else kernel for kernel in self.kernels)
+        new = replace(self, kernels=kernels).changed(rows_of(self.linkage, rows), self.q[rows])
         return replace(new, strokes=rows_of(self.strokes, rows), sound=self.sound[rows])
 
     def changed(self, linkage: Linkage, q: Real | None = None) -> Family:
@@ -95,11 +100,14 @@ def together(make: Make, columns: Real) -> Family | None:
         plain = make(first).linkage
         structure = mobile(plain)
         kernels = assemble(plain, structure)
-    except (DependsOnData, LinkageError):
-        return None
-    if plain.others or plain.driver.kind != "turn" or varied.ends is not None:
-        return None
-    if not all(isinstance(kernel, Closed) and kernel.plain for kernel in kernels):
+        if plain.others or plain.driver.kind != "turn" or plain.driver.stroke is not None or varied.ends is not None:
+            return None
+        if not all(kernel.plain if isinstance(kernel, Closed) else isinstance(kernel, Newton) for kernel in kernels):
+            return None
+        if cycle_of(plain, kernels) != 1:  # strokes are looked for in one turn
+            return None
+        kernels = marched(lambda data: _one(make, first, data, plain), columns, plain, kernels)
+    except (DependsOnData, NoTapeError, LinkageError):
         return None
     linkage = replace(stands(varied.linkage), sketch=plain.sketch)
     structure = structure.rebind(linkage)
@@ -113,6 +121,13 @@ def together(make: Make, columns: Real) -> Family | None:
 def stands(record: Any) -> Any:
     """A record built of traced numbers with the arrays that they stand for."""
     return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
+
+
+def _one(make: Make, first: Sequence[float], stands_in: Sequence[Any], plain: Linkage) -> Linkage:
+    """The variants as one linkage for (stand-ins of) their numbers, sketched as the first one."""
+    varied = make([TracedNumber(x, stand) for x, stand in zip(first, stands_in, strict=True)])
+    linkage: Linkage = replace(stands(varied.linkage), sketch=plain.sketch)
+    return linkage
 
 
 def _alone(make: Make, row: Real) -> Family:
@@ -130,6 +145,9 @@ def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
     whole = link_states(linkage, kernels, q, 1)
     sound = np.all(whole.moving, axis=1)
+    for kernel in kernels:
+        if isinstance(kernel, Marched):
+            sound = sound & kernel.kept(whole)
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound

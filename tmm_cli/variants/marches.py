@@ -48,6 +48,16 @@ class Ways:
     steps: tuple[Real, Real]
     gain: Real | None
 
+    def take(self, rows: Real) -> Ways:
+        """Of some variants."""
+        gain = None if self.gain is None else self.gain[:, rows]
+        down, up = self.steps
+        return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
+
+    def of(self, part: slice) -> Ways:
+        """Of some unknowns."""
+        return replace(self, x=self.x[part], v=self.v[part], gain=None if self.gain is None else self.gain[part])
+
     def __call__(self, q: Real) -> list[Real]:
         """Starts at places (variants, positions)."""
         unknowns, variants, many = self.x.shape
