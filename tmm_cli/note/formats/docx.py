@@ -174,11 +174,13 @@ class _Writer:
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
             unbroken(row, head=number == 0)
+            together = _with_next(number, len(block.rows))
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
                 cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
                 paragraph._p.style = "TableText"
-                paragraph.paragraph_format.keep_with_next = _with_next(number, len(block.rows)) or None
+                if together:
+                    paragraph.paragraph_format.keep_with_next = True
                 if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
                 self._line(paragraph, line, size=size, bold=number == 0)
