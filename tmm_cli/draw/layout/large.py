@@ -12,6 +12,7 @@ from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source, neighbours
 from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
 from tmm_cli.draw.layout.pieces import (
+    FULL,
     GAP,
     STRICT,
     THIN,
@@ -71,13 +72,24 @@ def large_sheets(choice: Choice, paper: str, way: Way = here) -> Iterator[tuple[
 
 
 def _smallest(number: int, choice: Choice, papers: Sequence[str]) -> tuple[Size, list[Picture], list[Page]]:
-    """The drawings of a sheet on the first of these formats that holds them on one page, or else on the last one."""
+    """The drawings of a sheet on the first of these formats that holds them on one page, or else on the last one; where
+    they leave that thin, on the next smaller one that holds them so.
+    """
     for paper in papers:
-        size = PAPERS[paper]
-        pictures, pages = _fullest(number, choice, size, field_of(size, choice.results.problem.title_texts.block))
+        size, pictures, pages = found = _on(paper, number, choice)
         if len(pages) < 2:
             break
-    return size, pictures, pages
+    field = field_of(size, choice.results.problem.title_texts.block)
+    smaller = next((name for name in PAPERS if PAPERS[name] < size), None)
+    if smaller is None or len(pages) != 1 or _thinnest((pictures, pages)) > FULL * field.area:
+        return found
+    tried = _on(smaller, number, choice)
+    return tried if len(tried[2]) == 1 else found
+
+
+def _on(paper: str, number: int, choice: Choice) -> tuple[Size, list[Picture], list[Page]]:
+    size = PAPERS[paper]
+    return size, *_fullest(number, choice, size, field_of(size, choice.results.problem.title_texts.block))
 
 
 def _fullest(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
