@@ -132,5 +132,5 @@ def test_example_16_11_page_585_an_engine_by_a_formula():
 def test_example_16_13_page_589_three_cranks():
     engine = machine(lambda x: 5000 + 1500 * np.sin(3 * x), [0, TURN])
     found = running(engine, SteadyTask(300 * RPM, flywheel=1000.0))
-    assert -found.moment * 300 * RPM == pytest.approx(157_100, rel=1e-3)
+    assert -found.moment * 300 * RPM == pytest.approx(157_100, abs=50)  # W
     assert found.delta == pytest.approx(0.001, abs=5e-5)
