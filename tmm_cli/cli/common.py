@@ -112,6 +112,18 @@ def _refuse_one_name(files: Sequence[str]) -> None:
             raise typer.Exit(BAD_INPUT)
 
 
+def new_file(file: Path, text: str) -> bool:
+    """Whether a file that was not there is written; `-` prints the text instead. Raises ProblemError."""
+    if str(file) == "-":
+        typer.echo(text, nl=False)
+        return False
+    if file.exists():
+        raise ProblemError(_("{file} is there already").format(file=file), allowed=_("another file, with -o"))
+    with file.open("x", encoding="utf-8") as stream:
+        stream.write(text)
+    return True
+
+
 def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Path]:
     """These files, of each folder its problems and those of the folders in it, and further ones. Raises typer.Exit."""
     depths = ("*.yaml", "*/*.yaml")

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import refusing
+from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.library import solve
-from tmm_cli.problem.errors import ProblemError, chosen_names
+from tmm_cli.problem.errors import chosen_names
 from tmm_cli.results.exports import EXPORTS
 
 
@@ -29,13 +29,7 @@ def export(
         name, *__ = chosen_names(to, EXPORTS, "--to", _("there is no such program to export to"))
         text, left = EXPORTS[name](solve(opened(file), "kinematics"))
         target = out or Path(f"{Path(file).stem}.json")
-        if str(out) == "-":
-            typer.echo(text, nl=False)
-        elif target.exists():
-            raise ProblemError(_("{file} is there already").format(file=target), allowed=_("another file, with -o"))
-        else:
-            with target.open("x", encoding="utf-8") as stream:
-                stream.write(text)
+        if new_file(target, text):
             say(_("written: {file}").format(file=target))
         for line in left:
             say(_("not taken over: {line}").format(line=line))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import refusing
+from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
@@ -37,13 +37,7 @@ def import_(
             raise ProblemError(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None
-        if str(out) == "-":
-            typer.echo(text, nl=False)
-        elif target.exists():
-            raise ProblemError(_("{file} is there already").format(file=target), allowed=_("another file, with -o"))
-        else:
-            with target.open("x", encoding="utf-8") as stream:
-                stream.write(text)
+        if new_file(target, text):
             say(_("written: {file}; next: tmm run {file}").format(file=target))
         for line in foreign.left:
             say(_("not taken over: {line}").format(line=clean(line, 300)))

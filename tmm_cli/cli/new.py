@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import refusing
+from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest
@@ -32,13 +32,6 @@ def new(
                 _("there is no template '{template}'").format(template=template), allowed=", ".join(known),
                 near=nearest(template, known),
             )  # fmt: skip
-        text = template_text(template)
-        if str(out) == "-":
-            typer.echo(text, nl=False)
-            return
         file = out or Path(f"{template}.yaml")
-        if file.exists():
-            raise ProblemError(_("{file} is there already").format(file=file), allowed=_("another file, with -o"))
-        with file.open("x", encoding="utf-8") as stream:
-            stream.write(text)
-    say(_("written: {file}; next: tmm run {file}").format(file=file))
+        if new_file(file, template_text(template)):
+            say(_("written: {file}; next: tmm run {file}").format(file=file))
