@@ -12,6 +12,7 @@ from tmm_cli.draw.formats import Way, here
 from tmm_cli.draw.layout.contents import CONTENTS, SUBJECTS, Choice, Source, neighbours
 from tmm_cli.draw.layout.packing import Field, Size, arranged, pack, spread
 from tmm_cli.draw.layout.pieces import (
+    FLAT,
     FULL,
     GAP,
     STRICT,
@@ -93,13 +94,17 @@ def _on(paper: str, number: int, choice: Choice) -> tuple[Size, list[Picture], l
 
 
 def _fullest(number: int, choice: Choice, paper: Size, field: Field) -> tuple[list[Picture], list[Page]]:
-    """The drawings of a sheet; where a page stays thin, high ones once more as high as is free above the titles."""
+    """The drawings of a sheet; where a page stays thin, once more, high ones as high as is free above the titles, or
+    lower.
+    """
     found = _sheet(number, choice, paper, field, field.height - GAP)
-    high = field.height - field.taken[1] - GAP
-    if _thinnest(found) > THIN * field.area or all(one.paper[1] <= high for one in found[0]):
-        return found
-    flat = _sheet(number, choice, paper, field, high)
-    return min(found, flat, key=lambda one: (len(one[1]), -_thinnest(one)))
+    for high in (field.height - field.taken[1] - GAP, FLAT * field.height):
+        if _thinnest(found) > THIN * field.area:
+            break
+        if any(one.paper[1] > high for one in found[0]):
+            flat = _sheet(number, choice, paper, field, high)
+            found = min(found, flat, key=lambda one: (len(one[1]), -_thinnest(one)))
+    return found
 
 
 def _thinnest(found: tuple[list[Picture], list[Page]]) -> float:
