@@ -57,7 +57,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
     "library": "synthesis, for files with a task; all assemblies, for --assemblies",
-    "analysis.pipeline": "the law of motion and balancing, for files that ask for it",
+    "analysis.on_request": "the law of motion and balancing, for files that ask for it",
     "problem.build": "the law of motion and balancing, for files that ask for it",
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
