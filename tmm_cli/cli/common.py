@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
 import typer
 from rich.console import Console
@@ -51,6 +51,15 @@ Tables = Annotated[
     Kind | None,
     typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
 ]
+
+Pictures = Iterable[tuple[str, bytes]]
+
+
+def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis"], *of: Any, **how: Any) -> Pictures:
+    """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
+    from tmm_cli.cli.pictures import PICTURES
+
+    return PICTURES[what](*of, **how)
 
 
 def console() -> Console:
