@@ -54,6 +54,8 @@ def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> S
     motor = None if given.motor is None else _motor(Part(given.motor, ("dynamics", "motor"), values))
     if given.run is not None:
         return _run(part, Part(given.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
+    if mean == 0:
+        raise part.refusal("", _("a driver that stands has no fluctuation of speed"), allowed="mean speed")
     return SteadyTask(mean, delta, motor, own * ratio**2, ratio, size)
 
 
