@@ -60,7 +60,6 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "analysis.on_request": "the law of motion and balancing, for files that ask for it",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
-    "cli.common": "drawing",
     "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "grading.exports.group": "drawing",
     "note.formats": "an extra: python-docx",

@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn
 
@@ -57,9 +58,8 @@ Pictures = Iterable[tuple[str, bytes]]
 
 def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis"], *of: Any, **how: Any) -> Pictures:
     """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
-    from tmm_cli.cli.pictures import PICTURES
-
-    return PICTURES[what](*of, **how)
+    found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
+    return found
 
 
 def console() -> Console:
