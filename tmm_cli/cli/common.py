@@ -6,8 +6,9 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
 import typer
 from rich.console import Console
@@ -51,6 +52,14 @@ Tables = Annotated[
     Kind | None,
     typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
 ]
+
+Pictures = Iterable[tuple[str, bytes]]
+
+
+def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis"], *of: Any, **how: Any) -> Pictures:
+    """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
+    found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
+    return found
 
 
 def console() -> Console:
