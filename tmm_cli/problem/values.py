@@ -20,7 +20,7 @@ from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.tolerances import NO_COSINE
 
-LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
+LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 UNKNOWN = {
     "link": N_("there is no link of that name"),
