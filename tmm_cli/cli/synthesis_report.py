@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.cli.common import console, emit_json
+from tmm_cli.cli.common import console, drawn, emit_json
 from tmm_cli.cli.opening import introduce
 from tmm_cli.cli.talk import CHECK_FAILED, OK, say, speak_as
 from tmm_cli.language import ENGLISH, _, spoken
@@ -40,15 +40,12 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
         if measured is None:
             say(_("the file has no linkage: nothing was measured"))
     if out is not None:
-        from tmm_cli.draw.formats import files as drawings
-        from tmm_cli.draw.sheets.synthesis import sheets
-
         folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
             with spoken(ENGLISH):
                 for table in tables_of(found, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
-            for drawing, picture in drawings(sheets(title, found.outcome, results, units, found.names), say):
+            for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=folder))

@@ -9,7 +9,7 @@ from tmm_cli.dynamics.motors import Kloss, Linear, Motor
 from tmm_cli.dynamics.sizes import Disk, Rim
 from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
 from tmm_cli.language import _
-from tmm_cli.linkage import Driver
+from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.problem import schema, schema_dynamics
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.values import Part, ValueReader
@@ -32,9 +32,9 @@ NUMBERS = {"linear": ("stall", "free"), "asynchronous": ("synchronous", "speed",
 MOST_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
-def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
-    """What is asked of the law of motion; None where nothing is."""
-    given = shape.dynamics
+def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) -> SteadyTask | RunTask | None:
+    """What is asked of the law of motion."""
+    given, driver = shape.dynamics, linkage.driver
     if given is None:
         return None
     part = Part(given, ("dynamics",), values)
