@@ -87,15 +87,15 @@ def joined(states: Iterable[State]) -> State:
 
 
 def predicted(node: Node, q: Real | float) -> State:
-    """The state at places q from that of a node, by its first and second derivatives."""
-    step = (np.atleast_1d(q) - node.q)[:, None]
+    """The state at places q from that of a node."""
+    return ahead(node.state, node.first, node.second, (np.atleast_1d(q) - node.q)[:, None])
 
-    def taylor(value: Real, first: Real, second: Real) -> Real:
-        return value + step * (first + step / 2 * second)
 
+def ahead(state: State, first: State, second: State, step: Real) -> State:
+    """States a step (rad or m) of the driver farther on, by their first and second derivatives."""
     return State(
-        taylor(node.state.x, node.first.x, node.second.x),
-        taylor(node.state.unwrapped, node.first.unwrapped, node.second.unwrapped),
+        state.x + step * (first.x + step / 2 * second.x),
+        state.unwrapped + step * (first.unwrapped + step / 2 * second.unwrapped),
     )
 
 

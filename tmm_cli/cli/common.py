@@ -17,7 +17,7 @@ from rich.progress import Progress, track
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.language import _, language, spoken
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.results.files import folder_name
+from tmm_cli.results.files import folder_name, refuse_place
 from tmm_cli.results.for_people import Kind
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
@@ -79,6 +79,8 @@ def each(
     worst = OK
     if out is not None:
         _refuse_one_name(files)
+        with refusing():
+            refuse_place(out, folder=True)
     for file in progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")

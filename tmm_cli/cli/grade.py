@@ -28,6 +28,7 @@ from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import _
 from tmm_cli.problem.errors import chosen_names
 from tmm_cli.problem.reader import read_file
+from tmm_cli.results.files import refuse_place
 from tmm_cli.results.terminal import show
 
 KEPT = ".graded"  # in the output folder: marks of earlier runs
@@ -72,6 +73,7 @@ def grade(
         if variants is None or submissions is None:
             say(_("error: --variants and --submissions are wanted, or --template"))
             raise typer.Exit(BAD_INPUT)
+        refuse_place(out, folder=True)
         raise typer.Exit(_graded(task, variants, submissions, out, reveal, formats, jobs, scheduler))
 
 

@@ -19,9 +19,10 @@ from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.settings import with_settings
-from tmm_cli.results.files import RECORD, Staged, folder_name
+from tmm_cli.results.files import RECORD, Staged, folder_name, refuse_place
 from tmm_cli.results.terminal import show as show_table
 from tmm_cli.results.text import csv_text, json_text, plain
+from tmm_cli.results.understood import without_effect
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.record import Swept
@@ -56,6 +57,8 @@ def sweep(
     Each point is a variant with the assembly of the file's own one.
     """
     with refusing(as_json):
+        if out is not None:
+            refuse_place(out, folder=True)
         tree = with_settings(speak_as(read_file(file)), settings or ())
         task = Task(tree)
         introduce(task.problem)
@@ -67,6 +70,8 @@ def sweep(
             points *= len(axis.values)
         refuse_points(problem, points, taped=taped, cores=None if scheduler else cores)
         _announce(problem, points, taped)
+        for doubt in without_effect(tree, mechanisms.names):
+            say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
         way = cluster(scheduler) if scheduler else processes(cores)
         with bars() as shown:
             work = shown.add_task(_("solved"), total=points)
