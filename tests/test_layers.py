@@ -49,6 +49,7 @@ READS_A_TASK = (
 )
 PROBLEM_LEANS_ON = (  # names of pairs, and what stands among the numbers of a file: a cam's law, motors, flywheels
     "structure", "pairs.cam_law", "dynamics.task", "dynamics.balancing_task", "dynamics.motors", "dynamics.sizes",
+    "kinematics.intermittent_task",
 )  # fmt: skip
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
 MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
@@ -57,8 +58,8 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
     "library": "synthesis, for files with a task; all assemblies, for --assemblies",
-    "analysis.pipeline": "the law of motion and balancing, for files that ask for it",
-    "problem.build": "the law of motion and balancing, for files that ask for it",
+    "analysis.pipeline": "the law of motion, balancing and intermittent motion, for files that ask for it",
+    "problem.build": "the law of motion, balancing and intermittent motion, for files that ask for it",
     "assembly.choose": "the search, for groups without a closed form",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
@@ -71,6 +72,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "grading.exports.group": "drawing",
     "note.chapters.balancing": "balancing, for files that ask for it",
     "note.chapters.law_of_motion": "the law of motion, for files that ask for it",
+    "results.properties": "intermittent motion, for files that ask for it",
     "results.given": "the law of motion, for files that ask for it",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",

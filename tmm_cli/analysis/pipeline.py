@@ -44,6 +44,7 @@ if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.assembly.enumerate import Assemblies
     from tmm_cli.dynamics.task import RunTask, SteadyTask
     from tmm_cli.kinematics.centres import Centre
+    from tmm_cli.kinematics.intermittent import Intermittent
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -56,7 +57,8 @@ class Results:
 
     of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
     on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
-    are there where they are asked for by name. problem: whatever the caller wants to find here again.
+    are there where they are asked for by name. wheels: those of the block intermittent. problem: whatever the caller
+    wants to find here again.
     """
 
     inputs: Inputs
@@ -72,6 +74,7 @@ class Results:
     energy: Energy | None = None
     running: Running | SingleRun | None = None
     balancing: Balancing | None = None
+    wheels: tuple[Intermittent, ...] | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     centres: Mapping[int, Sequence[Centre]] | None = None
     extremes: tuple[Extreme, ...] | None = None
@@ -213,6 +216,8 @@ def solve(
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
     results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
+    if inputs.wheels and not of:
+        results = replace(results, wheels=_wheels(results))
     if stage == "kinematics":
         return results
     return _with_balancing(with_forces(results))
@@ -226,6 +231,16 @@ def _with_balancing(results: Results) -> Results:
     from tmm_cli.analysis.balancing import balancing
 
     return replace(results, balancing=balancing(results.mechanism, results.start, results.motion.q, task))
+
+
+def _wheels(results: Results) -> tuple[Intermittent, ...]:
+    """Wheels of the block intermittent; nothing of it is imported unless a file has it."""
+    from tmm_cli.analysis.intermittent import intermittent
+
+    def law_of(linkage: Linkage) -> LawOfMotion:
+        return driver_motion(linkage, results.start) if results.running is None else results.running
+
+    return intermittent(results.mechanism, results.start, law_of)
 
 
 def _running(results: Results, task: SteadyTask | RunTask) -> Running | SingleRun:

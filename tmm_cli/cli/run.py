@@ -26,6 +26,8 @@ SHOWN = (
     "groups",
     "quality",
     "properties",
+    "intermittent",
+    "intermittent-cycle",
     "cycle",
     "dynamics",
     "checks",

@@ -31,6 +31,7 @@ from tmm_cli.quantities import ANGLE, NUMBER
 if TYPE_CHECKING:
     from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.intermittent_task import WheelTask
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -124,6 +125,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
         TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
         _balancing(shape, linkage, values), shape.reference, shape.shows, values, tree,
+        wheels=_wheels(shape, tree, linkage, values),
     )  # fmt: skip
 
 
@@ -169,6 +171,21 @@ def _balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> Bal
     from tmm_cli.problem.build_balancing import build_balancing  # few files have the block
 
     return build_balancing(shape.balancing, linkage, values)
+
+
+def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
+    if not shape.intermittent or isinstance(values.units, ExtendedUnits):  # they are found in doubles alone
+        return ()
+    from tmm_cli.problem.build_intermittent import build_wheels  # few files have the block
+
+    def other(settings: Mapping[str, object]) -> Linkage:
+        """The linkage with other values of parameters; what a task of synthesis found stays."""
+        given = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
+        own = parameters({**shape.parameters, **settings}, values.units, given)
+        alone = shape.model_copy(update={"intermittent": {}})
+        return build_shape(alone, tree, ValueReader(own, values.units)).linkage
+
+    return build_wheels(shape, linkage, values, other)
 
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:
