@@ -18,6 +18,7 @@ from tmm_cli.bench.by_hand import MECHANISMS
 from tmm_cli.bench.chains import chain
 from tmm_cli.bench.speed import Growth, Race, Rival, Speed, exponent
 from tmm_cli.bench.speed_of_iterated import Iterated
+from tmm_cli.bench.speed_of_sweeps import Sweeping
 from tmm_cli.forces.lever import lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import power, react
@@ -86,16 +87,17 @@ def test_the_verdict():
     growth = Growth("links", (3, 5), (1.0, 1.7), 1.07)
     rival = Rival("kinepy", "shaper", 2000.0, 100.0)
     iterated = Iterated("press", 360, 2000.0, 200.0, 0.0)
-    found = Speed((good, bad), (growth,), (rival,), (iterated,)).failures
+    sweep = Sweeping("six-bar", 20_000, 12, 0.9e6, 100.0)
+    found = Speed((good, bad), (growth,), (rival,), (iterated,), (sweep,)).failures
     assert found == (
         "six-bar, 1 x 360: 1.50 times the code by hand, target 1.3",
         "press, 360 positions: 10.0 times the six-bar, target 8.7",
+        "sweep of six-bar: 900000 mechanisms a minute, target 1000000",
         "growth with links: exponent 1.070, target 1 +- 0.05",
         "kinepy, shaper: 20.0 times as long, target 30",
     )
-    assert (
-        Speed((good, bad), (growth,), (rival,), (iterated,), reduced=True).failures == ()
-    )  # twice as wide in a reduced run
+    reduced = Speed((good, bad), (growth,), (rival,), (iterated,), (sweep,), reduced=True)
+    assert reduced.failures == ()  # twice as wide
 
 
 def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
@@ -111,6 +113,8 @@ def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
     assert [(r["mechanism"], r["positions"], r["rest"]) for r in found["iterated"]] == [
         ("press-class-iii", 360, 0), ("press-class-iii", 36_000, 0),
     ]  # fmt: skip
+    assert [(r["mechanism"], r["positions"]) for r in found["sweeps"]] == [("six-bar", 12)]
+    assert all(r["a_minute"] > 0 for r in found["sweeps"])
     assert [g["what"] for g in found["growths"]] == ["links", "positions", "variants"]
     assert (done.returncode == 0) == (not found["failures"])
     assert json.loads((tmp_path / "speed.json").read_text(encoding="utf-8")) == found

@@ -91,3 +91,12 @@ def test_positions_that_a_run_does_not_come_to_are_named():
         "it does not come to"
     ]
     assert np.isfinite(results.motion.rate).tolist() == [False, False, True, True, True, False]
+
+
+def test_a_driver_that_stands_has_no_fluctuation():
+    text = f"{MACHINE}{CRANK}dynamics: {{delta: 0.02}}\n".replace("600 rpm", "0 rpm")
+    with pytest.raises(ProblemError) as caught:
+        build(read_text(text, "x.yaml"))
+    assert str(caught.value) == (
+        "x.yaml:11:1: dynamics: a driver that stands has no fluctuation of speed\n  allowed: mean speed"
+    )

@@ -249,3 +249,18 @@ def test_only_names_of_files_are_taken_from_a_record(tmp_path):
     assert listed(tmp_path) == {"a.csv"}
     (tmp_path / "result.json").write_text('{"files": [' + "[" * 90_000, encoding="utf-8")
     assert listed(tmp_path) == set()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("sweep", SHAPER, "--over", "OA=80..120:3"), ("synthesis", SHAPER), ("run", SHAPER), ("gallery", SHAPER),
+        ("animate", SHAPER), ("variants", ROOT / "problems" / "grading" / "shaper" / "task.yaml"),
+    ],
+)  # fmt: skip
+def test_a_place_that_cannot_be_written_is_refused_before_the_work(command, tmp_path):
+    (tmp_path / "taken").write_text("mine", encoding="utf-8")
+    done = tmm(*command, "-o", tmp_path / "taken" / "x.html")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"error: {tmp_path}/taken: Not a directory\n"
+    assert content(tmp_path) == {"taken": b"mine"}

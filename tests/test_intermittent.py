@@ -216,7 +216,9 @@ def test_nothing_of_it_is_imported_for_other_files():
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=PROBLEMS.parent, capture_output=True, text=True, check=True
     )
-    assert done.stdout.strip() == "tmm_cli.problem.schema_intermittent tmm_cli.results.json_intermittent"
+    assert done.stdout.strip() == (
+        "tmm_cli.analysis.quantities.intermittent tmm_cli.problem.schema_intermittent tmm_cli.results.json_intermittent"
+    )
 
 
 # refusals

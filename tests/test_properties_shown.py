@@ -43,6 +43,13 @@ def test_in_a_position_and_over_the_way(tmp_path):
     assert value(tmp_path, "{of: v of A, at: 2, per: v of 3 on 0}", "sine") == pytest.approx(1 / math.sin(math.pi / 3))
 
 
+def test_the_output_that_is_found_has_a_stroke_too(tmp_path):
+    text = SLIDER.replace("output: 3\n", "")
+    assert "output:" not in text
+    (one,) = properties_shown(solve(load(str(file_with(tmp_path, "{of: H}", text)))))
+    assert one.value == value(tmp_path, "{of: H}")
+
+
 def test_an_angle_is_followed_past_half_a_turn(tmp_path):
     assert value(tmp_path, "{of: phi of 1, between: [1, 11]}", "sine") == pytest.approx(math.radians(300))
     assert value(tmp_path, "{of: phi of 1, over: range}", "crossed-slots") == pytest.approx(4 * math.pi)

@@ -175,11 +175,11 @@ def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
         ("length: 100", "length: 1e306 km",
          "x.yaml:4:31: links.1.length: this number is too large\n  found:   '1e306 km'"),
         ("length: 100", "length: 1e200", "x.yaml:4:31: links.1.length: this is too large for a mechanism"
-         "\n  found:   1e200\n  allowed: 1e+23 mm or less"),
+         "\n  found:   1e200\n  allowed: 1e+15 mm or less"),
         ("length: 100", "length: 1e-200", "x.yaml:4:31: links.1.length: this is too small for a mechanism"
          "\n  found:   1e-200\n  allowed: 1e-17 mm or more"),
         ("1 rad/s", "1e160 rpm", "x.yaml:7:26: driver.speed: this is too large for a mechanism"
-         "\n  found:   '1e160 rpm'\n  allowed: 1e+20 rad/s or less"),
+         "\n  found:   '1e160 rpm'\n  allowed: 1e+12 rad/s or less"),
         ("at: 60", "at: 6e19", "x.yaml:8:14: sketch.at: this is too large for a mechanism"
          "\n  found:   6e19\n  allowed: 5.72958e+07 deg or less"),
     ],
@@ -188,7 +188,7 @@ def test_sizes_that_no_mechanism_has(old: str, new: str, message: str) -> None:
     assert told(old, new) == message
 
 
-@pytest.mark.parametrize("factor", ["1e15", "1e-15"])
+@pytest.mark.parametrize("factor", ["1e9", "1e-15"])
 def test_what_is_accepted_gives_no_warning(factor: str) -> None:
     text = FOUR_BAR.replace("1 rad/s", f"1 rad/s*{factor}")
     for number in ("300, 0", "100", "250", "200", "250, 190"):

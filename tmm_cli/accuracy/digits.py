@@ -20,7 +20,8 @@ import numpy as np
 from tmm_cli.accuracy.data import all_changed, largest_beside, lengths, widened
 from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.analysis.pipeline import Results, driver_motion, with_forces
+from tmm_cli.analysis.on_request import driver_motion
+from tmm_cli.analysis.pipeline import Results, with_forces
 from tmm_cli.analysis.selection import values as leading_values
 from tmm_cli.double_double import array, exactly, rounded
 from tmm_cli.groups.base import Kernel

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.dynamics.balancing import Balanced, Shaking, balanced, shaking
+from tmm_cli.dynamics.balancing_task import BalancingTask
 from tmm_cli.errors import NoCycleError
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.vectors import Real, Vector
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.mechanism import Mechanism
-    from tmm_cli.dynamics.balancing_task import BalancingTask
 
 STEPS = 720  # in a turn
 

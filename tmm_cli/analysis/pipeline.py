@@ -14,10 +14,12 @@ import numpy as np
 
 from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
+from tmm_cli.analysis.requirements import refuse_unmet
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
-from tmm_cli.double_double import exactly, rounded
-from tmm_cli.errors import MissingStrokesError, NoTurnError, SpeedsEndError, TableBeyondCycleError, UnknownPositionError
+from tmm_cli.double_double import exactly
+from tmm_cli.errors import UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
 from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
@@ -25,7 +27,7 @@ from tmm_cli.forces.lever import Lever, lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, power, react
 from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.sequence import DriverMotion, LawOfMotion, towards
+from tmm_cli.groups.sequence import LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
 from tmm_cli.kinematics.motion import Motion, move, spliced
 from tmm_cli.kinematics.pressure import Pressure, pressure_at
@@ -33,7 +35,6 @@ from tmm_cli.kinematics.slots import Excess
 from tmm_cli.kinematics.strokes import Strokes, Travel
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
-from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
 
 if TYPE_CHECKING:  # only the listing of assemblies enumerates them
@@ -42,7 +43,6 @@ if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.analysis.running import Running
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
-    from tmm_cli.dynamics.task import RunTask, SteadyTask
     from tmm_cli.kinematics.centres import Centre
     from tmm_cli.kinematics.intermittent import Intermittent
 
@@ -206,52 +206,22 @@ def solve(
     if of:
         check(inputs.linkage, of)
         kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
-    _need_strokes(results)
-    _need_rows(results)
-    _need_speeds(results)
+    refuse_unmet(results.mechanism)
     if inputs.dynamics is not None:
-        results = replace(results, running=_running(results, inputs.dynamics))
+        results = replace(results, running=law_of_motion(results.mechanism, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
     results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
     if inputs.wheels and not of:
-        results = replace(results, wheels=_wheels(results))
+        results = replace(results, wheels=intermittent(results.mechanism, results.running))
     if stage == "kinematics":
         return results
-    return _with_balancing(with_forces(results))
-
-
-def _with_balancing(results: Results) -> Results:
-    """Add what the file asks of balancing; nothing of it is imported unless it is asked for."""
-    task = results.inputs.balancing
-    if task is None or results.motion is None:
+    results = with_forces(results)
+    if inputs.balancing is None or results.motion is None:
         return results
-    from tmm_cli.analysis.balancing import balancing
-
-    return replace(results, balancing=balancing(results.mechanism, results.start, results.motion.q, task))
-
-
-def _wheels(results: Results) -> tuple[Intermittent, ...]:
-    """Wheels of the block intermittent; nothing of it is imported unless a file has it."""
-    from tmm_cli.analysis.intermittent import intermittent
-
-    def law_of(linkage: Linkage) -> LawOfMotion:
-        return driver_motion(linkage, results.start) if results.running is None else results.running
-
-    return intermittent(results.mechanism, results.start, law_of)
-
-
-def _running(results: Results, task: SteadyTask | RunTask) -> Running | SingleRun:
-    """Nothing of it is imported unless it is asked for, and scipy for single runs alone."""
-    if task.cyclic:
-        from tmm_cli.analysis.running import running
-
-        return running(results.mechanism, results.start, task)
-    from tmm_cli.analysis.single_run import single_run
-
-    return single_run(results.mechanism, results.asked, task)
+    return replace(results, balancing=balancing(results.mechanism, results.motion.q, inputs.balancing))
 
 
 def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
@@ -299,17 +269,6 @@ def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
     return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
 
 
-def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
-    """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
-    driver = linkage.driver
-    if driver.law is not None:
-        from tmm_cli.dynamics.by_table import LawByTable  # few drivers have one
-
-        return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
-    at = linkage.sketch.at if linkage.others else start
-    return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
-
-
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
     return move(results.linkage, results.kernels, q, results.law, order)
@@ -319,51 +278,3 @@ def at_places(results: Results, q: Real) -> Results:
     """The same results at other places of the driver (diagrams); with forces if they have them."""
     moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
     return moved if results.reactions is None else with_forces(moved, cycle=False)
-
-
-def _need_strokes(results: Results) -> None:
-    """Refuse what rests on strokes that are not there, rather than quietly doing without."""
-    request, driver_range = results.inputs.request, results.mechanism.driver_range
-    loads = [x for x in results.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
-    if request.start != "working stroke" and not loads:
-        return
-    strokes = results.strokes
-    if strokes is not None and strokes.strokes:
-        return
-    link = strokes.link if strokes else None
-    if request.start == "working stroke" and driver_range.full:
-        raise MissingStrokesError(link, ("positions", "from"))
-    for load in loads:
-        if load.working_stroke_only and driver_range.full:
-            raise MissingStrokesError(link, ("loads", load.name, "when"))
-        if load.table is not None and load.table.against == "stroke":
-            raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))
-
-
-def _need_speeds(results: Results) -> None:
-    """Refuse positions that a table of the driver's speeds does not reach."""
-    law, asked = results.linkage.driver.law, results.asked
-    if law is None:
-        return
-    unknown = ~np.isfinite(results.law.speed(asked))
-    goes_round = results.mechanism.driver_range.full and not results.inputs.request.places
-    if np.any(unknown) or (goes_round and not law.squares.closed):
-        first = float(rounded(law.squares.arguments[0]))
-        at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
-        raise SpeedsEndError(at, first, float(rounded(law.squares.arguments[-1])), 2 * np.pi * results.linkage.turns)
-
-
-def _need_rows(results: Results) -> None:
-    """Refuse rows of a load's table that the crank never comes to, rather than quietly cut the table."""
-    turns = results.linkage.turns
-    if turns > 1 and not results.mechanism.driver_range.full:
-        raise NoTurnError(turns)
-    for load in results.linkage.loads:
-        if load.table is None or load.table.against == "stroke":
-            continue
-        strokes = results.strokes if load.table.against == "crank turn" else None
-        cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
-        for row, argument in enumerate(load.table.arguments):
-            if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
-                key = "force" if load.force else "moment"
-                raise TableBeyondCycleError(("loads", load.name, key, "table", row, 0), float(argument), cycle)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_cli.analysis.jumps import jumps
+from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.double_double import rounded
 from tmm_cli.dynamics.reduced import Reduced, reduced
 from tmm_cli.dynamics.steady import Steady, steady
+from tmm_cli.dynamics.task import SteadyTask
 from tmm_cli.errors import BySpeedError, NoCycleError
 from tmm_cli.forces.energy import energy
 from tmm_cli.forces.loads import applied
@@ -18,10 +19,6 @@ from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
 from tmm_cli.tolerances import SAME_PLACE, SEAM
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.mechanism import Mechanism
-    from tmm_cli.dynamics.task import SteadyTask
 
 
 def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:

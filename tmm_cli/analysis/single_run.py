@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_cli.analysis.mechanism import Mechanism
 from tmm_cli.analysis.running import reduced_between
 from tmm_cli.double_double import rounded
 from tmm_cli.dynamics.reduced import Reduced
@@ -15,9 +15,6 @@ from tmm_cli.dynamics.task import RunTask
 from tmm_cli.errors import OutOfRangeError
 from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.mechanism import Mechanism
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.assembly.change_points import smooth_way
+from tmm_cli.assembly.search import assembled
 from tmm_cli.assembly.sketch import check_fit, nearest_to_sketch
 from tmm_cli.errors import AmbiguousSketchError, AssemblyError
 from tmm_cli.groups import CLOSED
@@ -63,8 +64,6 @@ def _assembled(
             kernel = replace(kernel, winding=_winding(linkage, (*before, kernel), tuple(geared)))
             at = kernel.place(poses, q, drives)
         return kernel, at
-    from tmm_cli.assembly.search import assembled  # class II alone needs none of it
-
     return assembled(group, linkage, poses, drives, before, like)
 
 

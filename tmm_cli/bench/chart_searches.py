@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
-from tmm_cli.bench.chart_axes import DARK, bare, page
-from tmm_cli.bench.searches import NAMES, NEAR, PER_SECOND, Searches
+from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, ORANGE, RED, bare, page
+from tmm_cli.bench.searches import NAMES, NEAR, SEARCHED, Searches
 
-COLOURS = dict(zip(NAMES, ("#b3261e", "#1f4e9c", "#1d7a3a"), strict=True))
-MARKS = dict(zip(NAMES, "osD", strict=True))
+COLOURS = dict(zip(NAMES, (RED, BLUE, GREEN, ORANGE), strict=True))
+MARKS = dict(zip(NAMES, "osD^", strict=True))
 FLOOR = 1e-7  # %: what is nearer is drawn there
 SHARE = 0.62  # of the height of a landscape sheet
 
@@ -40,10 +40,10 @@ def _rates(axes: Any, measured: Searches) -> None:
         label = f"{name}: {rates[0].parameters} lengths, {rates[0].constraints} constraints"
         axes.plot([r.generation for r in rates], [r.per_second / 1e3 for r in rates], f"{MARKS[name]}-", ms=5.5, lw=1.3,
                   color=COLOURS[name], label=label)  # fmt: skip
-    aimed = next(r for r in measured.rates if r.target is not None)
+    aimed = [(r.generation, r.target / 1e3) for r in measured.rates if r.target is not None]
     label = "target, at the size that the search uses"
-    axes.plot([aimed.generation], [PER_SECOND / 1e3], "_", ms=18, mew=1.8, color=DARK, label=label)
-    sizes = sorted({r.generation for r in measured.rates if r.problem == aimed.problem})
+    axes.plot(*zip(*aimed, strict=True), "_", ms=18, mew=1.8, color=DARK, label=label)
+    sizes = sorted({r.generation for r in measured.rates if r.problem == SEARCHED})
     axes.set_xscale("log")
     axes.set_xticks(sizes, [f"{n:,}".replace(",", " ") for n in sizes])
     axes.xaxis.set_minor_locator(NullLocator())

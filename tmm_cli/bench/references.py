@@ -16,6 +16,7 @@ from tmm_cli.bench.methods.case import Answers, Case
 from tmm_cli.library import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.tree import Tree
 from tmm_cli.vectors import Real
 
 NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
@@ -36,10 +37,21 @@ def case_of(name: str, results: Results) -> Case:
 
 
 @cache
+def _content(name: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
+    return found
+
+
+def tree_of(name: str) -> Tree:
+    """The problem file of a reference, as it was read."""
+    return read_text(_content(name)["problem"], f"{name}.yaml")
+
+
+@cache
 def reference(name: str) -> Reference:
     """A reference by its name."""
-    content = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
-    results = solve(build(read_text(content["problem"], f"{name}.yaml")), "kinematics")
+    content = _content(name)
+    results = solve(build(tree_of(name)), "kinematics")
     x, v, a, forces = (
         {point: exact(values) for point, values in content[key].items()}
         for key in ("positions", "velocities", "accelerations", "reactions")

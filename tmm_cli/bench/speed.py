@@ -1,4 +1,4 @@
-"""`tmm bench speed`: against code by hand for one mechanism, dyads for class III, other programs, growth."""
+"""`tmm bench speed`: against code by hand for one mechanism, dyads for class III, other programs; sweeps, growth."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.bench import speed_of_iterated, speed_of_sweeps
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.chains import chain
 from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
@@ -16,7 +17,8 @@ from tmm_cli.bench.methods import taped
 from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar, table
+from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar
+from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweeping
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.results.table import Table
@@ -113,11 +115,12 @@ class Speed(Measured):
     growths: tuple[Growth, ...]
     rivals: tuple[Rival, ...]
     iterated: tuple[Iterated, ...] = ()
+    sweeps: tuple[Sweeping, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        found: tuple[Timed, ...] = (*self.races, *self.iterated, *self.growths, *self.rivals)
+        found: tuple[Timed, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
         return tuple(filter(None, (one.missed(slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
@@ -125,6 +128,7 @@ class Speed(Measured):
         return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
             "iterated": [r.to_dict() for r in self.iterated],
+            "sweeps": [r.to_dict() for r in self.sweeps],
             "rivals": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.rivals],
         }
 
@@ -148,7 +152,7 @@ class Speed(Measured):
             [(r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
              for r in self.rivals],
         )  # fmt: skip
-        found = (races, table(self.iterated), growths)
+        found = (races, speed_of_iterated.table(self.iterated), speed_of_sweeps.table(self.sweeps), growths)
         return (*found, rivals) if self.rivals else found
 
 
@@ -162,12 +166,16 @@ def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _
     for name in ITERATED:
         progress(name)
         iterated += against_six_bar(name, reduced)
+    sweeps = []
+    for name in SWEPT:
+        progress(f"sweep of {name}")
+        sweeps.append(sweeping(name, reduced))
     growths = []
     for what in GROWING:
         progress(what)
         growths.append(growth(what, reduced))
     rivals, absent = against_rivals(reduced, progress)
-    return Speed(tuple(races), tuple(growths), rivals, tuple(iterated), reduced=reduced, absent=absent)
+    return Speed(tuple(races), tuple(growths), rivals, tuple(iterated), tuple(sweeps), reduced=reduced, absent=absent)
 
 
 def race(mechanism: Mechanism, reduced: bool) -> list[Race]:

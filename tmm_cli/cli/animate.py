@@ -11,9 +11,9 @@ from tmm_cli import solve
 from tmm_cli.animate.page import page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import say, warn
 from tmm_cli.language import _
-from tmm_cli.results.files import folder_name, write_whole
+from tmm_cli.results.files import folder_name, refuse_place, write_whole
 from tmm_cli.results.warnings import warnings
 
 
@@ -31,10 +31,12 @@ def animate(
 ) -> None:
     """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
     with refusing():
+        if out is not None:
+            refuse_place(out, folder=False)
         problem = opened(file, variant_settings(file, variants, variant, settings))
         results = solve(problem)
         target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
         write_whole(target, page(results).encode())
         for warning in warnings(results):
-            say(_("warning: {warning}").format(warning=warning))
+            warn(warning)
         say(_("written: {folder}").format(folder=target))

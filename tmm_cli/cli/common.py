@@ -6,8 +6,9 @@ import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
 import typer
 from rich.console import Console
@@ -16,7 +17,7 @@ from rich.progress import Progress, track
 from tmm_cli.cli.talk import BAD_INPUT, OK, say
 from tmm_cli.language import _, language, spoken
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.results.files import folder_name
+from tmm_cli.results.files import folder_name, refuse_place
 from tmm_cli.results.for_people import Kind
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
@@ -46,11 +47,23 @@ Variant = Annotated[
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
 ]
-
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
+]
 Tables = Annotated[
     Kind | None,
     typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
 ]
+
+Pictures = Iterable[tuple[str, bytes]]
+
+
+def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis"], *of: Any, **how: Any) -> Pictures:
+    """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
+    found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
+    return found
 
 
 def console() -> Console:
@@ -70,6 +83,8 @@ def each(
     worst = OK
     if out is not None:
         _refuse_one_name(files)
+        with refusing():
+            refuse_place(out, folder=True)
     for file in progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {file} ==", style="bold")

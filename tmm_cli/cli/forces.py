@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tmm_cli.analysis.extremes import with_extremes
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
-from tmm_cli.cli.talk import say
 from tmm_cli.library import solve
 
 Extremes = Annotated[bool, typer.Option("--extremes", help="Largest and smallest reactions over the cycle.")]
@@ -44,14 +41,7 @@ def forces(
             results, ("extremes",) if extremes else names, as_json, None if hodographs else out, digits, tables
         )
         if hodographs:
-            _draw_hodographs(results, out)
+            write_pictures(results, out, dict(drawn("hodographs", results)), "hodographs")
         return code
 
     each(files, work, as_json=as_json, out=out)
-
-
-def _draw_hodographs(results: Results, out: Path | None) -> None:
-    from tmm_cli.draw.formats import files
-    from tmm_cli.draw.sheets.hodographs import reactions
-
-    write_pictures(results, out, dict(files(reactions(results), say)), "hodographs")

@@ -15,7 +15,7 @@ from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.results.files import write_whole
+from tmm_cli.results.files import refuse_place, write_whole
 
 
 def gallery(
@@ -28,6 +28,8 @@ def gallery(
 
     A file that cannot be computed is said and left out: exit code 1.
     """
+    with refusing():
+        refuse_place(out / "index.html", folder=False)
     made = list(by_all_cores([partial(_made, str(file)) for file in problems_in(paths)]))
     cards = [one for one in made if isinstance(one, Card)]
     for one in made:

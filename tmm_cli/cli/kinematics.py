@@ -12,7 +12,7 @@ from tmm_cli.analysis.centres import with_centres
 from tmm_cli.analysis.extremes import with_extremes
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import listed
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, each
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
@@ -70,11 +70,8 @@ def kinematics(
 
 def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
     """Instantaneous centres, listed and drawn; the exit code."""
-    from tmm_cli.draw.formats import files
-    from tmm_cli.draw.sheets.centres import sheets
-
     code = report(results, ("extremes", "centres", "advantage"), as_json, None)
-    write_pictures(results, out, dict(files(sheets(results), say)))
+    write_pictures(results, out, dict(drawn("centres", results)))
     return code
 
 
@@ -82,9 +79,6 @@ def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
-    from tmm_cli.draw.formats import files
-    from tmm_cli.draw.sheets.assemblies import sheets
-
     results = assemblies(opened(file, settings), positions)
     code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
@@ -95,5 +89,5 @@ def _list_assemblies(
                 say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
         for group in here.lost:
             say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
-    write_pictures(results, out, dict(files(sheets(results), say)))
+    write_pictures(results, out, dict(drawn("assemblies", results)))
     return code

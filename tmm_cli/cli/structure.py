@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.cli.common import Files, Json, Out, Settings, Tables, Variant, Variants, each
+from tmm_cli.cli.common import Files, Json, Out, Settings, Tables, Variant, Variants, drawn, each
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
@@ -41,10 +41,8 @@ def structure(
         results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out, people=tables)
-        from tmm_cli.draw import files as drawn
-
         code = report(results, names, as_json, None)
-        pictures = dict(drawn(results, say))
+        pictures = dict(drawn("whole", results))
         if not pictures:
             text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
             say(text.format(problem=results.problem.name))

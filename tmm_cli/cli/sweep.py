@@ -8,20 +8,19 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Json, Settings, bars, console, emit_json, refusing
-from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import OK, say, speak_as
+from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
+from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.cli.talk import OK, say
 from tmm_cli.draw.formats import files as drawings
 from tmm_cli.draw.sheets.sweep import sheets
 from tmm_cli.grading.task import Task
 from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.settings import with_settings
-from tmm_cli.results.files import RECORD, Staged, folder_name
+from tmm_cli.results.files import RECORD, Staged, folder_name, refuse_place
 from tmm_cli.results.terminal import show as show_table
 from tmm_cli.results.text import csv_text, json_text, plain
+from tmm_cli.results.understood import without_effect
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.record import Swept
@@ -41,10 +40,6 @@ Folder = Annotated[
     Path | None,
     typer.Option("--out", "-o", metavar="DIR", help="Write CSV, result.json, drawings there.", show_default=False),
 ]
-Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
-Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
-]
 
 
 def sweep(
@@ -56,7 +51,9 @@ def sweep(
     Each point is a variant with the assembly of the file's own one.
     """
     with refusing(as_json):
-        tree = with_settings(speak_as(read_file(file)), settings or ())
+        if out is not None:
+            refuse_place(out, folder=True)
+        tree = tree_of(file, settings)
         task = Task(tree)
         introduce(task.problem)
         problem = task.problem.whole
@@ -67,6 +64,8 @@ def sweep(
             points *= len(axis.values)
         refuse_points(problem, points, taped=taped, cores=None if scheduler else cores)
         _announce(problem, points, taped)
+        for doubt in without_effect(tree, mechanisms.names):
+            say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
         way = cluster(scheduler) if scheduler else processes(cores)
         with bars() as shown:
             work = shown.add_task(_("solved"), total=points)

@@ -19,7 +19,7 @@ from tmm_cli.grading.task_sheets import TaskSheets
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
-from tmm_cli.results.files import Staged
+from tmm_cli.results.files import Staged, refuse_place
 from tmm_cli.results.table import table_of_words
 from tmm_cli.results.terminal import show
 
@@ -45,6 +45,7 @@ def variants(
 ) -> None:  # fmt: skip
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
+        refuse_place(out, folder=True)
         task = read_task(with_vary(speak_as(read_file(file)), vary or ()))
         variety = Variety(task)
         if students is None:

@@ -20,6 +20,7 @@ NODES = 16  # of a panel
 WIDEST = np.pi / 6  # rad, and of a slider's way this share of pi: a panel at the beginning
 TAIL = 1e-14  # of the largest value of a function: its last coefficients are less
 ROUNDS = 12  # of halving: what still has a tail then has a jump within a panel
+MOST_PANELS = 2000  # when so many still have tails, these are rounding errors
 PLACES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
 FIT: Real = np.linalg.inv(chebyshev.chebvander(PLACES, NODES - 1))  # values at the nodes to coefficients
 SUMS: Real = chebyshev.chebvander(np.append(PLACES, 1.0), NODES) @ chebyshev.chebint(FIT, lbnd=-1)
@@ -85,7 +86,7 @@ def fitted(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | 
     values = _values(function, at)
     for _ in range(ROUNDS):
         rough = _rough(values)
-        if not rough.any():
+        if not rough.any() or len(rough) > MOST_PANELS:
             break
         middle = (at[:-1] + at[1:])[rough] / 2
         finer = np.sort(np.concatenate([at, middle]))

@@ -19,7 +19,7 @@ from tmm_cli.groups.sequence import DriverMotion, LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.kinematics.intermittent_task import WheelTask
 from tmm_cli.kinematics.motion import Turning, move
-from tmm_cli.kinematics.strokes import OutputCurve, Strokes
+from tmm_cli.kinematics.strokes import OutputCurve, Strokes, runs_of
 from tmm_cli.linkage import Linkage
 from tmm_cli.roots import least, roots
 from tmm_cli.tolerances import SAME_PLACE, SHOCKLESS, WHOLE_TURNS
@@ -168,7 +168,7 @@ def rides_there_and_back(
     wanted = 1 if task.when == "forward" else -1
     found = []
     for way, places in ((sense, ends), (-sense, ends[::-1])):
-        __, runs = curve.runs(places[:-1], np.diff(places))
+        __, runs = runs_of(curve, places[:-1], np.diff(places))
         lengths = np.abs(np.diff(places))
         found += [
             Ride(float(first), float(length), way, bool(run * wanted > 0))

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar, cast
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Driver, Link, Linkage, Mesh, Output
+from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
 from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_request, build_sketch
@@ -29,8 +30,6 @@ from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.balancing_task import BalancingTask
-    from tmm_cli.dynamics.task import RunTask, SteadyTask
     from tmm_cli.kinematics.intermittent_task import WheelTask
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -123,8 +122,8 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
-        TitleTexts(**shape.sheet.model_dump()), _dynamics(shape, first, values),
-        _balancing(shape, linkage, values), shape.reference, shape.shows, values, tree,
+        TitleTexts(**shape.sheet.model_dump()), _task("dynamics", shape, linkage, values),
+        _task("balancing", shape, linkage, values), shape.reference, shape.shows, values, tree,
         wheels=_wheels(shape, tree, linkage, values),
     )  # fmt: skip
 
@@ -157,26 +156,18 @@ def refuse_law(by_table: bool, dynamics: bool) -> None:
         )  # fmt: skip
 
 
-def _dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
-    if shape.dynamics is None:
+def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
+    """What a block asks for that few files have: build_<block>, which reads it, is imported for them alone."""
+    if getattr(shape, block) is None:
         return None
-    from tmm_cli.problem.build_dynamics import build_dynamics  # few files have the block
-
-    return build_dynamics(shape, driver, values)
-
-
-def _balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
-    if shape.balancing is None or isinstance(values.units, ExtendedUnits):  # it is found in doubles alone
-        return None
-    from tmm_cli.problem.build_balancing import build_balancing  # few files have the block
-
-    return build_balancing(shape.balancing, linkage, values)
+    module = import_module(f"tmm_cli.problem.build_{block}")
+    return getattr(module, f"build_{block}")(shape, linkage, values)
 
 
 def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
-    if not shape.intermittent or isinstance(values.units, ExtendedUnits):  # they are found in doubles alone
+    """What is asked of intermittent motion, which is found in doubles alone."""
+    if not shape.intermittent or isinstance(values.units, ExtendedUnits):
         return ()
-    from tmm_cli.problem.build_intermittent import build_wheels  # few files have the block
 
     def other(settings: Mapping[str, object]) -> Linkage:
         """The linkage with other values of parameters; what a task of synthesis found stays."""
@@ -185,7 +176,9 @@ def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReade
         alone = shape.model_copy(update={"intermittent": {}})
         return build_shape(alone, tree, ValueReader(own, values.units)).linkage
 
-    return build_wheels(shape, linkage, values, other)
+    module = import_module("tmm_cli.problem.build_intermittent")  # few files have the block
+    wheels: tuple[WheelTask, ...] = module.build_wheels(shape, linkage, values, other)
+    return wheels
 
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:

@@ -7,13 +7,18 @@ import numpy as np
 from tmm_cli.dynamics.balancing_task import BalancingTask, Place, Plane, Rotor
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.problem import schema
 from tmm_cli.problem import schema_balancing as shapes
+from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.values import Part, ValueReader, direction
 from tmm_cli.quantities import ANGLE, LENGTH, MASS, NUMBER
 
 
-def build_balancing(given: shapes.Balancing, linkage: Linkage, values: ValueReader) -> BalancingTask:
-    """What is asked of balancing."""
+def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
+    """What is asked of balancing, which is found in doubles alone."""
+    given = shape.balancing
+    if given is None or isinstance(values.units, ExtendedUnits):
+        return None
     part = Part(given, ("balancing",), values)
     heavy = any(np.any(linkage.links[name].mass != 0) for name in linkage.moving)
     if not heavy and (given.counterweights or given.rotor is None):

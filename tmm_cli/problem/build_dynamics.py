@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 from tmm_cli.dynamics.motors import Kloss, Linear, Motor
 from tmm_cli.dynamics.sizes import Disk, Rim
 from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
 from tmm_cli.language import _
-from tmm_cli.linkage import Driver
+from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.problem import schema, schema_dynamics
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import quote
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import (
     ANGLE,
@@ -32,9 +31,9 @@ NUMBERS = {"linear": ("stall", "free"), "asynchronous": ("synchronous", "speed",
 MOST_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
-def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> SteadyTask | RunTask | None:
-    """What is asked of the law of motion; None where nothing is."""
-    given = shape.dynamics
+def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) -> SteadyTask | RunTask | None:
+    """What is asked of the law of motion."""
+    given, driver = shape.dynamics, linkage.driver
     if given is None:
         return None
     part = Part(given, ("dynamics",), values)
@@ -54,6 +53,8 @@ def build_dynamics(shape: schema.File, driver: Driver, values: ValueReader) -> S
     motor = None if given.motor is None else _motor(Part(given.motor, ("dynamics", "motor"), values))
     if given.run is not None:
         return _run(part, Part(given.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
+    if mean == 0:
+        raise part.refusal("", _("a driver that stands has no fluctuation of speed"), allowed="mean speed")
     return SteadyTask(mean, delta, motor, own * ratio**2, ratio, size)
 
 
@@ -90,18 +91,8 @@ def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
                            _("a table of moments, or a driver that slides"), at_key=True)  # fmt: skip
     if given.area is not None:
         size, area = PRESSURE, part.positive("area", AREA)
-    argument = NUMBER if given.against == "time" else place
-    rows = [
-        (part.values.number(row[0], argument, (*part.path, "table", k, 0)),
-         area * part.values.number(row[1], size, (*part.path, "table", k, 1)))
-        for k, row in enumerate(given.table)
-    ]  # fmt: skip
-    for k, (one, other) in enumerate(pairwise(rows), 1):
-        if not one[0] < other[0]:
-            raise ProblemError(
-                _("the first column must grow"), path=(*part.path, "table", k, 0), found=str(given.table[k][0])
-            )
-    return Profile(given.against, tuple(x for x, __ in rows), tuple(y for __, y in rows))
+    arguments, sizes = part.columns("table", NUMBER if given.against == "time" else place, size)
+    return Profile(given.against, arguments, tuple(area * one for one in sizes))
 
 
 def _turns(speed: float) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
@@ -35,3 +37,24 @@ def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
         except ProblemError as error:
             raise error.at(*path).located(words) from None
     return replace(tree, data={**tree.data, "parameters": parameters}, given=given) if given else tree
+
+
+def unused(tree: Tree, names: Iterable[str]) -> list[str]:
+    """Those of these parameters that no value of the file names, nor a parameter that one names."""
+    own = tree.data.get("parameters", {})
+    met: set[str] = set()
+    left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
+    while left:
+        new = {word for value in left for word in _words(value)} - met
+        met |= new
+        left = [own[word] for word in new if word in own]
+    return [name for name in names if name not in met]
+
+
+def _words(value: Any) -> Iterator[str]:
+    """What could be names in texts, which arithmetic is too."""
+    if isinstance(value, str):
+        yield from re.findall(r"[^\W\d]\w*", value)
+    elif isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from _words(part)

@@ -20,7 +20,7 @@ from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.tolerances import NO_COSINE
 
-LARGEST = 1e20  # SI, of any value: products of a few of them stay far from the end of floats
+LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
 UNKNOWN = {
     "link": N_("there is no link of that name"),
@@ -177,6 +177,16 @@ class Part:
 
     def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
         return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
+
+    def columns(self, key: str, argument: Dimension, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Both columns of a table, of which the first one grows."""
+        rows, path = getattr(self.given, key), (*self.path, key)
+        first = tuple(self.values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows))
+        second = tuple(self.values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows))
+        for k in range(1, len(first)):
+            if first[k] <= first[k - 1]:
+                raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
+        return first, second
 
     def known(self, key: str, names: Iterable[str], what: str) -> str:
         return self.values.known(getattr(self.given, key), names, (*self.path, key), what)

@@ -42,6 +42,20 @@ def folder_of(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
     return own, usual
 
 
+def refuse_place(path: Path, *, folder: bool) -> None:
+    """Refuse a folder, or a file, that cannot be written, before there is any work for it. Raises OSError."""
+    path = Path(os.path.realpath(path))
+    if path.exists() and path.is_dir() != folder:
+        number = errno.ENOTDIR if folder else errno.EISDIR
+        raise OSError(number, os.strerror(number), str(path))
+    above = path if folder else path.parent
+    while not above.exists():
+        above = above.parent
+    if not above.is_dir() or not os.access(above, os.W_OK):
+        number = errno.EACCES if above.is_dir() else errno.ENOTDIR
+        raise OSError(number, os.strerror(number), str(above))
+
+
 def write_whole(path: Path, content: bytes) -> None:
     """Write beside and rename, so that a killed run leaves the old file or the new one."""
     path = Path(os.path.realpath(path))

@@ -21,6 +21,7 @@ from tmm_cli.quantities import (
     Dimension,
     place_dimension,
 )  # fmt: skip
+from tmm_cli.results.given_dynamics import law_of_motion
 from tmm_cli.results.given_loads import loads, masses
 from tmm_cli.results.given_parts import parts, speed, speeds
 from tmm_cli.results.reports.synthesis import parameters
@@ -48,8 +49,6 @@ def given(problem: Problem) -> Iterable[Table]:
     if problem.linkage.loads:
         yield from loads(problem)
     if problem.dynamics is not None:
-        from tmm_cli.results.given_dynamics import law_of_motion
-
         yield from law_of_motion(problem, problem.dynamics)
 
 

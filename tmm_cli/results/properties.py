@@ -13,10 +13,11 @@ from tmm_cli.analysis import pipeline
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.analysis.quantities import quantities
 from tmm_cli.analysis.quantities.base import STAGES, Quantity
+from tmm_cli.analysis.quantities.intermittent import of_wheels
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, quote, under
+from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote, under
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
@@ -117,13 +118,8 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
 
 
 def _named(results: Results) -> dict[str, Quantity]:
-    """All quantities; those of wheels where there are any."""
-    found, tasks = quantities(results.linkage, results.structure), results.inputs.wheels
-    if tasks:
-        from tmm_cli.analysis.quantities.intermittent import of_wheels  # few files have the block
-
-        found |= of_wheels(tasks)
-    return found
+    """All quantities, and those of wheels."""
+    return {**quantities(results.linkage, results.structure), **of_wheels(results.inputs.wheels)}
 
 
 def _known(name: str, key: str, results: Results) -> Quantity:
@@ -201,10 +197,7 @@ def _read(quantity: Quantity, results: Results, q: Real) -> Real:
 def _place(number: int, path: Path, results: Results) -> float:
     asked = results.asked
     if number >= len(asked):
-        raise ProblemError(
-            _("there is no such position"), path=path, found=str(number),
-            allowed=_("0 to {last}").format(last=len(asked) - 1),
-        )  # fmt: skip
+        raise no_position(number, len(asked), *path)
     return float(asked[number])
 
 

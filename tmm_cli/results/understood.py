@@ -12,6 +12,8 @@ from tmm_cli.double_double import rounded
 from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME, Driver, Link, SpeedTable
 from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.settings import unused
+from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
 from tmm_cli.results.table import with_unit
@@ -98,6 +100,8 @@ def gravity(pull: complex) -> str:
 def doubts(problem: Problem) -> Iterable[str]:
     """What is allowed and computed, and yet is probably not what was meant."""
     data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
+    if problem.source is not None:
+        yield from without_effect(problem.source, [path[1] for path in problem.source.given])
     yield from _bare_speed(problem, data)
     for driver in problem.linkage.drivers:
         if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
@@ -111,6 +115,12 @@ def doubts(problem: Problem) -> Iterable[str]:
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
         yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
+
+
+def without_effect(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
+    """That parameters which are given other values beside the file change nothing."""
+    for name in unused(tree, names):
+        yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
 
 
 def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.kinematics.pressure import find_pressure
 from tmm_cli.kinematics.strokes import find_travel, output_slope
 from tmm_cli.linkage import FRAME
 from tmm_cli.tolerances import SURE_SIGN
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.pipeline import Results
 
 NONE = math.nan
 

@@ -20,12 +20,14 @@ from tmm_cli.groups.unrolled import Unrolled
 from tmm_cli.linkage import Linkage
 from tmm_cli.tape import TracedArray, record
 from tmm_cli.tolerances import CONVERGED, SAME_STATE
+from tmm_cli.variants.stack import each
 from tmm_cli.variants.starts import started, unknowns, wants
 from tmm_cli.vectors import Real
 
 CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
 STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
 ROUNDS = 12  # at most from the first linkage to a variant
+FIRST_SHARE = 1 / 16  # of that way, which tells where the rest leads; it is tried in one step then
 AT_NODE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
 SHORTEST = 0.25  # of a step
 EACH_TURN, LEAST_TURN = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
@@ -115,7 +117,7 @@ class Marches:
 
         signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
         """
-        data = [*(numbers[:, k : k + 1] for k in range(numbers.shape[1])), q[:, None], *(part[:, None] for part in x)]
+        data = [*each(numbers), q[:, None], *(part[:, None] for part in x)]
         found = self.program(*data)
         dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
         sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
@@ -134,7 +136,7 @@ class Marches:
         variants = len(numbers)
         x = np.repeat(self.x[:, None], variants, axis=1)
         v = np.full_like(x, np.nan)
-        gone, stride = np.zeros(variants), np.ones(variants)
+        gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
         slope = np.zeros_like(x)
         for _ in range(ROUNDS):
             share = np.minimum(gone + stride, 1.0)
@@ -145,7 +147,7 @@ class Marches:
             moved = np.where(good, share - gone, 1.0)
             slope = np.where(good, (found - x) / moved, slope)
             x, v = np.where(good, found, x), np.where(good & (share == 1), rates, v)
-            stride = np.where(good, 2 * stride, stride / 2)
+            stride = np.where(good, stride / FIRST_SHARE, stride / 2)
             gone = np.where(good, share, gone)
             if np.all(gone == 1):
                 break

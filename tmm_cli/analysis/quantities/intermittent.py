@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_cli.analysis.quantities.base import Quantity
-from tmm_cli.kinematics.intermittent import Intermittent
-from tmm_cli.kinematics.intermittent_task import WheelTask
 from tmm_cli.quantities import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, NUMBER, Dimension
 
-KINDS: tuple[tuple[str, Dimension, Callable[[Intermittent], float]], ...] = (
+if TYPE_CHECKING:  # few files have the block
+    from tmm_cli.kinematics.intermittent import Intermittent
+    from tmm_cli.kinematics.intermittent_task import WheelTask
+
+Reader = Callable[["Intermittent"], float]
+KINDS: tuple[tuple[str, Dimension, Reader], ...] = (
     ("turn", ANGLE, lambda wheel: abs(wheel.turn)),
     ("standing", NUMBER, lambda wheel: wheel.standing),
     ("cycles", NUMBER, lambda wheel: np.nan if wheel.cycles is None else wheel.cycles),
@@ -34,7 +37,7 @@ def of_wheels(tasks: Iterable[WheelTask]) -> dict[str, Quantity]:
     return {name: Quantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in found}
 
 
-def _read(number: int, of: Callable[[Intermittent], float], results: Any) -> Any:
+def _read(number: int, of: Reader, results: Any) -> Any:
     return np.array([float(of(results.wheels[number]))])
 
 

@@ -10,6 +10,7 @@ from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.naming import output_link
 
 
 def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
@@ -26,7 +27,8 @@ def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         name: Quantity(name, "structure", NUMBER, _constant(value), whole=True, against="exact")
         for name, value in exact.items()
     }
-    slides = linkage.output is not None and linkage.slides_on_frame(linkage.output.link)
+    output = output_link(linkage, structure.groups)
+    slides = output is not None and linkage.slides_on_frame(output)
     name, dimension = ("H", LENGTH) if slides else ("psi", ANGLE)
     found[name] = Quantity(name, "places", dimension, _travel, whole=True)
     found["strokes"] = Quantity("strokes", "places", NUMBER, _number, whole=True, against="exact")

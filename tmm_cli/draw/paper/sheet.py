@@ -56,6 +56,7 @@ class Sheet:
             self.origin = room.origin
         self.marks: list[Mark] = []
         self.faint: list[int] = []  # marks that are interrupted where texts stand
+        self.parts: list[tuple[str, slice]] = []  # which marks belong to which body, of those that belong to one
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
         self.block = Block()
@@ -88,6 +89,13 @@ class Sheet:
         before, self.layer = self.layer, layer
         yield
         self.layer = before
+
+    @contextmanager
+    def part(self, name: str) -> Iterator[None]:
+        """What is drawn meanwhile belongs to a body: a link, or what moves by itself, as a slider's box does."""
+        first = len(self.marks)
+        yield
+        self.parts.append((name, slice(first, len(self.marks))))
 
     def text(
         self, at: complex, text: script.Words, size: float, *, colour: str = DARK, weight: str = "normal",

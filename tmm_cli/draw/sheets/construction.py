@@ -14,6 +14,7 @@ from tmm_cli.draw.sheets.lettering import rename
 from tmm_cli.draw.symbols.fixed import guide, support, support_side
 from tmm_cli.draw.symbols.forms import Line
 from tmm_cli.draw.symbols.parts import MEASURED, box
+from tmm_cli.draw.symbols.scene import BEYOND
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.linkage import Linkage
 from tmm_cli.plans.record import sheet_scale
@@ -178,7 +179,7 @@ def _spot(sheet: Sheet, spot: Spot, rods: Sequence[Line]) -> None:
         along = spot.along / abs(spot.along)
         box(sheet, at, along, DARK, BOXES[spot.mark], MEASURED)
         if spot.mark == "slider":
-            guide(sheet, at, along, MEASURED, rods)
+            guide(sheet, at, along, MEASURED, MEASURED.box[0] / 2 + BEYOND, rods)
     if spot.mark == "support":
         support(sheet, at, support_side(sheet, at, rods), rods=rods)
     if spot.mark == "dot":

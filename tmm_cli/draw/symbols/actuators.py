@@ -17,6 +17,7 @@ BARREL, LEAST = 2.3, 8.0  # mm: half the width of a cylinder, its least length
 COIL, AMPLITUDE, STUB = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends
 SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
 SPRING = "#5f3b8a"
+SPRING_OF = "{}|spring"  # the body that a spring is, which is stretched
 
 
 def cylinders(linkage: Linkage) -> dict[str, Driver]:
@@ -61,10 +62,12 @@ class Cylinder:
         """The barrel cut open, the piston and its rod in it."""
         side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL
         corners = [self.back + side, self.front + side, self.front - side, self.back - side]
-        sheet.area(corners, "white", hue[self.slide.carrier], 1.3, 4.6)
+        with sheet.part(self.slide.carrier):
+            sheet.area(corners, "white", hue[self.slide.carrier], 1.3, 4.6)
         rod = hue[self.slide.runner]
-        sheet.line([self.piston + 0.8 * side, self.piston - 0.8 * side], rod, 2.4, z=4.8)
-        sheet.line([self.piston, self.end], rod, 1.8, z=4.7)
+        with sheet.part(self.slide.runner):
+            sheet.line([self.piston + 0.8 * side, self.piston - 0.8 * side], rod, 2.4, z=4.8)
+            sheet.line([self.piston, self.end], rod, 1.8, z=4.7)
 
 
 def driver_name(driver: Driver, letter: str) -> Symbol:
@@ -76,19 +79,22 @@ def springs(sheet: Sheet, scene: Scene) -> None:
     """All springs, with their names."""
     for spring in scene.linkage.springs:
         if spring.turns:
-            torsion(sheet, scene, spring)
+            with sheet.part(spring.j):
+                torsion(sheet, scene, spring)
             continue
         start, end = sheet.on(scene.place(spring.i, spring.at_i)), sheet.on(scene.place(spring.j, spring.at_j))
         if not np.isfinite(start + end) or abs(end - start) < 0.5:
             continue
-        (coils if spring.rate > 0 else gas)(sheet, start, end)
+        with sheet.part(SPRING_OF.format(spring.name)):
+            (coils if spring.rate > 0 else gas)(sheet, start, end)
         for link, at in ((spring.i, start), (spring.j, end)):
-            sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
-            if link == FRAME:
-                out = (at - start - end + at) / abs(end - start)
-                low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
-                sheet.line([low, high], DARK, 1.1, z=2.7)
-                hatch(sheet, low, high, out)
+            with sheet.part(link):
+                sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
+                if link == FRAME:
+                    out = (at - start - end + at) / abs(end - start)
+                    low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
+                    sheet.line([low, high], DARK, 1.1, z=2.7)
+                    hatch(sheet, low, high, out)
         middle = (start + end) / 2
         sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * AMPLITUDE, 9, SPRING)
 

@@ -9,7 +9,6 @@ import numpy as np
 from tmm_cli.draw.paper.sheet import DARK, Sheet, hatch
 from tmm_cli.draw.symbols.forms import Line
 from tmm_cli.draw.symbols.parts import GAP, MEASURED, Look, quiet
-from tmm_cli.draw.symbols.scene import BEYOND
 from tmm_cli.vectors import Vector, cross, dot, unit
 
 HATCHED, WALL, OPEN = 1.7, 0.6, 1.1  # mm: depth of hatching, how far rods keep off it, room beside them in an opening
@@ -54,10 +53,12 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED, rods
     return foot + GROUND * half * side
 
 
-def guide(sheet: Sheet, at: complex, along: complex, look: Look, rods: Sequence[Line]) -> None:
-    """A piece of the frame's guide about a box: hatched rails, open where rods go through."""
+def guide(
+    sheet: Sheet, middle: complex, along: complex, look: Look, reach: float, rods: Sequence[Line] = ()
+) -> None:  # fmt: skip
+    """A piece of the frame's guide, so long (mm) on both sides: hatched rails, open where rods go through."""
     for side in (1j * along, -1j * along):
-        wall(sheet, at + side * (look.box[1] / 2 + GAP), along, side, look.box[0] / 2 + BEYOND, rods)
+        wall(sheet, middle + side * (look.box[1] / 2 + GAP), along, side, reach, rods)
 
 
 def wall(sheet: Sheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Line]) -> None:

@@ -31,7 +31,7 @@ class Look:
     """Sizes of symbols, mm; widths of lines, points.
 
     measured: to scale, links by their points, guides as long as the way on them. stone: a slider on a moving link;
-    sides: where labels keep off a bar, mm from its middle line.
+    sides: where labels keep off a bar, mm from its middle line. moves: each body is drawn once, and then moves.
     """
 
     measured: bool
@@ -41,6 +41,7 @@ class Look:
     support: tuple[float, float]  # height of the triangle, half its base
     bar: float
     sides: tuple[complex, ...]
+    moves: bool = False
 
     def sized(self, size: float) -> Look:
         """Smaller symbols, where pairs are near to one another."""
@@ -56,6 +57,7 @@ class Look:
 
 
 MEASURED = Look(True, 1.3, (9.0, 5.0), (7.5, 4.2), (5.6, 3.4), 2.4, (0j,))
+MOVING = replace(MEASURED, moves=True)
 STRUCTURAL = Look(False, 1.7, (10.0, 6.0), (10.0, 6.0), (6.0, 3.4), 2.7, (0.8j, -0.8j))
 PLATE = "#eceff3"  # of measured drawings
 

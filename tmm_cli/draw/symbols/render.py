@@ -25,6 +25,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair
 
+BOX = "{}|box"  # the body that the box of a sliding pair is
 OVER = 10.0  # mm: how far the axis of a guide goes on beyond the way of its stone
 GREY = "#404040"
 
@@ -51,12 +52,12 @@ def _render(
     sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
     leads: Sequence[Pair],
 ) -> Rendered:  # fmt: skip
-    if look.measured:
+    if look.measured and not look.moves:
         scene = spread(sheet, scene, links)
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}
     drawn = Rendered(forms, scene)
     driven = cylinders(scene.linkage)
-    rods = [edge for form in forms.values() for edge in form.edges]
+    rods = [] if look.moves else [edge for form in forms.values() for edge in form.edges]
     for pair in pairs:
         if pair.slide is not None and pair.slide.carrier == FRAME:
             _guide(sheet, scene, pair, look, rods)
@@ -64,10 +65,11 @@ def _render(
         if not pair.lower:
             _higher(sheet, scene, pair, look, hue, rods)
     for link, form in forms.items():
-        body(sheet, form, hue[link], look)
-        for pair in scene.structure.pairs:  # also of those that are drawn from one side only
-            if not pair.lower and link in (pair.i, pair.j):
-                rigid(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
+        with sheet.part(link):
+            body(sheet, form, hue[link], look)
+            for pair in scene.structure.pairs:  # also of those that are drawn from one side only
+                if not pair.lower and link in (pair.i, pair.j):
+                    rigid(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
     for pair in pairs:
         if pair.slide is None:
             continue
@@ -88,20 +90,29 @@ def _render(
             continue
         stones = [place for link in joined if link in forms for place in forms[link].boxes]
         here_look = look.raised() if any(abs(at - place) < ON_LINE for place in stones) else look
-        end = support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
+        with sheet.part(FRAME):
+            end = support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
         if not look.measured:
             sheet.label(FRAME, end, 9, DARK, "italic")
     return drawn
 
 
 def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Line]) -> None:
-    """A guide on the frame: hatched rails about its box; to scale also its axis, as long as the way on it."""
+    """A guide on the frame: hatched rails about its box; to scale also its axis, as long as the way on it.
+
+    Where the box moves the rails are as long as its way.
+    """
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
-    guide(sheet, at, along, look, rods)
+    (low, high), here = scene.way(slide), scene.run(slide)
+    if look.moves:
+        middle, way = at + ((low + high) / 2 - here) / sheet.mu * along, (high - low) / sheet.mu
+        with sheet.part(FRAME):
+            guide(sheet, middle, along, look, (way + look.box[0] + BEYOND) / 2)
+        return
+    guide(sheet, at, along, look, look.box[0] / 2 + BEYOND, rods)
     if look.measured:
-        (low, high), here = scene.way(slide), scene.run(slide)
         start, end = at + ((low - here) / sheet.mu - OVER) * along, at + ((high - here) / sheet.mu + OVER) * along
         axis = [border(at, start, *sheet.field), border(at, end, *sheet.field)]
         with sheet.on_layer("construction"):
@@ -134,12 +145,12 @@ def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str, rods
     if not np.isfinite(at):
         return
     size = look.box if FRAME in (slide.carrier, slide.runner) else look.stone
-    box(sheet, at, along, colour, size, look)
-    if slide.runner == FRAME:
-        for side in (1j * along, -1j * along):
+    with sheet.part(BOX.format(pair.name)):
+        box(sheet, at, along, colour, size, look)
+        for side in (1j * along, -1j * along) if slide.runner == FRAME else ():
             wall(sheet, at + side * size[1] / 2, along, side, size[0] / 2, rods)
-        if not look.measured:
-            sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
+    if slide.runner == FRAME and not look.measured:
+        sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
 
 
 def _hinge(
@@ -148,13 +159,16 @@ def _hinge(
     """The turning pairs of one place, a circle each; bars that go on beyond it cross it there."""
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
-    for number, pair in reversed(list(enumerate(here))):
-        later = max((pair.i, pair.j), key=lambda link: order.get(link, 0))
-        sheet.circle(at, look.hinge + step * number, "white", hue[later], 1.2, 6 - 0.01 * number)
-    for link in dict.fromkeys(link for pair in here for link in (pair.i, pair.j)):
+    links = list(dict.fromkeys(link for pair in here for link in (pair.i, pair.j)))
+    with sheet.part(FRAME if FRAME in links else links[0]):
+        for number, pair in reversed(list(enumerate(here))):
+            later = max((pair.i, pair.j), key=lambda link: order.get(link, 0))
+            sheet.circle(at, look.hinge + step * number, "white", hue[later], 1.2, 6 - 0.01 * number)
+    for link in links:
         along = forms[link].through(at) if link in forms else None
         if along is not None:
-            sheet.line([at - look.hinge * along, at + look.hinge * along], hue[link], 0.8 * look.bar, z=6.2)
+            with sheet.part(link):
+                sheet.line([at - look.hinge * along, at + look.hinge * along], hue[link], 0.8 * look.bar, z=6.2)
 
 
 def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:

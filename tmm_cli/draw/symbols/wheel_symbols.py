@@ -38,11 +38,15 @@ def draw(
     pitch = sheet.on(found.pitch)
     for disc in found.discs:
         if disc.link in hue:
-            _wheel(sheet, disc, hue[disc.link], pitch, found.along)
+            with sheet.part(disc.link):
+                _wheel(sheet, disc, hue[disc.link])
+            _tooth_hint(sheet, disc, pitch, found.along, hue[disc.link])
             if disc.link == FRAME:
-                _hatched(sheet, disc, rods)
+                with sheet.part(FRAME):
+                    _hatched(sheet, disc, rods)
     if found.side != 0 and found.mesh.j in hue:
-        _rack_bar(sheet, found, hue[found.mesh.j], span)
+        with sheet.part(found.mesh.j):
+            _rack_bar(sheet, found, hue[found.mesh.j], span)
     sheet.circle(pitch, 0.55, DARK, DARK, 0.3, 6.4)
 
 
@@ -54,16 +58,14 @@ def _curve(sheet: Sheet, places: Vector, colour: str, width: float, style: Style
         sheet.line(list(np.where(inside, places, complex(np.nan, np.nan))), colour, width, style, z)
 
 
-def _wheel(sheet: Sheet, disc: Disc, colour: str, pitch: complex, along: complex) -> None:
-    """A pitch circle, teeth where it meshes; the rim of inner teeth."""
+def _wheel(sheet: Sheet, disc: Disc, colour: str) -> None:
+    """A pitch circle; the rim of inner teeth."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
     ways = unit(np.linspace(0, 2 * np.pi, number + 1))
     _curve(sheet, centre + radius * ways, colour, 0.8, CHAIN, ABOVE)
-    outside = radius + RIM if disc.ring else radius
     if disc.ring:
-        _curve(sheet, centre + outside * ways, colour, 1.2, "-", ABOVE)
-    _tooth_hint(sheet, centre, radius, pitch, along, colour)
+        _curve(sheet, centre + (radius + RIM) * ways, colour, 1.2, "-", ABOVE)
 
 
 def _hatched(sheet: Sheet, disc: Disc, rods: Sequence[Line]) -> None:
@@ -83,9 +85,9 @@ def _wave(run: Any) -> Any:
     return np.clip(2.6 * np.sin(2 * np.pi * run / TOOTH), -1, 1)
 
 
-def _tooth_hint(sheet: Sheet, centre: complex, radius: float, pitch: complex, along: complex, colour: str) -> None:
+def _tooth_hint(sheet: Sheet, disc: Disc, pitch: complex, along: complex, colour: str) -> None:
     """Some teeth at the pitch point: the same wave on both partners, so those of one fill the gaps of the other."""
-    reach = TEETH / 2 * TOOTH
+    centre, radius, reach = sheet.on(disc.centre), disc.radius / sheet.mu, TEETH / 2 * TOOTH
     if radius < reach or not np.isfinite(pitch):
         return
     run = np.linspace(-reach, reach, 30 * TEETH + 1)
@@ -118,13 +120,15 @@ def _draw_cam(sheet: Sheet, found: CamShape, hue: Mapping[str, str]) -> None:
     """The disk, and the follower's roller; its other parts are bars of its link."""
     disk = [sheet.on(complex(p)) for p in found.disk]
     if found.mesh.i in hue:
-        sheet.area(disk[:-1], "#f1f3f6", hue[found.mesh.i], 1.2, 1.9)
+        with sheet.part(found.mesh.i):
+            sheet.area(disk[:-1], "#f1f3f6", hue[found.mesh.i], 1.2, 1.9)
     else:
         sheet.line(disk, THIN, 0.8, DASHED, 1.9)
     if found.mesh.j not in hue:
         return
     own = hue[found.mesh.j]
     if found.roller:
-        sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 2.9)
-        sheet.circle(sheet.on(found.face[0]), AXLE, "white", own, 1.0)
+        with sheet.part(found.mesh.j):
+            sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 2.9)
+            sheet.circle(sheet.on(found.face[0]), AXLE, "white", own, 1.0)
     sheet.circle(sheet.on(found.touch), 0.55, DARK, DARK, 0.3, 6.4)

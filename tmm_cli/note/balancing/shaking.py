@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.analysis.balancing import steadily
+from tmm_cli.analysis.balancing import Balancing, steadily
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Found, Inline, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Leaf, Product, Square, SquareRoot, Substitution, Sum
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.balancing import Balancing
 
 FORCE, MOMENT = Symbol("F"), Symbol("M")
 X, Y = Symbol("F", "x"), Symbol("F", "y")
@@ -38,8 +34,7 @@ def explained(found: Balancing) -> Iterable[Block]:
 def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
     """Parts of the force, its size, and the moment."""
     results = subject.results
-    assert results.motion is not None
-    motion = steadily(results.mechanism, results.motion.q[k : k + 1])
+    motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
     about, moments = found.before.about, list[Expression]()
     terms: tuple[list[Expression], list[Expression]] = ([], [])
     largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)

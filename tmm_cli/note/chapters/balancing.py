@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from tmm_cli.analysis.balancing import Balancing
 from tmm_cli.language import _
+from tmm_cli.note.balancing import counterweights, shaft, shaking
 from tmm_cli.note.blocks import Block, Heading
 from tmm_cli.note.context import Subject
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
-
-if TYPE_CHECKING:  # few files ask for it
-    from tmm_cli.analysis.balancing import Balancing
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
@@ -23,15 +21,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
         if found.cycle.shakes:
             yield from _of_links(subject, found)
         if found.task.rotor is not None:
-            from tmm_cli.note.balancing import shaft
-
             yield Heading(_("Rotating masses"), 2)
             yield from shaft.blocks(subject, found.task.rotor, found.corrections)
 
 
 def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
-    from tmm_cli.note.balancing import counterweights, shaking
-
     yield Heading(_("Shaking force and moment"), 2)
     yield from shaking.explained(found)
     for k in subject.detail:

@@ -3,45 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Heading, Ref, paragraph, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.dynamics import driving, flywheel, law, reduced
+from tmm_cli.note.dynamics.words import Here
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
 from tmm_cli.results.reports.cycle import signs
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.running import Running
-    from tmm_cli.analysis.single_run import SingleRun
 
 TABLES = ("dynamics", "law-of-motion")
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
-    """Of a file that asks for it."""
-    if subject.results.motion is None:
-        return
-    if subject.results.steady is not None:
-        yield from _steady(subject, subject.results.steady)
-    elif subject.results.single is not None:
-        yield from _single(subject, subject.results.single)
-
-
-def _single(subject: Subject, single: SingleRun) -> Iterable[Block]:
-    from tmm_cli.note.dynamics.single import energies
-
-    yield Heading(_("Law of motion"))
-    yield from energies(single, crank=subject.results.linkage.driver.kind == "turn")
-    yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
-    yield from _tables(subject)
-
-
-def _steady(subject: Subject, running: Running) -> Iterable[Block]:
-    from tmm_cli.note.dynamics import driving, flywheel, law, reduced
-    from tmm_cli.note.dynamics.words import Here
-
+    """Of steady running."""
+    running = subject.results.steady
+    assert running is not None
     every = [Here(subject, running, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
@@ -79,12 +57,13 @@ def _steady(subject: Subject, running: Running) -> Iterable[Block]:
     )  # fmt: skip
     if running.sense < 0:
         yield paragraph(signs(subject.results.linkage))
-    yield from _tables(subject)
+    yield from tables(subject)
 
 
-def _tables(subject: Subject) -> Iterable[Block]:
-    tables = list(walk(subject.results, TABLES))
+def tables(subject: Subject) -> Iterable[Block]:
+    """What was found, and the law of motion at every position."""
+    found = list(walk(subject.results, TABLES))
     sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
-    for table, sentence in zip(tables, sentences, strict=True):
+    for table, sentence in zip(found, sentences, strict=True):
         yield said(sentence, table=Ref(table.name))
         yield rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")

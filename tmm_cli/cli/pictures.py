@@ -1,0 +1,32 @@
+"""What commands draw. It is imported where pictures are asked for alone (common.drawn): matplotlib is slow to load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from tmm_cli import draw
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.cli.common import Pictures
+from tmm_cli.cli.drawing import by_all_cores
+from tmm_cli.cli.talk import say
+from tmm_cli.draw.formats import Drawn, files
+from tmm_cli.draw.sheets import assemblies, centres, hodographs, synthesis
+
+
+def _whole(results: Results, *, quiet: bool = False) -> Pictures:
+    return draw.files(results, say, partial(by_all_cores, quiet=quiet))
+
+
+def _sheets(made: Callable[..., Drawn], *given: Any) -> Pictures:
+    return files(made(*given), say)
+
+
+PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names
+    "whole": _whole,
+    "hodographs": partial(_sheets, hodographs.reactions),
+    "centres": partial(_sheets, centres.sheets),
+    "assemblies": partial(_sheets, assemblies.sheets),
+    "synthesis": partial(_sheets, synthesis.sheets),
+}

@@ -1,0 +1,152 @@
+"""How far the driver goes, positions without numbers, dead positions and nearness to them, a sketch that is off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.assembly.sketch import sketch_deviations
+from tmm_cli.groups.base import Closed
+from tmm_cli.groups.sequence import DriverMotion
+from tmm_cli.kinematics.motion import move
+from tmm_cli.language import _, numeral
+from tmm_cli.quantities import LENGTH, place_dimension
+from tmm_cli.results.table import with_unit
+
+MOST_POSITIONS = 100  # that cannot be reached, each with its own words
+FEW = 12  # positions that are named in one sentence
+SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
+
+
+def driver_place(results: Results, q: float) -> str:
+    """A place of the driver."""
+    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
+
+
+def limited(results: Results) -> Iterable[str]:
+    """Where the driver does not go all the way round, what stops it, and what that does to the positions."""
+    driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
+    assert driver_range is not None
+    start, end = driver_place(results, driver_range.start), driver_place(results, driver_range.end)
+    groups = ", ".join(dict.fromkeys(limit.group for limit in driver_range.limits if limit.group))
+    said = []
+    if groups and driver.kind == "turn":
+        text = _(
+            "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} "
+            "comes to its dead position"
+        )
+        said.append(text.format(link=driver.link, start=start, end=end, groups=groups))
+    if any(limit.driver for limit in driver_range.limits):
+        text = _("driving link {link} goes from {start} to {end} only: it slows down and stops there")
+        said.append(text.format(link=driver.link, start=start, end=end))
+    for what in said:
+        if request.places:
+            yield what
+        elif isinstance(request.start, str) or not request.start:
+            yield _("{what}; results are given for that range").format(what=what)
+        else:
+            yield _(
+                "{what}; results are given for that range; positions.from ({start}) is for a driver that turns fully"
+            ).format(what=what, start=driver_place(results, request.start))
+
+
+def far_from_sketch(results: Results) -> Iterable[str]:
+    """Points that are sketched far from where they are."""
+    linkage = results.linkage
+    there = move(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
+    for point, off in sketch_deviations(linkage, there.poses).items():
+        if off > SKETCH:
+            yield _(
+                "in the sketch {point} is {share} % of the mechanism's size from its place with the "
+                "driver at {place}: is sketch.at right?"
+            ).format(point=point, share=f"{100 * off:.0f}", place=driver_place(results, linkage.sketch.at))
+
+
+def dead_positions(results: Results) -> Iterable[str]:
+    """Dead positions and change points inside the range of the driver."""
+    closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, Closed)}
+    for dead in results.dead:
+        text = (
+            _(
+                "change point of {group} inside the cycle at {place} (margin {margin}): there the group may go over "
+                "into another assembly; the results go smoothly through, as a machine that runs does (the other: "
+                "`change points: keep side`)"
+            )
+            if dead.passed and dead.group in closed
+            else _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): there the group "
+                "may leave its way for that of another assembly; the results go on along the smooth one"
+            )
+            if dead.passed
+            else _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and "
+                "forces grow without bound there, and the group may leave it either way; the results "
+                "keep to the side of the sketch"
+            )
+        )
+        yield text.format(place=driver_place(results, dead.place), group=dead.group, margin=numeral(dead.margin, ".2g"))
+
+
+def unreached_positions(results: Results) -> Iterable[str]:
+    """Positions that have no numbers."""
+    motion, units = results.motion, results.problem.units
+    assert motion is not None
+    unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
+    for k in unreached[:MOST_POSITIONS]:
+        number, place = results.numbers[k], driver_place(results, float(motion.q[k]))
+        for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
+            if lost[k]:
+                gap = with_unit(units, float(at.residual[k]), LENGTH)
+                yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
+                    number=number, place=place, group=group, gap=gap
+                )
+        for group, dead in motion.dead.items():
+            if dead[k]:
+                yield _(
+                    "position {number} ({place}): {group} is in its dead position; no velocities and forces"
+                ).format(number=number, place=place, group=group)
+    if len(unreached) > MOST_POSITIONS:
+        yield _("... and {count} positions more that cannot be reached or are dead").format(
+            count=len(unreached) - MOST_POSITIONS
+        )
+
+
+def stopped_driver(results: Results) -> Iterable[str]:
+    """Positions that the driver does not come to, by its own law of motion."""
+    motion = results.motion
+    assert motion is not None
+    stopped = np.flatnonzero(~np.isfinite(motion.rate))
+    if stopped.size:
+        said = [str(results.numbers[k]) for k in stopped[:FEW]] + ["..."] * (stopped.size > FEW)
+        text = _(
+            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
+            "it does not come to"
+        )
+        if results.single is not None and results.single.run.ending != "standstill":
+            text = _(
+                "the run of driver {link} ends before positions {numbers}: no velocities and forces there, as it does "
+                "not come to them"
+            )
+        yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
+
+
+def near_dead(results: Results) -> Iterable[str]:
+    """The position of each group that is nearest to a dead one, if it is near."""
+    motion = results.motion
+    assert motion is not None
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        margin = np.where(motion.moving, at.margin, np.inf)
+        if margin.size and np.min(margin) < kernel.near:
+            k = int(np.argmin(margin))
+            yield _(
+                "position {number} is near a dead position of {group}: sine of the transmission angle {margin}"
+            ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
+
+
+def endless(results: Results) -> Iterable[str]:
+    """A cycle of which no end was found."""
+    if results.driver_range is not None and not results.driver_range.repeats:
+        yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
