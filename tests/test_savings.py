@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bank import NAMES, moved
+from bank import NAMES, solved
 from bank import problem as read
 from test_commands import ROOT, SHAPER, tmm
 
@@ -86,7 +86,7 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
 
 @pytest.mark.parametrize("name", NAMES[1::3])
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(name):
-    problem, whole = read(name), moved(name)
+    problem, whole = read(name), solved(name)
     for link in problem.linkage.moving:
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
@@ -144,7 +144,7 @@ def test_only_positions_asked_for_are_solved():
 @pytest.mark.parametrize("name", NAMES[::3])
 def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(name):
     problem = read(name)
-    if any(kernel.followed for kernel in moved(name).kernels):
+    if any(kernel.followed for kernel in solved(name).kernels):
         return  # a group is followed by its accelerations
 
     def quality():
