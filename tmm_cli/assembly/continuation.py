@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.assembly.corrector import CORRECTION, PATIENCE, Corrector, places_ahead
-from tmm_cli.assembly.crossing import EDGE, Crossings, Node, Source, alive
+from tmm_cli.assembly.crossing import EDGE, Crossings, alive
+from tmm_cli.assembly.nodes import Node, Source
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import Newton

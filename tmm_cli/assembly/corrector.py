@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.assembly.crossing import Node, Source, extrapolated, joined, predicted
+from tmm_cli.assembly.nodes import Node, Source, extrapolated, joined, predicted
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import State
 from tmm_cli.tolerances import CONVERGED, SAME_STATE

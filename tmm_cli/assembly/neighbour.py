@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.assembly.corrector import CORRECTION, Corrector
-from tmm_cli.assembly.crossing import Source, ahead
+from tmm_cli.assembly.nodes import Source, ahead
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import State
