@@ -61,6 +61,7 @@ def browser():
 gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often
 sys.dont_write_bytecode = False  # or each process that a test starts would compile the whole product
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of what is started from here: its threads would share the cores
 
 if os.environ.get("TMM_LONGDOUBLE") == "double":  # before any module of tmm_cli is imported
     np.longdouble, np.clongdouble = np.double, np.cdouble
