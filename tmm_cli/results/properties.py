@@ -16,7 +16,7 @@ from tmm_cli.analysis.quantities.base import STAGES, Quantity
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote, under
+from tmm_cli.problem.errors import ProblemError, no_position, quote, under, unknown_name
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
@@ -119,10 +119,7 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
 def _known(name: str, key: str, results: Results) -> Quantity:
     known = quantities(results.linkage, results.structure)
     if name not in known:
-        raise ProblemError(
-            _("there is no quantity of that name"), path=(key,), found=quote(name), allowed=", ".join(known),
-            near=nearest(name, known),
-        )  # fmt: skip
+        raise unknown_name(name, known, _("there is no quantity of that name"), path=(key,))
     return known[name]
 
 
