@@ -32,7 +32,7 @@ from tmm_cli.errors import (
     WeakMotorError,
 )
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, no_position, unknown_name
+from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.structure.assur import Structure
