@@ -14,8 +14,12 @@ COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 
 
 @functools.cache
-def drawn(name, paper="A1", every=False):
-    return dict(large_sheets(chosen(solved(name), every=every), paper))
+def laid_out(name, paper):
+    return dict(large_sheets(chosen(solved(name), every=False), paper))
+
+
+def drawn(name, paper="A1"):
+    return laid_out(name, paper)
 
 
 def about(name, subject):

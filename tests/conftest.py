@@ -9,11 +9,29 @@ import gc
 import os
 import shutil
 import sys
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import settings
+from xdist.scheduler import LoadFileScheduling
+
+ROOMS = ("from bank import NAMES", "from big_sheets import")  # files that hold one of these go to one process
+
+
+class OfOneBank(LoadFileScheduling):
+    """Files that go through the whole bank share what they solve and draw, and so do those about large sheets."""
+
+    def _split_scope(self, nodeid):
+        file = nodeid.split("::", 1)[0]
+        text = Path(__file__).parents[1].joinpath(file).read_text(encoding="utf-8")
+        return next((room for room in ROOMS if room in text), file)
+
+
+def pytest_xdist_make_scheduler(config, log):
+    return OfOneBank(config, log) if config.getoption("dist") == "loadfile" else None
+
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.load_profile("steady")

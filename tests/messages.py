@@ -12,6 +12,7 @@ import io
 import string
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -46,35 +47,40 @@ def sources() -> list[Path]:
     return [file for file in files if NOT_TRANSLATED not in file.relative_to(PACKAGE).parts]
 
 
-def messages() -> Iterator[tuple[str, str, str]]:
+@cache
+def parsed(file: Path) -> ast.Module:
+    """A file of the package, read once."""
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@cache
+def messages() -> tuple[tuple[str, str, str], ...]:
     """Context (mostly none), message and file, as often as it is marked."""
+    found = []
     for file in sources():
         name = file.relative_to(ROOT).as_posix()
-        for word, text in marked(file):
-            yield KEYWORDS[word], text, name
-        for text in described(file):
-            yield "", text, name
-    for unit in UNITS:
-        yield "unit", unit, "tmm_cli/problem/units.py"
+        calls = [node for node in ast.walk(parsed(file)) if isinstance(node, ast.Call)]
+        calls = [call for call in calls if isinstance(call.func, ast.Name)]
+        found += [(KEYWORDS[word], text, name) for word, text in marked(calls)]
+        found += [("", text, name) for text in described(calls)]
+    return *found, *(("unit", unit, "tmm_cli/problem/units.py") for unit in UNITS)
 
 
-def marked(file: Path) -> Iterator[tuple[str, str]]:
+def marked(calls: list[ast.Call]) -> Iterator[tuple[str, str]]:
     """Marks and their messages, also those inside of formatted strings, where Babel sees none."""
-    calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
-        if isinstance(call.func, ast.Name) and call.func.id in KEYWORDS and call.args:
+        if call.func.id in KEYWORDS and call.args:
             text = call.args[0]
             if isinstance(text, ast.Constant) and text.value:
                 yield call.func.id, text.value
 
 
-def described(file: Path) -> Iterator[str]:
+def described(calls: list[ast.Call]) -> Iterator[str]:
     """What the keys of files are for, `Field(description=...)`, and what their values must be: refusals say it."""
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-            texts = [word.value for word in node.keywords if word.arg == "description" and node.func.id == "Field"]
-            texts += node.args[1:2] if node.func.id == "PydanticCustomError" else []
-            yield from (text.value for text in texts if isinstance(text, ast.Constant))
+    for call in calls:
+        texts = [word.value for word in call.keywords if word.arg == "description" and call.func.id == "Field"]
+        texts += call.args[1:2] if call.func.id == "PydanticCustomError" else []
+        yield from (text.value for text in texts if isinstance(text, ast.Constant))
 
 
 def path_of(language: str, ending: str = "po") -> Path:

@@ -8,7 +8,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from bank import NAMES, moved
+from bank import NAMES, moved, solved
 from test_commands import ROOT, SHAPER, imported, tmm
 
 from tmm_cli import load, solve
@@ -133,7 +133,7 @@ def legible(figure):
 
 @pytest.mark.parametrize("name", [*NAMES[1::2], *HAND_MADE])
 def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_group(name):
-    here = HAND_MADE[name] if name in HAND_MADE else at_sketch(moved(name))[1]
+    here = HAND_MADE[name] if name in HAND_MADE else at_sketch(solved(name))[1]
     every = parts(here.structure)
     whole = scheme("title", "crank at 30 deg", here).finish()
     apart = side_by_side("title", "crank at 30 deg", here, every, {}).finish()

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from bank import NAMES, moved
+from bank import NAMES, solved
 
 from tmm_cli.draw.paper.drawing import Area, Circle, Line
 from tmm_cli.draw.paper.labels import gathered
@@ -19,14 +19,14 @@ from tmm_cli.draw.symbols.scene import fitted, to_scale
 from tmm_cli.linkage import FRAME
 from tmm_cli.vectors import cross, dot
 
-LOOKS = {"scheme": STRUCTURAL, "to scale": MEASURED}
+LOOKS = (STRUCTURAL, MEASURED)  # the scheme, to scale
 NEAR = 0.35  # mm
 
 
 @cache
 def drawn(name, look):
     """A mechanism at its sketch, with its sheet."""
-    scene, links = at_sketch(moved(name))[1], moved(name).structure.links
+    scene, links = at_sketch(solved(name))[1], solved(name).structure.links
     if look.measured:
         linkage = scene.linkage
         places = [scene.point(name) for link in linkage.links.values() for name in link.points]
@@ -39,23 +39,31 @@ def drawn(name, look):
 
 
 def every(test):
-    test = pytest.mark.parametrize("look", LOOKS.values(), ids=list(LOOKS))(test)
-    return pytest.mark.parametrize("name", NAMES)(test)
+    """Of each problem, on the scheme and to scale."""
+
+    def both(name):
+        for look in LOOKS:
+            test(name, look)
+
+    both.__name__ = test.__name__
+    return pytest.mark.parametrize("name", NAMES)(both)
 
 
 def distance(place, line):
     """Of a place from a piece of a line."""
     start, end = line
     span = end - start
-    share = np.clip(dot(span, place - start) / (abs(span) ** 2 or 1.0), 0, 1)
+    share = np.clip(dot(span, place - start) / np.maximum(abs(span) ** 2, 1e-30), 0, 1)
     return abs(place - start - share * span)
 
 
-def meet(one, other):
-    """Whether two pieces of lines cross or touch."""
-    turns = [cross(b - a, z - a) for (a, b), ends in ((one, other), (other, one)) for z in ends]
-    crossing = turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0
-    return crossing or min(distance(z, line) for line, ends in ((one, other), (other, one)) for z in ends) < NEAR
+def meet(ones, others):
+    """Which of these pieces of lines cross or touch which of those: a row of flags for each of these."""
+    one, other = (np.array(pieces, complex).reshape(-1, 2).T for pieces in (ones, others))
+    pairs = [(one[:, :, None], other[:, None]), (other[:, None], one[:, :, None])]
+    turns = [cross(b - a, z - a) for (a, b), ends in pairs for z in ends]
+    crossing = (turns[0] * turns[1] < 0) & (turns[2] * turns[3] < 0)
+    return crossing | (np.min([distance(z, line) for line, ends in pairs for z in ends], axis=0) < NEAR)
 
 
 @every
@@ -67,23 +75,20 @@ def test_no_rod_runs_through_hatching(name, look):
             at = sheet.on(found.scene.at(pair))
             assert sum(abs((stroke[0] + stroke[-1]) / 2 - at) < 14 for stroke in strokes) > 2, pair.name
     for link, form in found.forms.items():
-        for start, end in form.edges:
-            assert not any(meet((start, end), (stroke[0], stroke[-1])) for stroke in strokes), link
+        assert not meet(form.edges, [(stroke[0], stroke[-1]) for stroke in strokes]).any(), link
 
 
 @every
 def test_all_parts_of_a_link_touch_one_another(name, look):
     _sheet, found = drawn(name, look)
     for link, form in found.forms.items():
-        parts = list(form.edges)
-        reached, parts = parts[:1], parts[1:]
-        while parts:
-            part = next((p for p in parts if any(meet(p, other) for other in reached)), None)
-            assert part is not None, link
-            parts.remove(part)
-            reached.append(part)
+        touching, reached = meet(form.edges, form.edges), np.arange(len(form.edges)) == 0
+        for __ in form.edges:
+            reached |= touching[reached].any(0)
+        assert reached.all(), link
         for joint in form.joints:
-            assert not reached or min(distance(joint, part) for part in reached) < NEAR or len(form.hull) > 2, link
+            near = [distance(joint, part) < NEAR for part in form.edges]
+            assert not near or any(near) or len(form.hull) > 2, link
 
 
 @every

@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.analysis.running import reduced_machine, running
-from tmm_cli.dynamics.by_motor import with_motor
+from tmm_cli.dynamics.by_motor import Cycle
 from tmm_cli.dynamics.curves import fitted
 from tmm_cli.dynamics.motors import Kloss, Linear
 from tmm_cli.dynamics.reduced import reduced
@@ -118,7 +118,7 @@ def test_energy_comes_back_after_a_cycle():
 @pytest.mark.parametrize("flywheel", [0.0, 5.0, 30.0])
 def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
     own = machine()
-    law = with_motor(own, flywheel, motor)
+    law = Cycle.of(own, motor).law(flywheel)
 
     def rate(x, energy):
         speed = np.sqrt(2 * energy / (flywheel + own.inertia(np.array([x]))))
@@ -136,7 +136,7 @@ def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
 def test_the_slip_of_a_motor_too_strong_is_that_of_the_equation_of_motion(times):
     """By the angle, with a stiff method; the load jumps at pi and at the end of the turn."""
     stall, free = 500.0 * times, 12.0
-    law = with_motor(machine(), 0.0, Linear(stall, free))
+    law = Cycle.of(machine(), Linear(stall, free)).law(0.0)
 
     def rate(x, slip, acting):
         speed = free * (1 - slip)
@@ -159,7 +159,7 @@ def test_the_slip_of_a_motor_too_strong_is_that_of_the_equation_of_motion(times)
 def test_a_motor_however_strong_turns_near_its_speed_without_load(times):
     """With the mean moment that the loads want; the speed sags by the moment over the slope of the characteristic."""
     for motor in (Linear(500.0 * times, 12.0), Kloss.rated(12.0, 11.6, 60.0 * times, 2.2)):
-        law = with_motor(machine(), 0.0, motor)
+        law = Cycle.of(machine(), motor).law(0.0)
         assert law.driving.total == pytest.approx(-machine().work_of_cycle, rel=1e-10)
         assert law.speed(np.linspace(0, 6, 100)) == pytest.approx(12.0, abs=5.0 / times)
 
@@ -168,7 +168,7 @@ def test_a_flywheel_is_found_for_a_motor_too():
     motor = Kloss.rated(12.0, 11.6, 60.0, 2.2)
     found = steady(machine(), SteadyTask(11.0, 0.05, motor))
     assert found.delta == pytest.approx(0.05, rel=1e-10)
-    assert fluctuation(with_motor(machine(), found.law.flywheel, motor)) == pytest.approx(0.05, rel=1e-9)
+    assert fluctuation(Cycle.of(machine(), motor).law(found.law.flywheel)) == pytest.approx(0.05, rel=1e-9)
 
 
 @pytest.mark.parametrize("motor", [Linear(500.0, 12.0), Kloss(12.0, 130.0, 0.14)])
@@ -193,13 +193,13 @@ def test_a_motor_that_gives_less_than_the_mean_of_the_loads_cannot_carry_them():
 
 def test_a_machine_that_its_load_pushes_beyond_its_motor_runs_away():
     with pytest.raises(RunawayError) as away:
-        with_motor(machine(load=300.0), 0.0, Kloss.rated(12.0, 11.6, 60.0, 1.3))
+        Cycle.of(machine(load=300.0), Kloss.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
     assert away.value.pushing == pytest.approx(150.0) and away.value.most == pytest.approx(78.0)
     assert away.value.place == pytest.approx(np.pi / 2, abs=0.1)  # of the largest push
     with pytest.raises(RunawayError) as late:  # in the mean it could be held
-        with_motor(machine(load=300.0, until=1.5), 0.0, Kloss.rated(12.0, 11.6, 60.0, 1.3))
+        Cycle.of(machine(load=300.0, until=1.5), Kloss.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
     assert late.value.pushing == pytest.approx(300 * 1.5 / TURN) and late.value.speed > 24.0
-    held = with_motor(machine(load=60.0), 5.0, Kloss.rated(12.0, 11.6, 60.0, 2.2))
+    held = Cycle.of(machine(load=60.0), Kloss.rated(12.0, 11.6, 60.0, 2.2)).law(5.0)
     assert held.driving.total == pytest.approx(-60 * np.pi) and np.min(held.speed(np.linspace(0, 6, 50))) > 11.5
 
 

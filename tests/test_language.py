@@ -4,6 +4,7 @@ import ast
 import re
 from collections.abc import Iterator
 from fnmatch import fnmatch
+from functools import cache
 from gettext import NullTranslations
 from pathlib import Path
 
@@ -24,9 +25,7 @@ from tmm_cli.problem.units import UnitSystem, parse_unit
 from tmm_cli.quantities import KINDS
 from tmm_cli.results.output import write_results
 
-
-def parsed(file: Path) -> ast.AST:
-    return ast.parse(file.read_text(encoding="utf-8"))
+KEPT, UPDATED = cache(messages.catalogue), cache(messages.updated)  # read once for all tests
 
 
 def said_at_import(tree: ast.AST) -> Iterator[int]:
@@ -44,11 +43,7 @@ def said_at_import(tree: ast.AST) -> Iterator[int]:
 
 def test_no_sentence_is_said_when_a_module_is_imported():
     # who will read it is not known yet: it is marked N_() there, and said where it is used
-    found = [
-        (file.name, line)
-        for file in messages.sources()
-        for line in said_at_import(ast.parse(file.read_text(encoding="utf-8")))
-    ]
+    found = [(file.name, line) for file in messages.sources() for line in said_at_import(messages.parsed(file))]
     assert found == []
 
 
@@ -70,25 +65,25 @@ def test_a_language_is_spoken_inside_only():
 
 @pytest.mark.parametrize("tongue", messages.TRANSLATED)
 def test_a_translation_has_the_fields_of_its_message(tongue):
-    for message in messages.catalogue(tongue):
+    for message in KEPT(tongue):
         if message.id and message.string:
             assert messages.fields(message.string) == messages.fields(message.id), message.id
 
 
 @pytest.mark.parametrize("tongue", messages.FINISHED)
 def test_every_message_is_translated(tongue):
-    assert messages.missing(messages.updated(tongue)) == []  # python -m tests.messages writes them down
+    assert messages.missing(UPDATED(tongue)) == []  # python -m tests.messages writes them down
 
 
 @pytest.mark.parametrize("tongue", messages.FINISHED)
 def test_a_catalogue_has_no_message_that_is_said_no_more(tongue):
-    here, there = (messages.translations(found) for found in (messages.updated(tongue), messages.catalogue(tongue)))
+    here, there = (messages.translations(found) for found in (UPDATED(tongue), KEPT(tongue)))
     assert set(there) == set(here)
 
 
 @pytest.mark.parametrize("tongue", messages.TRANSLATED)
 def test_what_the_program_reads_is_made_of_the_catalogue(tongue):
-    assert messages.read(tongue) == messages.translations(messages.catalogue(tongue))
+    assert messages.read(tongue) == messages.translations(KEPT(tongue))
 
 
 class Cyrillic(NullTranslations):
@@ -163,7 +158,7 @@ def test_numbers_for_people_have_the_decimal_mark_of_their_language():
     for file in messages.sources():
         name = file.relative_to(messages.PACKAGE).as_posix()
         if name.startswith(TO_PEOPLE) and not any(fnmatch(name, known) for known in TO_MACHINES):
-            found |= {f"{name}:{line}": line for line in decimals(parsed(file))}
+            found |= {f"{name}:{line}": line for line in decimals(messages.parsed(file))}
     assert not found  # numeral(value, ".4g") writes them
 
 

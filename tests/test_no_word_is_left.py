@@ -5,6 +5,7 @@ signs that are the same in every language.
 """
 
 import re
+from functools import cache
 from itertools import chain
 
 import pytest
@@ -37,6 +38,12 @@ def foreign():
     del CATALOGUES["ru"]
     if kept is not None:
         CATALOGUES["ru"] = kept
+
+
+@cache
+def solved(problem):
+    """In the language of these tests."""
+    return solve(load(f"problems/{problem}.yaml"))
 
 
 def left(texts, problem):
@@ -82,5 +89,4 @@ def charted(results, problem):
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_no_word_is_left_in_english(problem, way):
     with spoken("ru"):
-        results = solve(load(f"problems/{problem}.yaml"))
-        assert left(way(results, problem), problem) == set()
+        assert left(way(solved(problem), problem), problem) == set()

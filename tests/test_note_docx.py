@@ -59,9 +59,9 @@ DRAWING = Drawing((80.0, 60.0), (
 NOTE = Note("Crank shaper", "ru", (
     Title("University", "Course project", HOSTILE, (("student", "Петров"),), "2026"), Contents(),
     Heading("Forces"), Heading(HOSTILE, 2),
-    paragraph("Velocity ", Symbol("v", "B"), " in figure ", Ref("plan"), ", formula ", Ref("force"), ". ", HOSTILE),
+    paragraph("Velocity ", Symbol("v", "B"), " in figure ", Ref("plan"), ", table ", Ref("v"), ". ", HOSTILE),
     Equation(row(Letter(Symbol("v", "B"), True, 1), "=", Letter(Symbol("v", "A"), True, 2))),
-    Found(FORCE, "force"), Found(WIDE), Found(TURNED),
+    Found(FORCE), Found(WIDE), Found(TURNED),
     Figure("Velocity plan", DRAWING, "plan"), Figure(HOSTILE, DRAWING),
     Rows("Velocities", (("position",), (Symbol("v", "B"),)), tuple(((str(k),), (f"0,{k}",)) for k in range(12)), "v"),
     Heading("Literature"), Sources((Source("a", "И. И. Артоболевский, Теория механизмов и машин"),)),

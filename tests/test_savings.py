@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bank import NAMES, moved
+from bank import NAMES, solved
 from bank import problem as read
 from test_commands import ROOT, SHAPER, tmm
 
@@ -86,7 +86,7 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
 
 @pytest.mark.parametrize("name", NAMES[1::3])
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(name):
-    problem, whole = read(name), moved(name)
+    problem, whole = read(name), solved(name)
     for link in problem.linkage.moving:
         kernels = towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
@@ -144,7 +144,7 @@ def test_only_positions_asked_for_are_solved():
 @pytest.mark.parametrize("name", NAMES[::3])
 def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_the_same_with_them(name):
     problem = read(name)
-    if any(kernel.followed for kernel in moved(name).kernels):
+    if any(kernel.followed for kernel in solved(name).kernels):
         return  # a group is followed by its accelerations
 
     def quality():
@@ -240,13 +240,13 @@ def test_explain_says_of_every_stage_what_the_stage_does():
 
 def test_every_saving_is_one(tmp_path, monkeypatch):
     monkeypatch.setattr("tmm_cli.bench.savings.FEW", 1)
-    monkeypatch.setattr("tmm_cli.cli.bench.finish.FIGURES", {"png": lambda figure: b"", "svg": lambda figure: b""})
+    monkeypatch.setattr("tmm_cli.cli.bench.finish.png", lambda figure: b"")
     done = tmm("bench", "savings", "--reduced", "--json", "-o", tmp_path)
     assert done.returncode == 0
     found = json.loads(done.stdout)
     assert tuple(saving["name"] for saving in found["savings"]) == tuple(NAMED)
     assert found["holds"] and all(saving["holds"] for saving in found["savings"])
-    assert {path.name for path in tmp_path.iterdir()} == {f"savings.{kind}" for kind in ("csv", "json", "png", "svg")}
+    assert {path.name for path in tmp_path.iterdir()} == {f"savings.{kind}" for kind in ("csv", "json", "png")}
 
 
 def test_what_saves_nothing_is_said_so():

@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 import random_linkages
-from bank import NAMES, moved, problem
+from bank import NAMES, problem, solved
 from models import CLASS_III
 from test_commands import ROOT, described, tmm
 
@@ -250,7 +250,7 @@ def lower_only(name):
 
 @pytest.mark.parametrize("name", list(filter(lower_only, NAMES)))
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(name):
-    results = moved(name)
+    results = solved(name)
     linkage, structure, motion = results.linkage, results.structure, results.motion
     if not analyse(linkage).sound:
         pytest.skip("some constraints are passive in the plane")

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from bank import NAMES, moved, problem, solved
+from bank import NAMES, REPEATED, moved, problem, solved
 from models import CLASS_III, SI, results_of
 from test_commands import SHAPER
 
@@ -183,6 +183,24 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
         alone = solve(problem(name), positions=[0])
         assert alone.lever_holds, name
         assert not any("drives" in w for w in warnings(alone)), name
+
+
+def kind(name):
+    """Classes of its groups with their pairs, toothed pairs, drivers: by what a problem is solved, drawn and told."""
+    linkage = solved(name).linkage
+    groups = {(group.title.partition("(")[0], str(group.type)) for group in analyse(linkage).groups}
+    return groups, {mesh.kind for mesh in linkage.meshes}, [driver.kind for driver in linkage.drivers]
+
+
+def blocks(name):
+    return set(solved(name).problem.source.data) - {"reference", "shows"}  # what is read off its results
+
+
+def test_what_whole_bank_tests_leave_out_is_of_the_kind_of_one_that_stays_and_has_no_block_that_this_lacks():
+    assert set(REPEATED.values()) <= set(NAMES)
+    for name, kept in REPEATED.items():
+        assert kind(name) == kind(kept), name
+        assert not blocks(name) - blocks(kept), (name, kept)
 
 
 def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():

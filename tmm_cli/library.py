@@ -122,18 +122,6 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     return replace(whole, linkage=linkage, request=request, extended=None, dynamics=None, balancing=None, shows={})
 
 
-def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None = None) -> Results:
-    """Kinematics with every real assembly of the groups at these positions, or the first in detail.
-
-    Where the sketch does not decide among them: the structure with the assemblies at the sketch. Raises ProblemError.
-    """
-    from tmm_cli.analysis.all_assemblies import with_assemblies
-
-    whole = problem.whole
-    with in_words_of(whole):
-        return with_assemblies(inputs_of(whole), positions, whole)
-
-
 def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -> Batch:
     """Problems that differ in their numbers only, to be solved at any places of the driver (variants.batch.everything).
 

@@ -54,7 +54,8 @@ def relative(results: Results, blur: float = 0.0) -> Real:
         unit[motion.where] = EPS
     away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
     lost = growth(results)
-    found: Real = LOSS * (ROUNDOFF + unit * (1 + np.abs(motion.q)) * slenderness(results) * lost) + AWAY * away * lost
+    way = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
+    found: Real = LOSS * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + AWAY * away * lost
     return found if results.running is None else np.maximum(found, KNOWN_LAW)
 
 

@@ -13,13 +13,14 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.assembly.corrector import CORRECTION, PATIENCE, Corrector, places_ahead
-from tmm_cli.assembly.crossing import EDGE, Crossings, Node, Source, alive
+from tmm_cli.assembly.crossing import EDGE, Crossings, alive
+from tmm_cli.assembly.nodes import Node, Source
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import Pose, State
-from tmm_cli.tolerances import LAST_STEP, SAME_STATE
+from tmm_cli.tolerances import LAST_STEP
 from tmm_cli.vectors import Real
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
@@ -228,13 +229,13 @@ class Walker:
             if "boundary" not in (above, below) and all(alive(end, whole) for end in ends):
                 break
         nodes = whole
-        if turns and above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+        if turns and above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
             return _traced(nodes, True)
         for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
             if turns and above == "reached":
                 more, above = self.trace(nodes[-1], last + 2 * half * turn)
                 nodes += more
-                if above == below == "reached" and self.returned(nodes[0].state, nodes[-1].state):
+                if above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
                     return _traced(nodes, True)
         for turn in range(1, TURNS):
             if turns and below == "reached" and above != "reached":
@@ -247,12 +248,6 @@ class Walker:
             (below == "limit", above == "limit"),
             (below in ("lost", "boundary"), above in ("lost", "boundary")),
         )
-
-    def returned(self, one: State, other: State) -> bool:
-        """Whether two states are the same but for full turns."""
-        around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
-        same = State(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
-        return self.corrector.apart(one, same) < SAME_STATE
 
 
 def _flat(state: State, size: float) -> Real:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.assembly.crossing import Node, Source, extrapolated, joined, predicted
+from tmm_cli.assembly.nodes import Node, Source, extrapolated, joined, predicted
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.state import State
-from tmm_cli.tolerances import CONVERGED
+from tmm_cli.tolerances import CONVERGED, SAME_STATE
 from tmm_cli.vectors import Real
 
 FEW = 6  # rounds of Newton's method: more than that begin too far away
@@ -37,33 +37,41 @@ class Corrector:
 
     def nodes(self, q: Real, start: State) -> list[Node | None]:
         """The group at many places at once, each from a start of its own."""
+        found = self.motion(q, start)
+        if found is None:
+            return [None] * len(q)
+        *motion, det, sound = found
+
+        def one(k: int) -> Node:
+            state, first, second = (part.part(slice(k, k + 1)) for part in motion)
+            return Node(float(q[k]), state, first, second, float(det[k]), float(np.sign(det[k])))
+
+        return [one(k) if sound[k] else None for k in range(len(q))]
+
+    def motion(self, q: Real, start: State) -> tuple[State, State, State, Real, Real] | None:
+        """States at places, each from a start of its own, with first and second derivatives by q; determinants; where
+        all that is sound. None where it is nowhere.
+        """
         before = self.source(q, 2)
         if not np.any(before.placed):
-            return [None] * len(q)
+            return None
         kernel = self.kernel
         with np.errstate(all="ignore"):
             state, size = kernel.close(start, before.poses, before.drives, FEW)
             sound = before.placed & (size < CONVERGED)
             if not np.any(sound):
-                return [None] * len(q)
+                return None
             everything = {**before.poses, **kernel.poses_of(state)}
             if kernel.passive:
                 sound &= np.max(np.abs(kernel.residuals(everything, before.drives)), axis=-1) <= CONVERGED
             matrix = kernel.matrix(everything)
             det = np.ones(len(q)) if kernel.passive else np.linalg.det(matrix)
-            side = np.sign(det)
-            rates = kernel.rates_at(everything, matrix, side, before.first, before.drives)
+            rates = kernel.rates_at(everything, matrix, det, before.first, before.drives)
             both = {**before.first, **dict(zip(kernel.group.links, rates, strict=True))}
-            accels = kernel.accelerations_at(everything, matrix, side, both, before.second, before.drives)
+            accels = kernel.accelerations_at(everything, matrix, det, both, before.second, before.drives)
         first = State(np.stack([r.v for r in rates], -1), np.stack([r.w for r in rates], -1))
         second = State(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
-
-        def one(k: int) -> Node:
-            here = slice(k, k + 1)
-            motion = state.part(here), first.part(here), second.part(here)
-            return Node(float(q[k]), *motion, float(det[k]), float(side[k]))
-
-        return [one(k) if sound[k] else None for k in range(len(q))]
+        return state, first, second, det, sound
 
     def step(self, smooth: list[Node], places: list[float]) -> tuple[Node, float] | None:
         """The group at the first of some places, as `node` finds it from the last of some nodes on a smooth way.
@@ -102,6 +110,12 @@ class Corrector:
                 np.max(np.abs(one.unwrapped - other.unwrapped)) / max(1.0, wound / MANY_TURNS),
             )
         )
+
+    def returned(self, one: State, other: State) -> bool:
+        """Whether two states are the same but for full turns."""
+        around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
+        same = State(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
+        return self.apart(one, same) < SAME_STATE
 
     def gone(self, state: State) -> tuple[float, float]:
         """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).

@@ -7,15 +7,15 @@ the place, a root of the determinant. E. L. Allgower, K. Georg, Introduction to 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from tmm_cli.assembly.nodes import Node, Source, joined, parts_of, predicted, stated
 from tmm_cli.double_double import exactly, rounded
 from tmm_cli.groups.newton import Newton
-from tmm_cli.groups.sequence import LinkStates
 from tmm_cli.groups.state import State
 from tmm_cli.tolerances import (
     CROSSING_AGREES,
@@ -41,25 +41,6 @@ CLOSER = 10  # times: a dead position that was not found is looked for again fro
 EDGE = 1e-3  # scales of the driver: this near to an end of the way a dead position is at it
 
 
-@dataclass(frozen=True)
-class Node:
-    """A state of a group at a place q of the driver, its derivatives by q, and its determinant.
-
-    side: the determinant's sign, in a dead position that which it has beyond it. dead: whether it is one, flips:
-    whether the determinant changes its sign there.
-    """
-
-    q: float
-    state: State
-    first: State
-    second: State
-    det: float
-    side: float
-    dead: bool = False
-    flips: bool = False
-
-
-Source = Callable[[Real, int], LinkStates]  # links placed before a group: at places, with derivatives of an order
 Correct = Callable[[float, State], "tuple[Node, float] | None"]
 Finest = Callable[[list[Node]], list[Node]]
 
@@ -77,37 +58,7 @@ class _Fit:
         """The state at q, or a derivative of it by q."""
         t = (q - self.middle) / self.radius
         found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
-        return _stated(found[None, :])
-
-
-def joined(states: Iterable[State]) -> State:
-    """Many states as one."""
-    states = list(states)
-    return State(np.concatenate([s.x for s in states]), np.concatenate([s.unwrapped for s in states]))
-
-
-def predicted(node: Node, q: Real | float) -> State:
-    """The state at places q from that of a node, by its first and second derivatives."""
-    step = (np.atleast_1d(q) - node.q)[:, None]
-
-    def taylor(value: Real, first: Real, second: Real) -> Real:
-        return value + step * (first + step / 2 * second)
-
-    return State(
-        taylor(node.state.x, node.first.x, node.second.x),
-        taylor(node.state.unwrapped, node.first.unwrapped, node.second.unwrapped),
-    )
-
-
-def extrapolated(nodes: list[Node], q: Real) -> State:
-    """States at places q by the polynomial that has the states of some nodes and their first and second derivatives."""
-    span, most = q[-1] - nodes[0].q, 3 * len(nodes)
-    slope = np.diag(np.arange(1.0, most), 1)  # powers of t times this are their derivatives
-    powers = np.vander([(n.q - q[0]) / span for n in nodes], most, increasing=True)
-    given = [[_parts(n.state) for n in nodes], [_parts(n.first) for n in nodes], [_parts(n.second) for n in nodes]]
-    matrix = np.concatenate([powers, powers @ slope, powers @ slope @ slope])
-    found = np.linalg.solve(matrix, np.concatenate([np.array(part) * span**k for k, part in enumerate(given)]))
-    return _stated(np.vander((q - q[0]) / span, most, increasing=True) @ found)
+        return stated(found[None, :])
 
 
 class Crossings:
@@ -234,8 +185,8 @@ def _place(
     else:
         return None
     samples = finest(samples)
-    roots = [_root(_fitted(samples, about, radius, degree), flips) for degree in DEGREES]
-    fit = _fitted(samples, about, radius, DEGREES[-1])
+    fits = [_fitted(samples, about, radius, degree) for degree in DEGREES]
+    roots, fit = [_root(each, flips) for each in fits], fits[-1]
     if abs(fit.det(roots[-1])) > NO_DETERMINANT * max(abs(s.det) for s in samples):
         return None
     side = -nodes[-1].side if flips else nodes[-1].side
@@ -280,7 +231,7 @@ def _along(correct: Correct, start: Node, places: list[float], side: float) -> l
 
 def _fitted(samples: list[Node], about: float, radius: float, degree: int) -> _Fit:
     t = np.array([(n.q - about) / radius for n in samples])
-    parts = np.array([_parts(n.state) for n in samples])
+    parts = np.array([parts_of(n.state) for n in samples])
     dets = np.array([n.det for n in samples])
 
     def fit(values: Real) -> Chebyshev:
@@ -316,13 +267,3 @@ def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
         if (low != high) != dead.flips:
             return False
     return True
-
-
-def _parts(state: State) -> Real:
-    return np.concatenate([state.x[0].real, state.x[0].imag, state.unwrapped[0]])
-
-
-def _stated(parts: Real) -> State:
-    """States of which these are the parts (states, parts)."""
-    x, y, unwrapped = np.split(parts, 3, axis=-1)
-    return State(x + 1j * y, unwrapped)

@@ -47,7 +47,11 @@ Variant = Annotated[
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
 ]
-
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
+]
 Tables = Annotated[
     Kind | None,
     typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import bars, console, refusing
+from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
 from tmm_cli.cli.opening import introduce
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say, speak_as
 from tmm_cli.grading.exports import EXPORTS
@@ -44,10 +44,6 @@ Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Write 
 Reveal = Annotated[bool, typer.Option("--reveal", help="Tell the students what would have been right.")]
 Formats = Annotated[
     str | None, typer.Option(metavar="NAMES", help="Write these alone, e.g. csv,moodle.", show_default=False)
-]
-Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
-Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
 ]
 Template = Annotated[
     Path | None,

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import opened, variant_settings
-from tmm_cli.cli.talk import OK, say
+from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.draw import remarks
 from tmm_cli.language import _
 from tmm_cli.note import note as note_of
@@ -22,7 +22,7 @@ from tmm_cli.results.warnings import warnings
 def note(
     files: Files,
     formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="html, docx: with commas.")] = "html",
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    out: Folder = Path("outputs"),
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
@@ -32,8 +32,10 @@ def note(
     def work(file: str) -> int:
         wanted = formats_of(formats)
         results = solve(opened(file, variant_settings(file, variants, variant, settings)))
-        for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
-            say(text)
+        for remark in remarks(results):
+            say(remark)
+        for warning in warnings(results):
+            warn(warning)
         written = note_of(results)
         for name in wanted:
             target = out / folder_name(results.problem.name) / f"note.{name}"

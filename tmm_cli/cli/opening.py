@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tmm_cli.cli.talk import say, speak_as
+from tmm_cli.cli.talk import say, speak_as, warn
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
@@ -12,7 +12,13 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.settings import with_settings
+from tmm_cli.problem.tree import Tree
 from tmm_cli.results.understood import bare_units, doubts, understood
+
+
+def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
+    """The file as it is read, with other parameters; its language is spoken from here on. Raises ProblemError."""
+    return with_settings(speak_as(read_file(file)), settings or ())
 
 
 def opened(
@@ -22,7 +28,7 @@ def opened(
 
     positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
     """
-    problem = problem_of(with_settings(speak_as(read_file(file)), settings or ()))
+    problem = problem_of(tree_of(file, settings))
     introduce(problem)
     if digits:
         afford(problem.whole, positions, digits=True)
@@ -40,7 +46,7 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
     from tmm_cli.grading.task import read_task
 
     try:
-        values = variant_in(read_table(variants, read_task(speak_as(read_file(file)))), variant)
+        values = variant_in(read_table(variants, read_task(tree_of(file))), variant)
     except ProblemError as error:
         raise (error if error.file else error.located(variants)) from None
     return [*(f"{name}={text}" for name, text in values.items()), *given]
@@ -67,4 +73,4 @@ def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
     for sentence in understood(problem):
         say(f"{problem.name}: {sentence}")
     for doubt in doubts(problem.whole):
-        say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
+        warn(f"{problem.name}: {doubt}")

@@ -9,14 +9,12 @@ from pathlib import Path
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
-from tmm_cli.cli.opening import afford, introduce
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say, speak_as
+from tmm_cli.cli.opening import afford, introduce, tree_of
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import count, problem_of, redrive, solve, structure_of
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.build_chain import build_chain
-from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.digits import AccuracyReport, accuracy, beside
 from tmm_cli.results.files import Staged, folder_name, listed
@@ -48,7 +46,7 @@ def computed(
     drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
     settings: other values of parameters; digits, drawings: what will be asked of the results.
     """
-    tree = with_settings(speak_as(read_file(file)), settings or ())
+    tree = tree_of(file, settings)
     if is_chain(tree):
         return count(build_chain(tree))
     problem = problem_of(tree)
@@ -92,7 +90,7 @@ def report(
     if out is not None:
         say_written(write_results(results, out, digits=found, people=people))
     for warning in warnings(results):
-        say(_("warning: {warning}").format(warning=warning))
+        warn(warning)
     return checked(results)
 
 

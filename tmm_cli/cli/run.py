@@ -8,11 +8,22 @@ from typing import Annotated
 import typer
 
 from tmm_cli.analysis.spatial_chain import ChainResults
-from tmm_cli.cli.common import Files, Json, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
+from tmm_cli.cli.common import (
+    Files,
+    Folder,
+    Json,
+    Position,
+    Settings,
+    Tables,
+    Variant,
+    Variants,
+    WithDigits,
+    drawn,
+    each,
+)
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
-from tmm_cli.cli.talk import say
-from tmm_cli.language import _
+from tmm_cli.cli.talk import warn
 from tmm_cli.results.output import write_results
 from tmm_cli.results.warnings import warnings
 
@@ -32,7 +43,7 @@ SHOWN = (
 
 def run(
     files: Files,
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    out: Folder = Path("outputs"),
     as_json: Json = False,
     position: Position = None,
     digits: WithDigits = False,
@@ -56,7 +67,7 @@ def run(
         elif len(files) == 1:
             show(results, SHOWN, found)
         for warning in warnings(results):
-            say(_("warning: {warning}").format(warning=f"{results.problem.name}: {warning}"))
+            warn(f"{results.problem.name}: {warning}")
         say_written(written)
         return checked(results)
 

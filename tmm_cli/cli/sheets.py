@@ -9,14 +9,13 @@ from typing import Annotated, Literal
 import typer
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Settings, Variant, Variants, each
+from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
-from tmm_cli.cli.talk import OK, say
+from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.draw import remarks
 from tmm_cli.draw.layout.files import files_of_sheets, formats_of
-from tmm_cli.language import _
 from tmm_cli.results.warnings import warnings
 
 
@@ -26,7 +25,7 @@ def sheets(
     formats: Annotated[
         str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png, emf: with commas.")
     ] = "pdf",
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("outputs"),
+    out: Folder = Path("outputs"),
     positions: Annotated[
         Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")
     ] = "detail",
@@ -40,8 +39,10 @@ def sheets(
         wanted = formats_of(formats)
         problem = opened(file, variant_settings(file, variants, variant, settings))
         results = solve(problem, "forces")
-        for text in (*remarks(results), *(_("warning: {warning}").format(warning=w) for w in warnings(results))):
-            say(text)
+        for remark in remarks(results):
+            say(remark)
+        for warning in warnings(results):
+            warn(warning)
         way = partial(by_all_cores, quiet=len(files) > 1)
         write_sheets(results, out, files_of_sheets(results, paper, wanted, say, way, every=positions == "all"))
         return OK

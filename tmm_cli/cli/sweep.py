@@ -8,17 +8,15 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Json, Settings, bars, console, emit_json, refusing
-from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import OK, say, speak_as
+from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
+from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.cli.talk import OK, say
 from tmm_cli.draw.formats import files as drawings
 from tmm_cli.draw.sheets.sweep import sheets
 from tmm_cli.grading.task import Task
 from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.settings import with_settings
 from tmm_cli.results.files import RECORD, Staged, folder_name, refuse_place
 from tmm_cli.results.terminal import show as show_table
 from tmm_cli.results.text import csv_text, json_text, plain
@@ -42,10 +40,6 @@ Folder = Annotated[
     Path | None,
     typer.Option("--out", "-o", metavar="DIR", help="Write CSV, result.json, drawings there.", show_default=False),
 ]
-Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
-Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
-]
 
 
 def sweep(
@@ -59,7 +53,7 @@ def sweep(
     with refusing(as_json):
         if out is not None:
             refuse_place(out, folder=True)
-        tree = with_settings(speak_as(read_file(file)), settings or ())
+        tree = tree_of(file, settings)
         task = Task(tree)
         introduce(task.problem)
         problem = task.problem.whole

@@ -7,14 +7,12 @@ from pathlib import Path
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import console, drawn, emit_json
-from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say, speak_as
+from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file
 from tmm_cli.problem.record import Synthesised
-from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
@@ -50,13 +48,13 @@ def report_synthesis(file: str, as_json: bool, out: Path | None, settings: Seque
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=folder))
     for fault in missed(measured or (), units):
-        say(_("warning: {warning}").format(warning=fault))
+        warn(fault)
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
 
 def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    tree = with_settings(speak_as(read_file(file)), settings or ())
+    tree = tree_of(file, settings)
     if "synthesis" not in tree.data:
         build(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)

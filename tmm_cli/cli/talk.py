@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import typer
 
-from tmm_cli.language import ENGLISH, speak, spoken
+from tmm_cli.language import ENGLISH, _, speak, spoken
 from tmm_cli.problem.tree import Tree
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
@@ -27,6 +27,11 @@ _asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
 def say(text: str) -> None:
     """Talk goes to standard error."""
     typer.echo(text, err=True)
+
+
+def warn(text: str) -> None:
+    """Say a warning."""
+    say(_("warning: {warning}").format(warning=text))
 
 
 def speaking(command: Callable[..., None]) -> Callable[..., None]:

@@ -36,14 +36,6 @@ EYE = np.eye(NODES)
 ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # values at the nodes to both ends
 
 
-def with_motor(machine: Reduced, flywheel: float, motor: Motor) -> Law:
-    """What the machine comes to when every cycle is as the one before, from the motor's speed without load on.
-
-    Raises WeakMotorError, StandstillError, RunawayError.
-    """
-    return Cycle.of(machine, motor).law(flywheel)
-
-
 @dataclass
 class _Panel:
     """inertia without flywheel, slope of it by the way, moment of the loads: at the nodes between low and high.

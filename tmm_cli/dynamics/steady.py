@@ -25,11 +25,11 @@ from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
 from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError
-from tmm_cli.roots import least
+from tmm_cli.roots import least, roots
+from tmm_cli.vectors import Real
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
-TRIALS = 60  # of flywheels between two
 MET = 1e-12  # of a fluctuation: it is as wanted
 
 
@@ -172,9 +172,8 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     if task.delta is not None:
         if own <= task.delta:
             raise NoFlywheelError(task.delta, own)
-        flywheel = _searched(
-            task.delta, delta_of, task.flywheel, own, float(np.max(machine.inertia(machine.inertia.places())))
-        )
+        heaviest = float(np.max(machine.inertia(machine.inertia.places())))
+        flywheel = _searched(task.delta, delta_of, task.flywheel, heaviest)
     law = cycle.law(flywheel)
     gained = law.energy.coefficients.copy()
     gained[0] -= law.energy(np.zeros(1))[0]
@@ -182,33 +181,19 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
 
 
-def _searched(delta: float, delta_of: Callable[[float], float], low: float, own: float, unit: float) -> float:
-    """The inertia with which the fluctuation is delta; own: that with the least one, low.
+def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
+    """The inertia with which the fluctuation is delta; with the least one, low, it is larger.
 
-    One over the fluctuation grows with the flywheel nearly evenly, so that few trials by its chord are enough.
+    One over the fluctuation grows with the flywheel nearly evenly, so that few trials are enough.
     """
 
-    def over(flywheel: float) -> float:
-        return delta / delta_of(flywheel) - 1
+    def over(flywheel: Real) -> Real:
+        found = delta / delta_of(float(flywheel[0])) - 1
+        return np.array([0.0 if abs(found) <= MET else found])
 
-    high, below = low + unit, delta / own - 1
+    below, above = np.array([low]), np.array([low + unit])
     for _ in range(DOUBLINGS):
-        above = over(high)
-        if above > 0:
-            break
-        low, high, below = high, 2 * high, above
-    else:
-        raise NoFlywheelError(delta, float("nan"))
-    found, last = high, 0.0
-    for _ in range(TRIALS):  # the Illinois method: an end that stays twice counts half
-        found = low - below * (high - low) / (above - below)
-        here = over(found)
-        if abs(here) <= MET:
-            break
-        same = here * last > 0
-        if here < 0:
-            low, below, above = found, here, above / 2 if same else above
-        else:
-            high, above, below = found, here, below / 2 if same else below
-        last = here
-    return found
+        if over(above)[0] > 0:
+            return float(roots(over, below, above)[0])
+        below, above = above, 2 * above
+    raise NoFlywheelError(delta, float("nan"))

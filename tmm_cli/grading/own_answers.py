@@ -9,11 +9,11 @@ import numpy as np
 
 from tmm_cli.analysis.quantities.base import Quantity
 from tmm_cli.forces.applied import Applied
-from tmm_cli.grading.mistakes.accelerations import Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.coriolis import Coriolis
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Poses, Rate, Rates, Wrench
+from tmm_cli.groups.wrapped import Wrapped
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import Linkage
 from tmm_cli.variants.family import Family
@@ -36,7 +36,7 @@ class OwnMotion(Mistake):
 
     def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
         return tuple(
-            OwnGroup(kernel.group, kernel.size, kernel, self, family.linkage) if self._moves(kernel, family) else kernel
+            OwnGroup.around(kernel, self, family.linkage) if self._moves(kernel, family) else kernel
             for kernel in kernels
         )  # fmt: skip
 
@@ -155,7 +155,7 @@ class OwnReaction(Mistake):
 
     def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
         return tuple(
-            OwnReactions(kernel.group, kernel.size, kernel, self)
+            OwnReactions.around(kernel, self)
             if any(pair.name == self.pair for pair in (*kernel.group.outer, *kernel.group.inner)) else kernel
             for kernel in kernels
         )  # fmt: skip

@@ -8,7 +8,7 @@ squares, which is exact as long as they agree.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from typing import Any
@@ -273,45 +273,51 @@ class Newton(Kernel):
         for k in range(0, found.shape[-1], 3):
             yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
 
-    def _by_constraint(self, found: Real) -> Iterator[tuple[Constraint, list[Real]]]:
-        """The multipliers of each pair and driver."""
-        row = 0
+    def _by_constraint(self, found: Sequence[Real]) -> list[tuple[Constraint, list[Real]]]:
+        """The multipliers of each pair and driver, from those of each row."""
+        each, row = [], 0
         for constraint in self.constraints:
-            yield constraint, [found[..., row + k] for k in range(len(constraint.lengths))]
+            each.append((constraint, list(found[row : row + len(constraint.lengths)])))
             row += len(constraint.lengths)
+        return each
 
-    def _apart(self, everything: Poses, found: Real) -> list[Wrench] | None:
-        """Forces on the group's links that follow from those of the teeth and do no work; None when there are none."""
-        total = {link: _nothing(np.shape(found)[:-1]) for link in self.group.links}
-        any_at_all = False
+    def _apart(self, everything: Poses, found: Sequence[Real]) -> dict[str, Wrench]:
+        """Forces on the group's links that follow from those of the teeth and do no work."""
+        total: dict[str, Wrench] = {}
         for constraint, here in self._by_constraint(found):
             apart = constraint.apart(everything, here)
             if apart is None:
                 continue
-            any_at_all = True
             point, force = apart
             for link, sense in ((constraint.links[1], 1.0), (constraint.links[0], -1.0)):
-                if link in total:
-                    arm = point - everything[link].x
-                    total[link] += Wrench(sense * force, sense * cross(arm, force))
-        return list(total.values()) if any_at_all else None
+                if link in self.order:
+                    more = Wrench(sense * force, sense * cross(point - everything[link].x, force))
+                    total[link] = total[link] + more if link in total else more
+        return total
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
         everything = self._all_poses(at, poses)
+        under = self._transposed(at, everything)
+        found = under(applied)
+        more = self._apart(everything, found)
+        if more:
+            both = zip(self.group.links, applied, strict=True)
+            found = under([wrench + more[link] if link in more else wrench for link, wrench in both])
+        return self.given_by(everything, self._by_constraint(found))
+
+    def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
+        """What gives the multipliers of all rows under wrenches on the group's links."""
         pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
         turned = np.swapaxes(pushes, -1, -2)
 
-        def under(wrenches: Sequence[Wrench]) -> Real:
+        def under(wrenches: Sequence[Wrench]) -> Sequence[Real]:
             borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
             found = solve(turned, -_stacked(borne) * self._columns)
-            return np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+            found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+            return [found[..., row] for row in range(found.shape[-1])]
 
-        found = under(applied)
-        more = self._apart(everything, found)
-        if more is not None:
-            found = under([wrench + extra for wrench, extra in zip(applied, more, strict=True)])
-        return self.given_by(everything, list(self._by_constraint(found)))
+        return under
 
     def given_by(self, everything: Poses, multipliers: Sequence[tuple[Constraint, list[Real]]]) -> GroupReactions:
         """Reactions from the multipliers of each pair and driver."""
@@ -332,7 +338,3 @@ def _stacked(values: Sequence[Any]) -> Real:
     if len({np.shape(value) for value in values}) > 1:
         values = np.broadcast_arrays(*values)
     return np.stack(values, axis=-1)
-
-
-def _nothing(shape: tuple[int, ...]) -> Wrench:
-    return Wrench(np.zeros(shape, complex), np.zeros(shape))

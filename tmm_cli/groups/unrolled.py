@@ -8,7 +8,7 @@ enough is told by `doubt`, for all positions at once; where it was not, the grou
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from typing import Any
@@ -20,12 +20,12 @@ from tmm_cli.groups.closure import Closure, closure_of
 from tmm_cli.groups.elimination import Eliminated, Order, Row
 from tmm_cli.groups.linear import margin_of
 from tmm_cli.groups.newton import Newton
-from tmm_cli.groups.state import Accel, Drives, GroupReactions, Placement, Pose, Rate, Wrench
+from tmm_cli.groups.state import Accel, Drives, Placement, Pose, Rate, Wrench
 from tmm_cli.linkage import Linkage
-from tmm_cli.pairs.base import Constraint, JacobianRow
+from tmm_cli.pairs.base import JacobianRow
 from tmm_cli.pairs.turning import Turning
 from tmm_cli.tolerances import LAST_STEP, NEAR_SINGULAR
-from tmm_cli.vectors import Real, cross, dot, unit
+from tmm_cli.vectors import Real, dot, unit
 
 STEPS = 1  # from starts that are read from a table
 
@@ -209,40 +209,14 @@ class Unrolled(Newton):
             found += total
         return found
 
-    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        everything = self._all_poses(at, poses)
+    def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], list[Any]]:
         by = self.eliminated([c.pushes(everything) for c in self.constraints], self.closed_by.pushing)
 
         def under(wrenches: Sequence[Wrench]) -> list[Any]:
             borne = [part for one in wrenches for part in (one.force.real, one.force.imag, one.moment)]
             return by.transposed([-value for value in borne])
 
-        found = under(applied)
-        more = self._pushed_apart(everything, found)
-        if more:
-            found = under([w + more[link] if link in more else w
-                           for link, w in zip(self.group.links, applied, strict=True)])  # fmt: skip
-        return self.given_by(everything, self._each(found))
-
-    def _each(self, found: Sequence[Any]) -> list[tuple[Constraint, list[Any]]]:
-        each, row = [], 0
-        for constraint in self.constraints:
-            each.append((constraint, list(found[row : row + len(constraint.lengths)])))
-            row += len(constraint.lengths)
-        return each
-
-    def _pushed_apart(self, everything: Poses, found: Sequence[Any]) -> dict[str, Wrench]:
-        total: dict[str, Wrench] = {}
-        for constraint, here in self._each(found):
-            apart = constraint.apart(everything, here)
-            if apart is None:
-                continue
-            point, force = apart
-            for link, sense in ((constraint.links[1], 1.0), (constraint.links[0], -1.0)):
-                if link in self.order:
-                    more = Wrench(sense * force, sense * cross(point - everything[link].x, force))
-                    total[link] = total[link] + more if link in total else more
-        return total
+        return under
 
 
 class _Angles(dict[str, Any]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -114,6 +114,18 @@ def _along(output: str, vector: Vector) -> Real:
     return part
 
 
+class Curve(Protocol):
+    """What tells the strokes of an output, see OutputCurve."""
+
+    @property
+    def link(self) -> str: ...
+    @property
+    def swings(self) -> bool: ...
+    @property
+    def kind(self) -> str: ...
+    def place(self, q: Real) -> Real: ...
+
+
 @dataclass(frozen=True)
 class OutputCurve:
     """An output over the driver's places; kernels: the groups on the way to it."""
@@ -139,15 +151,17 @@ class OutputCurve:
         """First transfer function."""
         return output_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
-    def runs(self, starts: Real, ways: Real) -> tuple[Real, Real]:
-        """Where the output is at the start of each way of the driver, and how far it goes in it.
 
-        An angle is followed through, so that it may pass 180 degrees.
-        """
-        places = starts[:, None] + ways[:, None] * np.linspace(0, 1, PARTS + 1)
-        run = self.place(places.ravel()).reshape(places.shape)
-        run = np.unwrap(run, axis=1) if self.swings else run
-        return run[:, 0], run[:, -1] - run[:, 0]
+def runs_of(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
+    """Where an output is at the start of each way of the driver (..., ways), and how far it goes in it.
+
+    An angle is followed through, so that it may pass 180 degrees.
+    """
+    shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
+    places = starts[..., None] + ways[..., None] * shares
+    run = curve.place(places.reshape(*starts.shape[:-1], -1)).reshape(places.shape)
+    run = np.unwrap(run, axis=-1) if curve.swings else run
+    return run[..., 0], run[..., -1] - run[..., 0]
 
 
 @dataclass(frozen=True)
@@ -225,7 +239,7 @@ def find_strokes(
     if turns.size < 2:
         return none
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
-    lows, runs = curve.runs(turns, sense * lengths)
+    lows, runs = runs_of(curve, turns, sense * lengths)
     rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
     lengths = lengths - rests
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
@@ -272,7 +286,7 @@ def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Rea
     if turns.size < 2:
         return turns
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
-    __, runs = curve.runs(turns, sense * lengths)
+    __, runs = runs_of(curve, turns, sense * lengths)
     moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
     if bool(np.all(moves)) or not bool(np.any(moves)):
         return turns

@@ -15,7 +15,7 @@ from tmm_cli.plans.record import Symbol
 
 @dataclass(frozen=True)
 class Ref:
-    """The number of a figure, a table or a formula, by its key."""
+    """The number of a figure or a table, by its key."""
 
     key: str
 
@@ -55,18 +55,16 @@ class Items:
 
 @dataclass(frozen=True)
 class Equation:
-    """A formula on a line of its own. key: of one that is numbered and referred to."""
+    """A formula on a line of its own."""
 
     node: Node
-    key: str = ""
 
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity found, on a line of its own: letters = numbers = result. key: as of an equation."""
+    """A quantity found, on a line of its own: letters = numbers = result."""
 
     substitution: Substitution
-    key: str = ""
 
 
 @dataclass(frozen=True)
@@ -153,15 +151,14 @@ class Note:
         return found
 
     def numbers(self) -> dict[str, str]:
-        """Of headings, formulas, tables and figures by their keys: each kind is counted through the note."""
+        """Of tables and figures by their keys: each kind is counted through the note."""
         counted: dict[type, int] = {}
         found: dict[str, str] = {}
         for block in self.blocks:
-            if isinstance(block, Figure | Rows) or (isinstance(block, Equation | Found) and block.key):
-                kind = Equation if isinstance(block, Found) else type(block)
-                counted[kind] = counted.get(kind, 0) + 1
+            if isinstance(block, Figure | Rows):
+                counted[type(block)] = counted.get(type(block), 0) + 1
                 if block.key:
-                    found[block.key] = str(counted[kind])
+                    found[block.key] = str(counted[type(block)])
         sources = [s for block in self.blocks if isinstance(block, Sources) for s in block.sources]
         return found | {source.key: str(number) for number, source in enumerate(sources, 1)}
 
@@ -174,6 +171,11 @@ def paragraph(*line: Inline) -> Paragraph:
 def line(*parts: Inline) -> Line:
     """Of texts and symbols one after another."""
     return tuple(parts)
+
+
+def listed(parts: Iterable[Inline], between: str = ", ") -> Line:
+    """One after another."""
+    return tuple(one for k, part in enumerate(parts) for one in ((between, part) if k else (part,)))
 
 
 def listed_below(lines: Sequence[Line]) -> Items:

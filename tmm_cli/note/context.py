@@ -25,6 +25,9 @@ from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.draw.sheets.structure import whole_scheme
 from tmm_cli.draw.sheets.synthesis import synthesised
+from tmm_cli.forces.lever import Lever
+from tmm_cli.forces.plan import Reactions
+from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import signed, typeset
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import plain, rounded
@@ -63,10 +66,27 @@ class Subject:
         """Indices of the positions that are shown in full."""
         return in_detail(self.results) if self.results.motion is not None else ()
 
+    @property
+    def motion(self) -> Motion:
+        """Of what moves; chapters on what stands still ask for none."""
+        assert self.results.motion is not None
+        return self.results.motion
+
+    @property
+    def reactions(self) -> Reactions:
+        """Of what has forces."""
+        assert self.results.reactions is not None
+        return self.results.reactions
+
+    @property
+    def lever(self) -> Lever:
+        """Of what has forces."""
+        assert self.results.lever is not None
+        return self.results.lever
+
     def position(self, k: int) -> Position:
         """One of them, as drawings take it."""
-        assert self.results.motion is not None
-        return Position(self.results, self.results.motion, k)
+        return Position(self.results, self.motion, k)
 
     @property
     def acts(self) -> bool:

@@ -100,6 +100,11 @@ class Loaded:
                 found += self._reaction(reaction, link, axes.get(reaction.pair.name))
         return there(found, self.size)
 
+    def given(self) -> tuple[Acting, ...]:
+        """The loads of all links, and what balances each driver, on the link that it drives."""
+        drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
+        return there([*self._loads(self.motion.linkage.moving), *drives], self.size)
+
     def _loads(self, links: Collection[str]) -> Iterable[Acting]:
         for load in self.reactions.applied:
             if load.link in links:
@@ -118,7 +123,7 @@ class Loaded:
                 yield self._drive(balance, driver.base, -1)
 
     def _drive(self, balance: Balance, link: str, sense: int) -> Acting:
-        driver, k, turns = balance.driver, self.k, balance.kind == "moment" and balance.moment is not None
+        driver, k, turns = balance.driver, self.k, balance.kind == "moment"
         symbol = balance_symbol(driver.link, len(self.reactions.balances) > 1, turns=turns)
         if sense < 0:
             symbol = symbol.primed

@@ -11,7 +11,7 @@ from tmm_cli.linkage import FRAME, Driver, Link, Request, Sketch
 from tmm_cli.problem import schema
 from tmm_cli.problem.build_links import Members
 from tmm_cli.problem.build_speeds import build_speeds, mean
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import ProblemError, no_position, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED
@@ -160,10 +160,7 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     count = len(places) or given.count
     for k, number in enumerate(given.detail):
         if not 0 <= number < count:
-            raise ProblemError(
-                _("there is no such position"), path=("positions", "detail", k), found=str(number),
-                allowed=_("0 to {last}").format(last=count - 1),
-            )  # fmt: skip
+            raise no_position(number, count, "positions", "detail", k)
     if given.from_ is not None and driver.kind == "slide" and not places:
         raise part.refusal(
             "from", _("positions of a driven slider go from one end of its way to the other"), str(given.from_),

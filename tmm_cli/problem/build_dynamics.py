@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 from tmm_cli.dynamics.motors import Kloss, Linear, Motor
 from tmm_cli.dynamics.sizes import Disk, Rim
@@ -11,7 +10,7 @@ from tmm_cli.dynamics.task import Profile, RunTask, SteadyTask
 from tmm_cli.language import _
 from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.problem import schema, schema_dynamics
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import quote
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import (
     ANGLE,
@@ -92,18 +91,8 @@ def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
                            _("a table of moments, or a driver that slides"), at_key=True)  # fmt: skip
     if given.area is not None:
         size, area = PRESSURE, part.positive("area", AREA)
-    argument = NUMBER if given.against == "time" else place
-    rows = [
-        (part.values.number(row[0], argument, (*part.path, "table", k, 0)),
-         area * part.values.number(row[1], size, (*part.path, "table", k, 1)))
-        for k, row in enumerate(given.table)
-    ]  # fmt: skip
-    for k, (one, other) in enumerate(pairwise(rows), 1):
-        if not one[0] < other[0]:
-            raise ProblemError(
-                _("the first column must grow"), path=(*part.path, "table", k, 0), found=str(given.table[k][0])
-            )
-    return Profile(given.against, tuple(x for x, __ in rows), tuple(y for __, y in rows))
+    arguments, sizes = part.columns("table", NUMBER if given.against == "time" else place, size)
+    return Profile(given.against, arguments, tuple(area * one for one in sizes))
 
 
 def _turns(speed: float) -> str:

@@ -176,7 +176,7 @@ def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _C
     along = direction(part.number("angle", ANGLE)) if angled else 1.0
     if part.one_of("size", "table", "resists") == "size":
         return _Component(along * part.number("size", want))
-    return _Component(along, _table(given, want, linkage, part.values, part.path))
+    return _Component(along, _table(part, want, linkage))
 
 
 def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
@@ -185,7 +185,7 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
         raise part.refusal("when", _("a load between two angles of the crank: this driver slides"))
     cycle = 2 * np.pi * linkage.turns
     low, high = (part.values.number(value, ANGLE, (*part.path, "when", k)) for k, value in enumerate(part.given.when))
-    end = f"{part.values.units.from_si(cycle, ANGLE):.6g} {part.values.units.spelt(ANGLE)}"
+    end = part.values.units.told(cycle, ANGLE)
     for k, place in enumerate((low, high)):
         if not -SAME_PLACE <= place + cycle <= 2 * cycle + SAME_PLACE:
             raise ProblemError(
@@ -202,28 +202,21 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
     return low, high
 
 
-def _table(
-    given: schema_loads.Tabulated, want: Dimension, linkage: Linkage, values: ValueReader, path: Path
-) -> LoadTable:
+def _table(part: Part, want: Dimension, linkage: Linkage) -> LoadTable:
+    given: schema_loads.Tabulated = part.given
     argument = ANGLE
     if linkage.driver.kind == "slide":
-        raise ProblemError(
-            _("a table is against a crank, or the strokes that it gives: this driver slides"), path=(*path, "against"),
-            found=str(given.against), allowed=_("size: one value"),
+        raise part.refusal(
+            "against", _("a table is against a crank, or the strokes that it gives: this driver slides"),
+            str(given.against), _("size: one value"),
         )  # fmt: skip
     if given.against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
         argument = ANGLE if link is None or linkage.output_swings(link) else LENGTH
-    rows = given.table or []
-    path = (*path, "table")
-    arguments = [values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows)]
-    sizes = [values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows)]
-    for k in range(1, len(arguments)):
-        if arguments[k] <= arguments[k - 1]:
-            raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
+    arguments, sizes = part.columns("table", argument, want)
     against = given.against or "stroke"
     round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
-    return LoadTable(tuple(arguments), tuple(sizes), given.between, round_and_round, against)
+    return LoadTable(arguments, sizes, given.between, round_and_round, against)
 
 
 def _whole_turns(way: float) -> bool:

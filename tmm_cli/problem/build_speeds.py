@@ -58,19 +58,15 @@ def mean(part: Part) -> float:
 
 
 def _columns(part: Part, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    rows, path = getattr(part.given, key).table, (*part.path, key, "table")
-    angles = tuple(part.values.number(row[0], ANGLE, (*path, k, 0)) for k, row in enumerate(rows))
-    for k in range(1, len(angles)):
-        if angles[k] <= angles[k - 1]:
-            raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
-    return angles, tuple(part.values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows))
+    own = Part(getattr(part.given, key), (*part.path, key), part.values)
+    return own.columns("table", ANGLE, want)
 
 
 def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
     """Whether a table goes all round the cycle; then it ends as it begins."""
     table, path, units = getattr(part.given, key).table, (*part.path, key, "table"), part.values.units
     cycle = math.tau * turns
-    end = f"{units.from_si(float(angles[0]) + cycle, ANGLE):.6g} {units.spelt(ANGLE)}"
+    end = units.told(float(angles[0]) + cycle, ANGLE)
     beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_PLACE)
     if (row := next(iter(beyond), None)) is not None:
         longer = _("at most {end}; a longer cycle is told by cycle: {turns} turns").format(end=end, turns=turns + 1)

@@ -175,6 +175,12 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     return folded[close[0]] if close else None
 
 
+def no_position(number: int, count: int, *path: str | int) -> ProblemError:
+    """Of the number of a position, where there are so many of them."""
+    allowed = _("0 to {last}").format(last=count - 1)
+    return ProblemError(_("there is no such position"), path=path, found=str(number), allowed=allowed)
+
+
 def chosen_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
     """Names with commas between them, of those that an option knows. Raises ProblemError with the reason."""
     wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)

@@ -31,9 +31,9 @@ from tmm_cli.errors import (
     WeakMotorError,
 )
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote
 from tmm_cli.problem.record import Problem
-from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT
+from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.structure.assur import Structure
 
 MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
@@ -60,22 +60,16 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
     def shown(value: complex | float) -> str:
         if isinstance(value, complex):
             return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
-        return f"{units.from_si(value, ANGLE):.6g} {units.spelt(ANGLE)}"
+        return units.told(value, ANGLE)
 
-    def turning(speed: float) -> str:
-        return f"{units.from_si(speed, ANGULAR_SPEED):.4g} {units.spelt(ANGULAR_SPEED)}"
-
-    crank = problem.linkage.driver.kind == "turn"
-    at = units.from_si(problem.linkage.sketch.at, ANGLE if crank else LENGTH)
-    place = f"{at:.6g} {units.spelt(ANGLE if crank else LENGTH)}"
+    place = units.told(problem.linkage.sketch.at, place_dimension(problem.linkage.driver.kind))
     match error:
         case MobilityError(structure=structure):
             return mobility(structure)
         case AssemblyError(group=group, residual=residual):
             short = _("it never closes")
             if residual is not None:
-                size = f"{units.from_si(residual, LENGTH):.6g} {units.spelt(LENGTH)}"
-                short = _("{size} short of closing").format(size=size)
+                short = _("{size} short of closing").format(size=units.told(residual, LENGTH))
             return ProblemError(
                 _("group {group} cannot be assembled with the driver at {place}").format(
                     group=group.title, place=place
@@ -109,10 +103,7 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 allowed=_("at most {most} in one group; any number of groups").format(most=most), key=True,
             )  # fmt: skip
         case UnknownPositionError(number=number, count=count):
-            return ProblemError(
-                _("there is no such position"), path=("positions",), found=str(number),
-                allowed=_("0 to {last}").format(last=count - 1),
-            )  # fmt: skip
+            return no_position(number, count, "positions")
         case UnknownNameError(name=name, allowed=allowed):
             return ProblemError(
                 _("there is no such point, link or centre of mass"), path=("links",), found=quote(name),
@@ -197,7 +188,8 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 _("the loads push the machine on, and its motor does not hold it: it runs away"),
                 path=("dynamics", "motor"), key=True, allowed=wanted,
                 found=found.format(moment=f"{units.from_si(pushing, MOMENT):.4g}", unit=unit, most=held,
-                                   place=shown(away.place), speed=turning(away.speed), idle=turning(away.idle)),
+                                   place=shown(away.place), speed=units.told(away.speed, ANGULAR_SPEED, 4),
+                                   idle=units.told(away.idle, ANGULAR_SPEED, 4)),
             )  # fmt: skip
         case WeakMotorError(wanted=mean, most=most, place=hardest):
             unit = units.spelt(MOMENT)
@@ -223,16 +215,17 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 found=f"{delta:.6g}", allowed=_("less than {own}, or no delta").format(own=f"{own:.4g}"),
             )  # fmt: skip
         case TableBeyondCycleError(path=path, argument=argument, cycle=cycle):
-            turns, unit = round(cycle / (2 * math.pi)), units.spelt(ANGLE)
+            turns = round(cycle / (2 * math.pi))
             text = _("this row is never reached: all repeats after {turns} turns of the driver")
             if turns == 1:
                 text = _("this row is never reached: all repeats after 1 turn of the driver")
             return ProblemError(
-                text.format(turns=turns), path=path, found=f"{units.from_si(argument, ANGLE):.6g} {unit}",
+                text.format(turns=turns), path=path, found=shown(argument),
                 allowed=_(
                     "0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns"
                 ).format(
-                    end=f"{units.from_si(cycle, ANGLE):.6g}", unit=unit, turns=max(2, math.ceil(argument / math.tau))
+                    end=f"{units.from_si(cycle, ANGLE):.6g}", unit=units.spelt(ANGLE),
+                    turns=max(2, math.ceil(argument / math.tau)),
                 ),
             )  # fmt: skip
     return ProblemError(str(error))

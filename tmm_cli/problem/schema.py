@@ -18,6 +18,7 @@ from tmm_cli.problem.schema_meshes import Cam, Gear, Rack
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
+    FileHead,
     Name,
     Place,
     Strict,
@@ -156,13 +157,9 @@ class Checks(Strict):
     pressure_turning: Value | None = Field(default=None, description="largest pressure angle on a turning link; 45 deg")
 
 
-class File(Strict):
+class File(FileHead):
     """A problem of planar lever mechanisms."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
-    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
-    title: str = Field(default="", max_length=200)
-    description: str = Field(default="", max_length=4000)
     reference: str = Field(default="", max_length=100, description="of the mechanism, in a book or a list: M7, Fig. 7")
     shows: Shows = Field(default={}, description="properties as numbers: {swing: {of: psi, expected: 2*a}}")
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")

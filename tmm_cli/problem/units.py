@@ -257,6 +257,10 @@ class UnitSystem:
         unit = self.symbol(dimension)
         return unit if language() == ENGLISH else on_paper(spelt(unit))
 
+    def told(self, value: float, dimension: Dimension, digits: int = 6) -> str:
+        """A value in SI and radians as a refusal tells it, `30 deg`."""
+        return f"{self.from_si(value, dimension):.{digits}g} {self.spelt(dimension)}"
+
     def show(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:

@@ -178,6 +178,16 @@ class Part:
     def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
         return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
 
+    def columns(self, key: str, argument: Dimension, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Both columns of a table, of which the first one grows."""
+        rows, path = getattr(self.given, key), (*self.path, key)
+        first = tuple(self.values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows))
+        second = tuple(self.values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows))
+        for k in range(1, len(first)):
+            if first[k] <= first[k - 1]:
+                raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
+        return first, second
+
     def known(self, key: str, names: Iterable[str], what: str) -> str:
         return self.values.known(getattr(self.given, key), names, (*self.path, key), what)
 

@@ -16,7 +16,7 @@ from tmm_cli.analysis.quantities.base import STAGES, Quantity
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, path_text, quote, under
+from tmm_cli.problem.errors import ProblemError, nearest, no_position, path_text, quote, under
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.schema_shown import Shown
@@ -200,10 +200,7 @@ def _read(quantity: Quantity, results: Results, q: Real) -> Real:
 def _place(number: int, path: Path, results: Results) -> float:
     asked = results.asked
     if number >= len(asked):
-        raise ProblemError(
-            _("there is no such position"), path=path, found=str(number),
-            allowed=_("0 to {last}").format(last=len(asked) - 1),
-        )  # fmt: skip
+        raise no_position(number, len(asked), *path)
     return float(asked[number])
 
 

@@ -10,22 +10,23 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tmm_cli.language import N_
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.contours import Contour, contours
 
 SPACE = 6  # freedoms of a free link
-KINDS: dict[str, int] = {
-    "turning": 1,
-    "sliding": 1,
-    "screw": 1,
-    "cylindrical": 2,
-    "spherical with a pin": 2,
-    "universal": 2,
-    "spherical": 3,
-    "planar": 3,
-    "sphere in cylinder": 4,
-    "cylinder on plane": 4,
-    "sphere on plane": 5,
+KINDS: dict[str, int] = {  # of pairs, in the words of a file, by which they are translated too; their freedoms
+    N_("turning"): 1,
+    N_("sliding"): 1,
+    N_("screw"): 1,
+    N_("cylindrical"): 2,
+    N_("spherical with a pin"): 2,
+    N_("universal"): 2,
+    N_("spherical"): 3,
+    N_("planar"): 3,
+    N_("sphere in cylinder"): 4,
+    N_("cylinder on plane"): 4,
+    N_("sphere on plane"): 5,
 }
 TELESCOPIC = {"sliding", "screw", "cylindrical"}
 BALL_OR_PLATE = {"spherical", "planar"}

@@ -14,8 +14,9 @@ import numpy as np
 from tmm_cli.kinematics.strokes import Strokes, resisted
 from tmm_cli.roots import least, roots
 from tmm_cli.sweep.peaks import near_peaks, peaks_between
-from tmm_cli.sweep.taped import FINELY, Closely, Turning, each, turned
+from tmm_cli.sweep.taped import FINELY, Closely, Turning, turned
 from tmm_cli.variants.family import named_strokes
+from tmm_cli.variants.stack import each
 from tmm_cli.variants.variant import Variant
 from tmm_cli.vectors import Real
 
@@ -170,7 +171,7 @@ def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant)
 
 @dataclass(frozen=True)
 class _Output:
-    """The output's curve, see variants.family.Curve."""
+    """The output's curve, see kinematics.strokes.Curve."""
 
     turning: Turning
     close: Closely

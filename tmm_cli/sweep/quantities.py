@@ -22,7 +22,6 @@ from tmm_cli.vectors import Real
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
 USUAL = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
 MOST = 12  # quantities at once
-OF_A_CYCLE = ("H", "psi", "k", PRESSURE)  # the ordinary stages find them over all the driver's way
 
 
 @dataclass(frozen=True)

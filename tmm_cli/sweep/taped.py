@@ -26,9 +26,9 @@ from tmm_cli.tape import Program, record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.batch import CHECKS, SURE, solved
-from tmm_cli.variants.family import places_of, stands
-from tmm_cli.variants.stack import changed, numbers
-from tmm_cli.variants.variant import Make, NoTapeError, Variant
+from tmm_cli.variants.family import places_of
+from tmm_cli.variants.stack import each, stands
+from tmm_cli.variants.variant import Make, NoTapeError, Variant, stood_for
 from tmm_cli.vectors import Real
 
 FINELY = 1440  # places in a turn of the driver, as the ordinary stages look at
@@ -100,9 +100,7 @@ class Turning:
 
     def _linkage(self, data: Sequence[Any]) -> Any:
         """Linkage and groups with stands in the places of their numbers."""
-        varied = self.make([TracedNumber(x, stand) for x, stand in zip(self.first, data, strict=True)]).linkage
-        found = {path: number.stand for path, number in numbers(varied) if isinstance(number, TracedNumber)}
-        linkage = replace(changed(varied, found), sketch=self.linkage.sketch)
+        linkage = stood_for(self.make, self.first, data, self.linkage.sketch)
         return linkage, tuple(kernel.rebind(linkage) for kernel in self.kernels)
 
     def _states(self, *data: Any) -> Mapping[str, Any]:
@@ -169,11 +167,6 @@ class Closely:
         shaped = q.reshape(len(self.columns), -1) if q.ndim > 1 else q.reshape(-1, len(self.columns)).T
         found = self.program(*each(self.columns), shaped)
         return {name: value if q.ndim > 1 else value.T.reshape(-1) for name, value in found.items()}
-
-
-def each(columns: Real) -> list[Real]:
-    """The columns one by one, (variants, 1)."""
-    return [columns[:, k : k + 1] for k in range(columns.shape[1])]
 
 
 def turned(slope: Real) -> Real:

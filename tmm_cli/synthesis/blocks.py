@@ -12,12 +12,13 @@ from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import VALUE, Name, Strict, Value, checked_value
+from tmm_cli.problem.schema_parts import VALUE, FileHead, Name, Strict, Value, checked_value
 from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import Dimension
+from tmm_cli.quantities import KINDS
 from tmm_cli.synthesis import TASKS, block
+from tmm_cli.synthesis.record import Kind
 
 
 def _range(found: Any) -> Any:
@@ -55,10 +56,10 @@ def one_of(
     )  # fmt: skip
 
 
-def numbers(shape: Block, values: ValueReader, wants: Mapping[str, Dimension]) -> dict[str, Any]:
-    """The values in SI of those of these keys that are given. Raises ProblemError."""
-    given = {key: value for key in wants if (value := getattr(shape, key)) is not None}
-    return {key: values.number(value, wants[key], (key,)) for key, value in given.items()}
+def numbers(shape: Block, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
+    """The values in SI of those of these quantities, by their keys, that are given. Raises ProblemError."""
+    given = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
+    return {key: values.number(value, KINDS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
 
 
 class OfTheFile(Exception):  # noqa: N818  it says whose the error is
@@ -69,13 +70,9 @@ class OfTheFile(Exception):  # noqa: N818  it says whose the error is
         self.error = error
 
 
-class SynthesisFile(Strict):
+class SynthesisFile(FileHead):
     """A problem file without a linkage, for `tmm synthesis` alone."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
-    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
-    title: str = Field(default="", max_length=200)
-    description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict)
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
     synthesis: dict[str, Any]

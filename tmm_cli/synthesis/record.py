@@ -98,8 +98,9 @@ class Outcome:
 
 
 def given(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[Value, ...]:
-    """The fields of a task that are not None, by their kinds and what they are called."""
-    return tuple(Value(name, value, *quantities[name]) for name, value in vars(task).items() if value is not None)
+    """Those of these quantities that a task has as fields, and not None, by their kinds and what they are called."""
+    numbers = ((name, getattr(task, name, None)) for name in quantities)
+    return tuple(Value(name, value, *quantities[name]) for name, value in numbers if value is not None)
 
 
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said

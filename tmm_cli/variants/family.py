@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import link_states, towards
 from tmm_cli.kinematics.driver_range import cycle_of
-from tmm_cli.kinematics.strokes import OutputCurve, Stroke, Strokes, output_slope, resisted
+from tmm_cli.kinematics.strokes import Curve, OutputCurve, Stroke, Strokes, output_slope, resisted, runs_of
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Structure
@@ -30,8 +30,8 @@ from tmm_cli.tape import DependsOnData
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.variants.marched import Marched, marched
-from tmm_cli.variants.stack import changed, numbers
-from tmm_cli.variants.variant import Make, NoTapeError
+from tmm_cli.variants.stack import each, stands
+from tmm_cli.variants.variant import Make, NoTapeError, stood_for
 from tmm_cli.vectors import Real, mapped
 
 SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one another than that are no task
@@ -96,7 +96,7 @@ def together(make: Make, columns: Real) -> Family | None:
     """All at once, sound or not, assembled as the first one; None where that cannot be. Raises what `make` raises."""
     first = columns[0].tolist()
     try:
-        varied = make([TracedNumber(x, columns[:, k : k + 1]) for k, x in enumerate(first)])
+        varied = make([TracedNumber(x, column) for x, column in zip(first, each(columns), strict=True)])
         plain = make(first).linkage
         structure = mobile(plain)
         kernels = assemble(plain, structure)
@@ -106,7 +106,7 @@ def together(make: Make, columns: Real) -> Family | None:
             return None
         if cycle_of(plain, kernels) != 1:  # strokes are looked for in one turn
             return None
-        kernels = marched(lambda data: _one(make, first, data, plain), columns, plain, kernels)
+        kernels = marched(lambda data: stood_for(make, first, data, plain.sketch), columns, plain, kernels)
     except (DependsOnData, NoTapeError, LinkageError):
         return None
     linkage = replace(stands(varied.linkage), sketch=plain.sketch)
@@ -116,18 +116,6 @@ def together(make: Make, columns: Real) -> Family | None:
     strokes, sound = _strokes(linkage, kernels, len(columns))
     q = places_of(request, strokes, linkage.driver.sense, len(columns))
     return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
-
-
-def stands(record: Any) -> Any:
-    """A record built of traced numbers with the arrays that they stand for."""
-    return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
-
-
-def _one(make: Make, first: Sequence[float], stands_in: Sequence[Any], plain: Linkage) -> Linkage:
-    """The variants as one linkage for (stand-ins of) their numbers, sketched as the first one."""
-    varied = make([TracedNumber(x, stand) for x, stand in zip(first, stands_in, strict=True)])
-    linkage: Linkage = replace(stands(varied.linkage), sketch=plain.sketch)
-    return linkage
 
 
 def _alone(make: Make, row: Real) -> Family:
@@ -166,24 +154,12 @@ def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple
     return named_strokes(linkage, curve, ends, resisted(linkage, link)), sound
 
 
-class Curve(Protocol):
-    """What tells the strokes of an output, see OutputCurve."""
-
-    @property
-    def link(self) -> str: ...
-    @property
-    def swings(self) -> bool: ...
-    @property
-    def kind(self) -> str: ...
-    def place(self, q: Real) -> Real: ...
-
-
 def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> Strokes:
     """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
     lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
-    lows, runs = (part.reshape(ends.shape) for part in _runs(curve, ends, sense * lengths))
+    lows, runs = runs_of(curve, ends, sense * lengths)
     forward = np.where(runs > 0, lengths, 0).sum(axis=1)
     back = np.where(runs < 0, lengths, 0).sum(axis=1)
     slower = np.sign(np.where(np.abs(forward - back) > SAME_PLACE, forward - back, 0))
@@ -199,19 +175,6 @@ def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> S
         start, length, low, run = (part[rows, order][:, None] for part in (ends, lengths, lows, runs))
         found.append(Stroke(start, length, low, run, working))
     return Strokes(curve.link, curve.kind, tuple(found), "")
-
-
-def _runs(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
-    """As OutputCurve.runs, for (variants, 2) at once."""
-    shares = np.linspace(0, 1, 33 if curve.swings else 2)  # an angle is followed through half turns
-    found = []
-    for k in range(starts.shape[1]):
-        places = starts[:, k : k + 1] + ways[:, k : k + 1] * shares
-        run = np.broadcast_to(curve.place(places), places.shape)
-        run = np.unwrap(run, axis=1) if curve.swings else run
-        found.append((run[:, 0], run[:, -1] - run[:, 0]))
-    lows, runs = zip(*found, strict=True)
-    return np.stack(lows, axis=1), np.stack(runs, axis=1)
 
 
 def places_of(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:

@@ -20,6 +20,7 @@ from tmm_cli.groups.unrolled import Unrolled
 from tmm_cli.linkage import Linkage
 from tmm_cli.tape import TracedArray, record
 from tmm_cli.tolerances import CONVERGED, SAME_STATE
+from tmm_cli.variants.stack import each
 from tmm_cli.variants.starts import started, unknowns, wants
 from tmm_cli.vectors import Real
 
@@ -116,7 +117,7 @@ class Marches:
 
         signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
         """
-        data = [*(numbers[:, k : k + 1] for k in range(numbers.shape[1])), q[:, None], *(part[:, None] for part in x)]
+        data = [*each(numbers), q[:, None], *(part[:, None] for part in x)]
         found = self.program(*data)
         dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
         sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.linkage import Linkage
+from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.vectors import Real, leaves, mapped
 
 LEFT = ("sketch",)  # what says how a linkage is assembled, not what it is
@@ -29,6 +30,16 @@ def numbers(record: Any) -> Iterator[tuple[str, Any]]:
 def changed(record: Any, new: Mapping[str, Any]) -> Any:
     """A record with the numbers at some paths exchanged."""
     return mapped(lambda path, value: new.get(path, value), record, skip=LEFT)
+
+
+def stands(record: Any) -> Any:
+    """A record built of traced numbers with the arrays that they stand for."""
+    return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
+
+
+def each(columns: Real) -> list[Real]:
+    """The columns (variants, n) one by one, (variants, 1)."""
+    return [columns[:, k : k + 1] for k in range(columns.shape[1])]
 
 
 def varying(linkages: Sequence[Linkage]) -> dict[str, Real]:

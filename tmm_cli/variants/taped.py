@@ -22,9 +22,9 @@ from tmm_cli.tape import Program, TracedArray, record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.variants.batch import TOLD, WOUND, Wanted, solved, straight
 from tmm_cli.variants.marches import EACH_TURN, LEAST_TURN, STEPS_OF_VARIANTS, Marches, Ways
-from tmm_cli.variants.stack import changed, numbers
+from tmm_cli.variants.stack import each
 from tmm_cli.variants.starts import started, wants
-from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of
+from tmm_cli.variants.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, sketch_of, stood_for
 from tmm_cli.vectors import Real
 
 
@@ -58,11 +58,7 @@ class Taped:
         self._last: tuple[bytes, Ways] | None = None
 
     def _varied(self, data: Sequence[Any]) -> Linkage:
-        """The linkage for stand-ins of its numbers."""
-        varied = self.make([TracedNumber(x, stand) for x, stand in zip(self.first, data, strict=True)]).linkage
-        stands = {path: number.stand for path, number in numbers(varied) if isinstance(number, TracedNumber)}
-        found: Linkage = replace(changed(varied, stands), sketch=self.linkage.sketch)
-        return found
+        return stood_for(self.make, self.first, data, self.linkage.sketch)
 
     def _program(self, wanted: Wanted, forces: bool, own: bool) -> Program:
         """Of the varying numbers, each (variants, 1), and the driver's places; own: each variant has its own."""
@@ -90,7 +86,7 @@ class Taped:
         """The crank's turn, or the range of the driver."""
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
-        found = self.ends(*(columns[:, k : k + 1] for k in range(columns.shape[1])))
+        found = self.ends(*each(columns))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
         numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
@@ -115,8 +111,7 @@ class Taped:
     def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
         q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
-        data = [columns[:, k : k + 1] for k in range(columns.shape[1])]
-        played = self.program(*data, q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        played = self.program(*each(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
         found: Mapping[str, Real] = played.without(WOUND)
         if not np.all(played[WOUND]):  # wheels have gone round otherwise than those of the first linkage
             found = {name: np.where(played[WOUND], value, np.nan) for name, value in found.items()}

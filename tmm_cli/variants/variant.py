@@ -12,7 +12,9 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import Linkage, Request, Sketch
+from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import SAME_SKETCH
+from tmm_cli.variants.stack import stands
 from tmm_cli.vectors import Real
 
 WANTED = "wanted"  # name of what is wanted at places asked about, among the outputs of variants
@@ -60,6 +62,13 @@ class Variant:
 
 
 Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be TracedNumbers
+
+
+def stood_for(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
+    """The linkage with stand-ins (of a tape, or columns) for its numbers; first, sketch: those of the first variant."""
+    varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
+    linkage: Linkage = replace(stands(varied.linkage), sketch=sketch)
+    return linkage
 
 
 @dataclass(frozen=True)

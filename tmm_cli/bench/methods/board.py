@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.bench.methods.precision import Wrapped
 from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.sequence import driven_state, drives_at, frame_state
 from tmm_cli.groups.state import (
@@ -30,6 +29,7 @@ from tmm_cli.groups.state import (
     Rates,
     Wrench,
 )
+from tmm_cli.groups.wrapped import Wrapped
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.acceleration import acceleration_plan
@@ -228,7 +228,7 @@ def prepare(millimetres: float, case: Case) -> Callable[[Real], Answers]:
         speed = np.abs(exact.rate)
         motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
         forces = {links: millimetres * scale for links, scale in scales.forces.items()}
-        polygons = tuple(Polygon(k.group, k.size, k, forces[k.group.links]) for k in case.kernels)
+        polygons = tuple(Polygon.around(k, forces[k.group.links]) for k in case.kernels)
         motion = replace(motion, kernels=polygons, placements=placements)
         plan = react(motion, case.structure, case.loads(motion))
         frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)

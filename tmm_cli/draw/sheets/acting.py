@@ -12,12 +12,12 @@ from tmm_cli.draw.paper.drawing import Style
 from tmm_cli.draw.paper.ground import STEP
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import COLOURS, Sheet
-from tmm_cli.draw.sheets.mechanism import LOAD_MM, couple
-from tmm_cli.plans.bodies import Acting
+from tmm_cli.plans.bodies import DRIVE, Acting
 from tmm_cli.plans.moments import MomentEquation
 from tmm_cli.vectors import Vector, cross, dot
 
 ARM = "#00757d"
+LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 ALIKE, LONGER = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
 NEAR, RIGHT = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
 LEAST, ON_BAR, COVERED = 5.0, 0.6, 0.6  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
@@ -27,9 +27,13 @@ RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 
 @dataclass
 class Forces:
-    """Arrows on a sheet, with tail or head at their places, as it covers less; couples as open circles."""
+    """Arrows on a sheet, with tail or head at their places, as it covers less; couples as open circles.
+
+    whole: on the whole mechanism: all have their tails there, and what balances a crank goes round its support.
+    """
 
     sheet: Sheet
+    whole: bool = False
     taken: list[tuple[complex, complex, bool]] = field(default_factory=list)
     coupled: list[complex] = field(default_factory=list)
     ways: list[tuple[complex, complex]] = field(default_factory=list)
@@ -40,8 +44,8 @@ class Forces:
         for one in acting:
             at, colour = self.sheet.on(one.at), COLOURS[one.kind]
             if one.couple:
-                number = sum(abs(at - other) < 1 for other in self.coupled)
-                couple(self.sheet, at, np.sign(one.moment), colour, one.symbol, RADII[min(number, len(RADII) - 1)])
+                number = sum(abs(at - other) < 1 for other in self.coupled) + (self.whole and one.pair == DRIVE)
+                _couple(self.sheet, at, np.sign(one.moment), colour, one.symbol, RADII[min(number, len(RADII) - 1)])
                 self.coupled.append(at)
             else:
                 self._force(at, one.force / abs(one.force), one.symbol, colour, "--" if one.kind == "inner" else "-")
@@ -51,7 +55,7 @@ class Forces:
         against = any(abs(at - place) < 1 and abs(along + way) < ALIKE for place, way in self.ways)
         # one that ends at its place would lie on one that begins there against it, or on another that ends there
         free = not against and all(alike)
-        out = not free or self._covered(at, -along) + 3 >= self._covered(at, along)
+        out = self.whole or not free or self._covered(at, -along) + 3 >= self._covered(at, along)
         self.taken.append((at, along, out))
         start = at if out else at - LOAD_MM * along
         end = start + (LOAD_MM + LONGER * sum(alike) if out else LOAD_MM) * along
@@ -67,6 +71,15 @@ class Forces:
         crowd = self.sheet.ground.crowd - at
         run, off = dot(way, crowd), np.abs(cross(way, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_MM + 3) & (off < NEAR)))
+
+
+def _couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
+    """A couple as an open circle with an arrow head in its sense."""
+    angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
+    arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
+    sheet.line(arc[:-4], colour, 1.2, z=5)
+    sheet.arrow(arc[-9], arc[-1], colour, 1.2)
+    sheet.label(name, arc[20], 9, colour)
 
 
 def extent(acting: Iterable[Acting]) -> list[tuple[complex, complex]]:

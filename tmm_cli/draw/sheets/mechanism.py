@@ -12,18 +12,17 @@ from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.draw.paper.blocks import Block
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.room import Figure, Room, room
-from tmm_cli.draw.paper.script import Words
-from tmm_cli.draw.paper.sheet import COLOURS, DARK, GREY, NAMES, REACTION, THIN, Sheet, scale_words
+from tmm_cli.draw.paper.sheet import DARK, GREY, NAMES, THIN, Sheet, scale_words
+from tmm_cli.draw.sheets.acting import LOAD_MM, Forces
 from tmm_cli.draw.symbols.forms import by_points
 from tmm_cli.draw.symbols.parts import MEASURED, mass_centre
 from tmm_cli.draw.symbols.render import Rendered, render, slider
 from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
-from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral, typeset
-from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.record import PAD, balance_symbol
+from tmm_cli.plans.bodies import Loaded
+from tmm_cli.plans.record import PAD
 from tmm_cli.plans.velocity import massive
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
@@ -32,7 +31,6 @@ from tmm_cli.vectors import Vector, dot
 ABOUT = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 ONE_LINE = 0.1  # mm between lines that look like one
 DECIMALS = 2  # of the place of the driver, in the unit of the file
-LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
 
 
 @dataclass(frozen=True)
@@ -174,72 +172,22 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions
     scene = Scene(linkage, results.structure, motion.poses, k)
-    loads = [
-        (load, complex(motion.point(load.link, load.at).x[k])) for load in (reactions.applied if reactions else ())
-    ]
+    given = () if reactions is None else Loaded.at(motion, reactions, k).given()
     places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     figure, notes = Figure(), [_("loads without scale")] if reactions is not None else []
-    figure.spots(to_scale(scene, [*places, *(at for __, at in loads)]), ABOUT)
-    forces = [(at, complex(load.force[k])) for load, at in loads]
-    balances = reactions.balances if reactions is not None else ()
-    for at, force in [*forces, *((complex(b.at[k]), complex(b.vector[k])) for b in balances)]:
-        if abs(force) > 0:
-            figure.spots([at], ABOUT / 2, LOAD_MM * force / abs(force))
+    figure.spots(to_scale(scene, [*places, *(one.at for one in given)]), ABOUT)
+    for one in given:
+        if not one.couple:
+            figure.spots([one.at], ABOUT / 2, LOAD_MM * one.force / abs(one.force))
     found = room(figure, Block([*notes, scale_words("l", 0.0025, "m/mm")]))
     sheet = here.sheet("{caption}", room=found)
     measured(sheet, scene)
-    taken: list[tuple[complex, complex]] = []
-    coupled: list[complex] = []
-    for load, place in loads:
-        at, force, moment = sheet.on(place), complex(load.force[k]), float(load.moment[k])
-        colour = COLOURS["inertia" if load.kind == "inertia" else "load"]
-        if abs(force) > 0:
-            if load.kind == "load":
-                belongs(sheet, scene, load.link, at)
-            unscaled(sheet, taken, at, force, load_symbols(load)[0], colour)
-        if moment != 0:
-            radius = 5.5 + 2.6 * sum(abs(at - other) < 1 for other in coupled)
-            coupled.append(at)
-            couple(sheet, at, np.sign(moment), colour, load_symbols(load)[1], radius)
-    if reactions is not None:
-        _balance(sheet, reactions, k)
+    for one in given:
+        if one.kind == "load" and not one.couple:
+            belongs(sheet, scene, one.link, sheet.on(one.at))
+    Forces(sheet, whole=True).draw(given)
     for note in notes:
         sheet.note(note)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     yield here.stem("position"), sheet.finish()
-
-
-def _balance(sheet: Sheet, reactions: Reactions, k: int) -> None:
-    for balance in reactions.balances:
-        turns = balance.kind == "moment" and balance.moment is not None
-        name = balance_symbol(balance.driver.link, len(reactions.balances) > 1, turns=turns)
-        if turns:
-            pivots = [f.at for f in reactions.frames if f.on == balance.driver.link]
-            pivot = sheet.on(complex((pivots[0] if pivots else balance.at)[k]))
-            couple(sheet, pivot, np.sign(float(balance.generalized[k])), REACTION, name, 7.5)
-        elif abs(balance.vector[k]) > 0:
-            unscaled(sheet, [], sheet.on(complex(balance.at[k])), complex(balance.vector[k]), name, REACTION)
-
-
-def unscaled(
-    sheet: Sheet, taken: list[tuple[complex, complex]], at: complex, force: complex, name: Words, colour: str
-) -> None:
-    """A force without scale; longer where it would hide others, taken, from the same place and in its direction."""
-    along = force / abs(force)
-    alike = sum(abs(at - place) < 1 and abs(along - other) < 0.05 for place, other in taken)
-    taken.append((at, along))
-    end = at + (LOAD_MM + 9.0 * alike) * along
-    sheet.arrow(at, end, colour, 1.3)
-    sheet.label(name, end, 9, colour)
-
-
-def couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
-    """A couple as an open circle with an arrow head in its sense."""
-    if sense == 0:
-        return
-    angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
-    arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
-    sheet.line(arc[:-4], colour, 1.2, z=5)
-    sheet.arrow(arc[-9], arc[-1], colour, 1.2)
-    sheet.label(name, arc[20], 9, colour)

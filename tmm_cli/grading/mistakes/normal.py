@@ -6,10 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-from tmm_cli.grading.mistakes.accelerations import OtherTerms, Wrapped
+from tmm_cli.grading.mistakes.accelerations import OtherTerms
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
+from tmm_cli.groups.wrapped import Wrapped
 from tmm_cli.kinematics.motion import Motion, Point
 from tmm_cli.language import N_
 from tmm_cli.pairs.base import Constraint
@@ -35,7 +36,7 @@ class Normal(Mistake):
     def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
         return tuple(
             OtherTerms.of(kernel, family.linkage, self._terms) if self.link in kernel.group.links
-            else Unturned(kernel.group, kernel.size, kernel, self.link) for kernel in kernels
+            else Unturned.around(kernel, self.link) for kernel in kernels
         )  # fmt: skip
 
     def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
@@ -64,7 +65,7 @@ class Unturned(Wrapped):
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
         known = without(rates, self.link) if self.link in self.group.known and self.link in rates else rates
-        return self.right.accelerations(at, poses, known, accels, drives)
+        return self.inner.accelerations(at, poses, known, accels, drives)
 
 
 @dataclass(frozen=True, kw_only=True)

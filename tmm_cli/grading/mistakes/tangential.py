@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Self
 
-from tmm_cli.grading.mistakes.accelerations import Wrapped
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
+from tmm_cli.groups.wrapped import Wrapped
 from tmm_cli.language import N_
 from tmm_cli.variants.family import Family
 
@@ -37,7 +37,7 @@ class Tangential(Mistake):
         pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
         linkage, other = family.linkage, pair.other(self.link)
         there, here = linkage.local(other, pair.point), linkage.local(self.link, pair.point)
-        return NotTurningFaster(kernel.group, kernel.size, kernel, self.link, other, there, here)
+        return NotTurningFaster.around(kernel, self.link, other, there, here)
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class NotTurningFaster(Wrapped):
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
     ) -> tuple[Accel, ...]:
-        found = dict(zip(self.group.links, self.right.accelerations(at, poses, rates, accels, drives), strict=True))
+        found = dict(zip(self.group.links, self.inner.accelerations(at, poses, rates, accels, drives), strict=True))
         hinge = accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
         w, arm = rates[self.link].w, self.here * poses[self.link].z
         found[self.link] = Accel.through(hinge, w * 0, w, arm)

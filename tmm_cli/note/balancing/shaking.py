@@ -34,8 +34,7 @@ def explained(found: Balancing) -> Iterable[Block]:
 def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
     """Parts of the force, its size, and the moment."""
     results = subject.results
-    assert results.motion is not None
-    motion = steadily(results.mechanism, results.motion.q[k : k + 1])
+    motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
     about, moments = found.before.about, list[Expression]()
     terms: tuple[list[Expression], list[Expression]] = ([], [])
     largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)

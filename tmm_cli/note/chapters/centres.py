@@ -70,8 +70,7 @@ def _speeds(subject: Subject) -> Iterable[Block]:
 
 
 def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Substitution]:
-    motion = subject.results.motion
-    assert motion is not None
+    motion = subject.motion
     driver = motion.linkage.driver.link
     own = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
     rate, pivot = Leaf(Symbol("ω", driver), own), found[FRAME, driver]

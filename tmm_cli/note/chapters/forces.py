@@ -15,8 +15,7 @@ from tmm_cli.plans.record import Symbol
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """Of what has forces."""
-    results = subject.results
-    if not subject.acts or results.reactions is None:
+    if not subject.acts:
         return
     yield Heading(_("Force analysis"))
     yield said(
@@ -33,24 +32,24 @@ def blocks(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Forces in all positions"), 2)
     yield from tables.reactions(subject)
     yield from tables.balancing(subject)
-    yield from loads.losses(results)
+    yield from loads.losses(subject)
 
 
 def _position(subject: Subject, k: int) -> Iterable[Block]:
     """One of those in detail, each of its sections named after it where there are several."""
-    results, several, first = subject.results, len(subject.detail) > 1, k == subject.detail[0]
+    several, first = len(subject.detail) > 1, k == subject.detail[0]
 
     def heading(text: str) -> str:
         if not several:
             return text
-        return _("{section}, position {number}").format(section=text, number=results.numbers[k])
+        return _("{section}, position {number}").format(section=text, number=subject.results.numbers[k])
 
     yield Heading(heading(_("Loads of the links")), 2)
     if first:
-        yield from loads.weights(results)
-    yield from loads.inertia(results, k, explained=first)
-    yield from loads.springs(results, k)
-    yield from loads.friction(results, k, explained=first)
+        yield from loads.weights(subject)
+    yield from loads.inertia(subject, k, explained=first)
+    yield from loads.springs(subject, k)
+    yield from loads.friction(subject, k, explained=first)
     yield from loads.table(subject, k, _("Loads, {position}").format(position=at_position(subject, k)))
     for number, part in enumerate(parts_of(subject, k)):
         if part.forces is not None:
@@ -58,5 +57,5 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
         else:
             text = _("Driving link {links}")
         yield from sections.written(part, heading(text.format(links=", ".join(part.links))), first=first and not number)
-    yield from loads.without_friction(results, k)
+    yield from loads.without_friction(subject, k)
     yield from lever.written(subject, k, heading(_("Zhukovsky lever")), explained=first)

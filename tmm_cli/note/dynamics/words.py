@@ -35,9 +35,7 @@ class Here:
 
     @property
     def motion(self) -> Motion:
-        motion = self.subject.results.motion
-        assert motion is not None
-        return motion
+        return self.subject.motion
 
     @property
     def number(self) -> str:

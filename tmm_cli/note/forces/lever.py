@@ -21,10 +21,7 @@ from tmm_cli.tolerances import NO_DIFFERENCE
 
 def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
     """All of a section. explained: what the lever is."""
-    results = subject.results
-    motion, reactions, lever = results.motion, results.reactions, results.lever
-    assert motion is not None and reactions is not None and lever is not None
-    plan = lever_plan(motion, reactions, lever, k)
+    plan = lever_plan(subject.motion, subject.reactions, subject.lever, k)
     if not plan.equation.terms:
         return
     yield Heading(heading, 2)
@@ -102,8 +99,7 @@ def turns_of(subject: Subject) -> bool:
 
 def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
     """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
-    motion, driver = subject.results.motion, subject.results.linkage.driver
-    assert motion is not None
+    motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
     if load.link == driver.link and turns_of(subject):
         return ()
@@ -115,9 +111,7 @@ def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
 
 def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
     """What several drivers do together, each in the ratio of its speed to that of the first."""
-    results = subject.results
-    motion, reactions, lever = results.motion, results.reactions, results.lever
-    assert motion is not None and reactions is not None and lever is not None
+    motion, reactions, lever = subject.motion, subject.reactions, subject.lever
     first, terms = reactions.balance, list[tuple[int, Expression]]()
     for balance in reactions.balances:
         driver = balance.driver.link
@@ -136,15 +130,13 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
 
 def _compared(subject: Subject, k: int) -> Iterable[Block]:
     """With what the force plan gave, in percent of the largest of all positions."""
-    results = subject.results
-    assert results.reactions is not None and results.lever is not None and results.motion is not None
-    balance, lever = results.reactions.balance, results.lever
+    balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
     arm = 1.0 if moment or balance.moment is None else balance.arm  # of a force on a crank's end
     sense = -1 if lever.balancing[k] < 0 else 1  # the equation has the size, as it is drawn
     plan, own = sense * float(balance.generalized[k]) / arm, sense * float(lever.balancing[k]) / arm
-    largest = float(np.nanmax(np.abs(np.where(results.motion.moving, balance.generalized, 0.0)))) / arm
+    largest = float(np.nanmax(np.abs(np.where(subject.motion.moving, balance.generalized, 0.0)))) / arm
     if not largest:
         return
     yield said(

@@ -7,28 +7,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
-from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, line, said
+from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, line, listed, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
-from tmm_cli.note.forces.words import direction, listed, sense, shown
-from tmm_cli.note.kinematics.words import equal
+from tmm_cli.note.forces.words import direction, shown
+from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import dot
 
 
-def weights(results: Results) -> Iterable[Block]:
+def weights(subject: Subject) -> Iterable[Block]:
     """They are the same in every position."""
-    linkage = results.linkage
+    linkage = subject.results.linkage
     gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
-    own = [load for load in results.loads if load.kind == "weight"]
+    own = [load for load in subject.results.loads if load.kind == "weight"]
     if not own or not gravity.value:
         return
     yield said(
@@ -42,9 +41,9 @@ def weights(results: Results) -> Iterable[Block]:
         yield Found(Substitution(load_symbols(load)[0], Product((mass, gravity)), size, _("N")))
 
 
-def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
+def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """Of a position: the products, then in words those that are nothing."""
-    found = [one for load in results.loads if load.kind == "inertia" for one in _of_inertia(results, load, k)]
+    found = [one for load in subject.results.loads if load.kind == "inertia" for one in _of_inertia(subject, load, k)]
     if not found:
         return
     explanation = (
@@ -67,9 +66,8 @@ def inertia(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
         yield said(text, names=listed(nothing))
 
 
-def _of_inertia(results: Results, load: Applied, k: int) -> Iterable[Substitution]:
-    motion, link = results.motion, results.linkage.links[load.link]
-    assert motion is not None
+def _of_inertia(subject: Subject, load: Applied, k: int) -> Iterable[Substitution]:
+    motion, link = subject.motion, subject.results.linkage.links[load.link]
     force, couple = load_symbols(load)
     if np.any(link.mass != 0):
         mass = Leaf(Symbol("m", load.link), float(link.mass))
@@ -81,17 +79,16 @@ def _of_inertia(results: Results, load: Applied, k: int) -> Iterable[Substitutio
         yield Substitution(couple, Product((moment, epsilon)), abs(float(load.moment[k])), _("N·m"))
 
 
-def springs(results: Results, k: int) -> Iterable[Block]:
+def springs(subject: Subject, k: int) -> Iterable[Block]:
     """What each does: from its length, or its angle, and how fast that changes."""
-    for spring in results.linkage.springs:
-        load = next((one for one in results.loads if one.name == spring.name), None)
+    for spring in subject.results.linkage.springs:
+        load = next((one for one in subject.results.loads if one.name == spring.name), None)
         if load is not None:
-            yield from _spring(results, spring, load, k)
+            yield from _spring(subject, spring, load, k)
 
 
-def _spring(results: Results, spring: Spring, load: Applied, k: int) -> Iterable[Block]:
-    motion = results.motion
-    assert motion is not None
+def _spring(subject: Subject, spring: Spring, load: Applied, k: int) -> Iterable[Block]:
+    motion = subject.motion
     if spring.turns:
         now, free = Leaf(Symbol("θ"), float(twisted(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
         letter = "M"
@@ -116,10 +113,10 @@ def _spring(results: Results, spring: Spring, load: Applied, k: int) -> Iterable
     yield Found(Substitution(load_symbols(load)[0], Function("abs", Sum(tuple(terms))), size, unit))
 
 
-def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
+def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """What rubs in each pair, of the reactions that are found with it."""
-    given, reactions = results.linkage.friction, results.reactions
-    if not given or reactions is None:
+    given = subject.results.linkage.friction
+    if not given:
         return
     explanation = (
         _("Friction {T} acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a "
@@ -132,14 +129,13 @@ def friction(results: Results, k: int, *, explained: bool) -> Iterable[Block]:
     )  # fmt: skip
     yield said(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
     for one in given:
-        yield from _rubbing(results, one, k)
+        yield from _rubbing(subject, one, k)
 
 
-def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
-    assert results.reactions is not None
-    reaction = results.reactions.of(given.pair)
+def _rubbing(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
+    reaction = subject.reactions.of(given.pair)
     own = [f"T{given.pair}{link}" for link in (reaction.on, reaction.by)]  # on the frame it is left out
-    loads = [x for x in results.loads if x.kind == "friction" and x.name in own]
+    loads = [x for x in subject.results.loads if x.kind == "friction" and x.name in own]
     if not loads:
         return
     load = loads[0]
@@ -154,12 +150,12 @@ def _rubbing(results: Results, given: Friction, k: int) -> Iterable[Block]:
             yield equal(*(load_symbols(one)[0] for one in reversed(loads)))
 
 
-def without_friction(results: Results, k: int) -> Iterable[Block]:
+def without_friction(subject: Subject, k: int) -> Iterable[Block]:
     """What would balance the drivers if nothing rubbed."""
-    motion = results.motion
-    if not results.linkage.friction or motion is None:
+    if not subject.results.linkage.friction:
         return
-    free = react(motion, results.structure, tuple(load for load in results.loads if load.kind != "friction"))
+    loads = tuple(load for load in subject.results.loads if load.kind != "friction")
+    free = react(subject.motion, subject.results.structure, loads)
     yield said(_("Without friction it would be:"))
     for balance in free.balances:
         turns = balance.moment is not None
@@ -192,9 +188,9 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
         yield Rows(caption, head, tuple(rows), f"loads-{k}")
 
 
-def losses(results: Results) -> Iterable[Block]:
+def losses(subject: Subject) -> Iterable[Block]:
     """What friction takes of the drivers' work over the cycle."""
-    lost = results.losses
+    lost = subject.results.losses
     if lost is None or lost.locked:
         return
     work = Leaf(Symbol("A", "d"), lost.drivers)

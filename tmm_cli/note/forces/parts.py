@@ -110,8 +110,7 @@ class Part:
 
 def parts_of(subject: Subject, k: int) -> Iterable[Part]:
     """Last group first, the driving links at the end."""
-    motion, reactions = subject.results.motion, subject.results.reactions
-    assert motion is not None and reactions is not None
+    motion, reactions = subject.motion, subject.reactions
     here = Loaded.at(motion, reactions, k)
     loaded, plans = loaded_parts(motion, reactions, k), force_plans(reactions, k, motion)
     owners: list[tuple[tuple[Reaction, ...], GroupForces | None]] = [(g.outer, g) for g in reversed(reactions.groups)]

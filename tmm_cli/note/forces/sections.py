@@ -7,11 +7,12 @@ from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, filled, listed_below, said
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, filled, listed, listed_below, said
 from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part
-from tmm_cli.note.forces.words import direction, links_of, listed, sense
+from tmm_cli.note.forces.words import direction, links_of
+from tmm_cli.note.kinematics.words import sense
 from tmm_cli.plans.bodies import DRIVE, Acting
 from tmm_cli.plans.leads import Lead, leads_of
 from tmm_cli.plans.moments import MomentEquation

@@ -23,8 +23,7 @@ PAIRS = 4  # reactions in one table
 
 def reactions(subject: Subject) -> Iterable[Block]:
     """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
-    found = subject.results.reactions
-    assert found is not None
+    found = subject.reactions
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
     tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
     yield several(
@@ -68,9 +67,7 @@ def _sized(
 
 def balancing(subject: Subject) -> Iterable[Block]:
     """Of every driver by the force plan, and what the lever gives for all of them, per unit of the first."""
-    results = subject.results
-    assert results.reactions is not None and results.lever is not None
-    balances, lever = results.reactions.balances, results.lever
+    results, balances, lever = subject.results, subject.reactions.balances, subject.lever
     several = len(balances) > 1
     symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
     units = [_("N·m") if b.moment is not None else _("N") for b in balances]
@@ -114,11 +111,9 @@ def _table(
     subject: Subject, caption: str, head: Sequence[Line], columns: Sequence[Real], key: str, *, angles: bool = False
 ) -> Rows:
     """A row a position. angles: every second column is one."""
-    results = subject.results
-    assert results.motion is not None
-    moving = results.motion.moving
+    moving = subject.motion.moving
     rows = []
-    for k, number in enumerate(results.numbers):
+    for k, number in enumerate(subject.results.numbers):
         cells = [line(str(number))]
         for place, column in enumerate(columns):
             value = _without_rounding(column, k) if moving[k] else np.nan

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Inline, Line
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.expression import FIGURES, fixed
 
@@ -28,19 +27,6 @@ def direction(subject: Subject, force: complex) -> str:
     return f"{angle(subject, float(np.angle(force)))}°"
 
 
-def sense(moment: float) -> str:
-    """Which way a couple turns."""
-    return _("counterclockwise") if moment > 0 else _("clockwise")
-
-
-def listed(parts: Iterable[Inline]) -> Line:
-    """One after another with commas."""
-    found: list[Inline] = []
-    for part in parts:
-        found += [", ", part] if found else [part]
-    return tuple(found)
-
-
 def links_of(names: Sequence[str]) -> str:
     """Link 4; links 4, 5."""
     return (_("links {links}") if len(names) > 1 else _("link {links}")).format(links=", ".join(names))
@@ -48,7 +34,5 @@ def links_of(names: Sequence[str]) -> str:
 
 def at_position(subject: Subject, k: int) -> str:
     """Which position, and where the driver stands."""
-    results = subject.results
-    assert results.motion is not None
-    place = with_degrees(place_of_driver(results, float(results.motion.q[k]), 4))
-    return _("position {number}, {place}").format(number=results.numbers[k], place=place)
+    place = with_degrees(place_of_driver(subject.results, float(subject.motion.q[k]), 4))
+    return _("position {number}, {place}").format(number=subject.results.numbers[k], place=place)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -14,25 +14,8 @@ from docx.oxml import parse_xml
 from docx.shared import Mm, Pt
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import (
-    Block,
-    Contents,
-    Equation,
-    Figure,
-    Found,
-    Heading,
-    Inline,
-    Items,
-    Line,
-    Link,
-    NewPage,
-    Note,
-    Paragraph,
-    Ref,
-    Rows,
-    Sources,
-    Title,
-)  # fmt: skip
+from tmm_cli.note import blocks
+from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula, width
 from tmm_cli.note.context import figures
 from tmm_cli.note.formats.docx_parts import TEXT, Parts, field, plain, prepared, title_page, unbroken
@@ -50,7 +33,7 @@ def docx(note: Note) -> bytes:
     """A file of Word."""
     writer = _Writer(note)
     for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
-        writer.write(block, leads=isinstance(following, Equation | Found | Items | Rows))
+        writer.write(block, leads=isinstance(following, blocks.Equation | blocks.Found | blocks.Items | blocks.Rows))
     file = io.BytesIO()
     writer.document.save(file)
     return file.getvalue()
@@ -69,32 +52,32 @@ class _Writer:
     def write(self, block: Block, *, leads: bool = False) -> None:
         """leads: what follows is on the same page as a paragraph's end."""
         match block:
-            case Heading(text, level):
+            case blocks.Heading(text, level):
                 heading = self.document.add_heading(plain(text), level)
                 self.parts.marked(heading, f"_Toc{self._next('heading')}", 1)
-            case Paragraph(line):
+            case blocks.Paragraph(line):
                 paragraph = self._paragraph()
                 paragraph.paragraph_format.keep_with_next = leads or None
                 self._line(paragraph, line)
-            case Items(lines):
+            case blocks.Items(lines):
                 for line in lines:
                     self._line(self._paragraph("ListBullet"), line)
-            case Equation(node, key):
-                self._formula(display(node), key)
-            case Found(substitution, key):
-                self._formula(display(formula(substitution, self.figures)), key)
-            case Rows():
+            case blocks.Equation(node):
+                self._formula(display(node))
+            case blocks.Found(substitution):
+                self._formula(display(formula(substitution, self.figures)))
+            case blocks.Rows():
                 self._rows(block)
-            case Figure():
+            case blocks.Figure():
                 self._figure(block)
-            case Contents():
+            case blocks.Contents():
                 self._contents()
-            case NewPage():
+            case blocks.NewPage():
                 self.document.add_page_break()
-            case Title():
+            case blocks.Title():
                 title_page(self.document, block)
                 self.document.add_page_break()
-            case Sources(sources):
+            case blocks.Sources(sources):
                 for source in sources:
                     paragraph = self._paragraph("ListNumber")
                     self._line(paragraph, (source.text,))
@@ -116,9 +99,9 @@ class _Writer:
                 run.bold = bold or None
                 if size:
                     run.font.size = Pt(size)
-            case Ref(key):
+            case blocks.Ref(key):
                 field(paragraph, f"REF {self._mark(key)} \\h", self.numbers[key])
-            case Link(key):
+            case blocks.Link(key):
                 paragraph.add_run(f"[{self.numbers[key]}]")
             case Symbol():
                 paragraph._p.append(parse_xml(omath(Letter(part), size)))
@@ -129,21 +112,11 @@ class _Writer:
         """The bookmark of a number that is referred to."""
         return f"_Ref{list(self.numbers).index(key) + 1}"
 
-    def _formula(self, lines: Iterable[str], key: str) -> None:
-        every = list(lines)
-        for k, line in enumerate(every):
+    def _formula(self, lines: Sequence[str]) -> None:
+        for k, line in enumerate(lines):
             paragraph = self._paragraph("Formula")
-            paragraph.paragraph_format.keep_with_next = k < len(every) - 1
-            last = k == len(every) - 1
-            if key and last:  # a formula beside its number stands in the line
-                paragraph._p.append(parse_xml(line).find("{*}oMath"))
-                paragraph.add_run("\t(")
-                first = len(paragraph._p)
-                paragraph.add_run(self.numbers[key])
-                self.parts.marked(paragraph, self._mark(key), first)
-                paragraph.add_run(")")
-            else:
-                paragraph._p.append(parse_xml(line))
+            paragraph.paragraph_format.keep_with_next = k < len(lines) - 1
+            paragraph._p.append(parse_xml(line))
 
     def _caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
         """Its number is a field that Word counts; sentence: with {number} and {text}."""
@@ -161,7 +134,7 @@ class _Writer:
         self.counted[kind] = self.counted.get(kind, 0) + 1
         return self.counted[kind]
 
-    def _rows(self, block: Rows) -> None:
+    def _rows(self, block: blocks.Rows) -> None:
         caption = self._caption(_("Table {number}. {text}"), block.caption, block.key, "Table")
         caption.paragraph_format.keep_with_next = True
         caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
@@ -186,7 +159,7 @@ class _Writer:
                 self._line(paragraph, line, size=size, bold=number == 0)
         self._paragraph("TableText")
 
-    def _figure(self, block: Figure) -> None:
+    def _figure(self, block: blocks.Figure) -> None:
         paragraph = self._paragraph("Picture")
         width, height = block.drawing.paper
         share = min(1.0, TEXT / width, HIGH / height)
@@ -209,11 +182,11 @@ def _letters(line: Line) -> float:
     capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
     return 0.3 * capitals + sum(
         width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
-        for part in line if not isinstance(part, Ref | Link)
+        for part in line if not isinstance(part, blocks.Ref | blocks.Link)
     )  # fmt: skip
 
 
-def _widths(block: Rows, letter: float) -> list[float]:
+def _widths(block: blocks.Rows, letter: float) -> list[float]:
     """Of columns, mm: as wide as their cells, or less where the page is not so wide, but no word is broken."""
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_letters, column))) for column in columns]

@@ -71,7 +71,7 @@ def _styles(document: Any, language: str) -> None:
         own.base_style = styles[base]
     formula = styles["Formula"].paragraph_format
     formula.left_indent = Mm(10)
-    formula.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT)
+    formula.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT)  # for numbers that a student gives them
     picture = styles["Picture"].paragraph_format
     picture.alignment, picture.keep_with_next = WD_ALIGN_PARAGRAPH.CENTER, True
     table = styles["Table Text"]

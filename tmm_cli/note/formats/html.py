@@ -12,28 +12,11 @@ from importlib.resources import files
 
 from tmm_cli.draw.formats.svg import NOT_XML, svg
 from tmm_cli.language import _
-from tmm_cli.note.blocks import (
-    Block,
-    Contents,
-    Equation,
-    Figure,
-    Found,
-    Heading,
-    Inline,
-    Items,
-    Line,
-    Link,
-    NewPage,
-    Note,
-    Paragraph,
-    Ref,
-    Rows,
-    Sources,
-    Title,
-)  # fmt: skip
+from tmm_cli.note import blocks
+from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula
 from tmm_cli.note.context import figures
-from tmm_cli.note.math import Letter, Node
+from tmm_cli.note.math import Letter
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
@@ -77,30 +60,30 @@ class Writer:
     def block(self, block: Block) -> str:
         """One of them."""
         match block:
-            case Heading():
+            case blocks.Heading():
                 number, __ = next(self.headings)
                 return f'<h{block.level} id="h{number}">{number} {data(block.text)}</h{block.level}>'
-            case Paragraph(line):
+            case blocks.Paragraph(line):
                 leads = ' class="leads"' if str(line[-1]).endswith(":") else ""
                 return f"<p{leads}>{self.line(line)}</p>"
-            case Items(lines):
+            case blocks.Items(lines):
                 return f"<ul>{''.join(f'<li>{self.line(line)}</li>' for line in lines)}</ul>"
-            case Equation(node, key):
-                return self.equation(node, key, "equation")
-            case Found(substitution, key):
+            case blocks.Equation(node):
+                return f'<div class="equation">{mathml(node, display=True)}</div>'
+            case blocks.Found(substitution):
                 shown = formula(substitution, partial(figures, language=self.note.language))
-                return self.equation(shown, key, "equation found")
-            case Rows():
+                return f'<div class="equation found">{mathml(shown, display=True)}</div>'
+            case blocks.Rows():
                 return self.table(block)
-            case Figure():
+            case blocks.Figure():
                 return self.figure(block)
-            case Contents():
+            case blocks.Contents():
                 return self.contents()
-            case NewPage():
+            case blocks.NewPage():
                 return '<div class="page"></div>'
-            case Title():
+            case blocks.Title():
                 return title(block)
-            case Sources(sources):
+            case blocks.Sources(sources):
                 listed = "".join(f"<li{self.place(s.key)}>{data(s.text)}</li>" for s in sources)
                 return f'<ol class="sources">{listed}</ol>'
 
@@ -118,20 +101,15 @@ class Writer:
         match part:
             case str():
                 return data(part)
-            case Ref(key):
+            case blocks.Ref(key):
                 return f'<a href="#{self.places[key]}">{self.numbers[key]}</a>'
-            case Link(key):
+            case blocks.Link(key):
                 return f'[<a href="#{self.places[key]}">{self.numbers[key]}</a>]'
             case Symbol():
                 return mathml(Letter(part))
         return mathml(part)
 
-    def equation(self, node: Node, key: str, kind: str) -> str:
-        """A formula on its line, its number at the right."""
-        number = f"<span>({self.numbers[key]})</span>" if key else ""
-        return f'<div class="{kind}"{self.place(key)}>{mathml(node, display=True)}{number}</div>'
-
-    def table(self, rows: Rows) -> str:
+    def table(self, rows: blocks.Rows) -> str:
         """With its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
@@ -155,7 +133,7 @@ class Writer:
             return self.line(cell)
         return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', data("".join(map(str, cell))))
 
-    def figure(self, figure: Figure) -> str:
+    def figure(self, figure: blocks.Figure) -> str:
         """With its caption below."""
         self.figures += 1
         caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
@@ -181,7 +159,7 @@ def kind_of(cell: Line, number: bool) -> str:
     return ' class="number"' if number else ' class="short"' if short else ""
 
 
-def title(block: Title) -> str:
+def title(block: blocks.Title) -> str:
     """The title page."""
     people = "".join(f"<tr><td>{data(role)}</td><td>{data(name)}</td></tr>" for role, name in block.people)
     return (

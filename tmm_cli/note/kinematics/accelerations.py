@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, Found, listed, said
 from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, Substitution
-from tmm_cli.note.kinematics.equations import equations, vector
+from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
 from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import accelerations as by_ratio
 from tmm_cli.note.kinematics.words import (
+    begun,
     direct,
     equal,
     further,
-    listed,
     name_of,
     not_on_paper,
     once_a_link,
@@ -149,18 +149,13 @@ def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """What is known from velocities and from higher pairs, and the equations."""
     assert step.group is not None
     title, points, together = step.group.title, sought(step, known), solved(step)
-    if step.ratios:
-        yield said(_("Group {group} is found from its higher pairs."), group=title)
-    elif not here.first:
-        yield said(_("Group {group} gives:"), group=title)
-    for ratio in step.ratios:
-        yield from by_ratio(here, step, ratio)
+    yield from begun(here, step, by_ratio)
     if here.first and together:
         one = _("Group {group}: the acceleration of point {points} is found from")
         several = _("Group {group}: the accelerations of points {points} are found from")
         none = _("Group {group}: what is not known yet is found from")
         text = none if not points else one if len(points) == 1 else several
-        yield said(text, group=title, points=listed(points))
+        yield said(text, group=title, points=listed(map(name_of, points)))
         yield from equations(step, together, "a", {*known, *(about.point.name for about in direct(step))}, here.omega)
         if any(_has_known_part(here, equation) for equation in together):
             yield said(_("The velocities give:"))
@@ -195,11 +190,7 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     yield from turning_as_one(step, here.epsilon, "ε", explained=here.first and not step.ratios)
     found = {*known, *points_of(step)}
     for about in further(step):
-        if here.first:
-            text = _("Point {point} belongs to link {link}, whose rotation is known:")
-            yield said(text, point=name_of(about.point), link=about.link)
-        if here.first and not about.base.fixed:
-            yield from equations(Step((), ()), [about], "a", found - {about.point.name}, here.omega)
+        yield from of_known_link(here, about, "a", found - {about.point.name})
         yield from _parts(here, about)
         yield from _whole(here, about)
 

@@ -7,8 +7,10 @@ from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Slide
-from tmm_cli.note.blocks import Block, Equation
+from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.breaking import LINE, width
+from tmm_cli.note.kinematics.on_paper import Here
+from tmm_cli.note.kinematics.words import name_of
 from tmm_cli.note.math import Letter, Node, Number, Words, row
 from tmm_cli.plans.record import Symbol
 from tmm_cli.plans.vector_equations import About, Along, OnGuide, Spot, Step, VectorEquation
@@ -42,6 +44,15 @@ def equations(
                 told[row(vector(Symbol(letter, spot.name)), "=", Number("0"))] = None
         told |= dict.fromkeys(direction for __, direction in terms)
     yield from _in_lines(list(told))
+
+
+def of_known_link(here: Here, about: About, letter: str, known: Collection[str]) -> Iterable[Block]:
+    """Where the method is explained: that a point belongs to a link whose rotation is known, and its equation."""
+    if here.first:
+        text = _("Point {point} belongs to link {link}, whose rotation is known:")
+        yield said(text, point=name_of(about.point), link=about.link)
+        if not about.base.fixed:
+            yield from equations(Step((), ()), [about], letter, known, here.omega)
 
 
 def _in_lines(told: Sequence[Node]) -> Iterable[Block]:

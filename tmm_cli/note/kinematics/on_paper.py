@@ -135,8 +135,7 @@ class Here:
     @property
     def motion(self) -> Motion:
         """The motion of the problem."""
-        assert self.subject.results.motion is not None
-        return self.subject.results.motion
+        return self.subject.motion
 
     @cached_property
     def v(self) -> OnPaper:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, said
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, listed, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import FIGURES, fixed
 from tmm_cli.note.kinematics.driver import output
@@ -31,9 +31,7 @@ class Column:
 
 def tables(subject: Subject) -> Iterable[Block]:
     """What is found in all positions in the same way."""
-    results = subject.results
-    motion = results.motion
-    assert motion is not None
+    results, motion = subject.results, subject.motion
     for link in results.mechanism.outputs:
         letters = ("φ", "ω", "ε") if results.linkage.output_swings(link) else ("s", "v", "a")
         units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
@@ -74,8 +72,7 @@ def _turning(subject: Subject) -> Iterable[Block]:
 
 def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
     """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
-    motion = subject.results.motion
-    assert motion is not None
+    motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
     largest = max((float(np.nanmax(np.abs(values), initial=0.0)) for values in every.values()), default=0.0)
     together: list[tuple[list[str], Real]] = []
@@ -96,17 +93,12 @@ def _differs(values: Real) -> float:
 
 
 def _head(letter: str, links: Sequence[str]) -> Line:
-    symbols: list[Symbol | str] = []
-    for link in links:
-        symbols += [" = ", Symbol(letter, link)] if symbols else [Symbol(letter, link)]
-    return line(*symbols, f", {unit(letter)}")
+    return line(*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}")
 
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
     results = subject.results
-    motion = results.motion
-    assert motion is not None
     columns = [*_places(subject), *columns]
     told = states(results)
     rows = []
@@ -120,11 +112,9 @@ def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) 
 def _places(subject: Subject) -> Iterable[Column]:
     """Of the drivers; of a crank within a turn, or within the turns of a cycle of loads."""
     results = subject.results
-    motion = results.motion
-    assert motion is not None
     several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
     for driver in results.linkage.drivers:
-        value = np.asarray(motion.drives[driver.link].value, float)
+        value = np.asarray(subject.motion.drives[driver.link].value, float)
         link = driver.link if several else ""
         if driver.kind == "slide":
             yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)

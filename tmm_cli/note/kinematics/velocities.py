@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, Found, listed, said
 from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
-from tmm_cli.note.kinematics.equations import equations, vector
+from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
 from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import velocities as by_ratio
 from tmm_cli.note.kinematics.words import (
+    begun,
     direct,
     further,
-    listed,
     name_of,
     not_on_paper,
     not_turning,
@@ -57,7 +57,9 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
             "its rotation:"
         )
         line = turned[0].base.at + turned[0].point.at
-        yield said(one if len(turned) == 1 else several, points=listed(about.point for about in turned), line=line)
+        yield said(
+            one if len(turned) == 1 else several, points=listed(name_of(about.point) for about in turned), line=line
+        )
     elif here.first and step.equations:
         text = _("Link {link} does not turn: all its points move with the given velocity {v}.")
         yield said(text, link=step.links[0], v=here.v.of(step.equations[0].point).symbol)
@@ -103,12 +105,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     assert step.group is not None
     points, together, found = sought(step, known), solved(step), {*known}
     title = step.group.title
-    if step.ratios:
-        yield said(_("Group {group} is found from its higher pairs."), group=title)
-    elif not here.first:
-        yield said(_("Group {group} gives:"), group=title)
-    for ratio in step.ratios:
-        yield from by_ratio(here, step, ratio)
+    yield from begun(here, step, by_ratio)
     for about in direct(step):
         yield from _known_about(here, about, found)
         found.add(about.point.name)
@@ -117,7 +114,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         several = _("Group {group}: the velocities of points {points} are found from")
         none = _("Group {group}: what is not known yet is found from")
         text = none if not points else one if len(points) == 1 else several
-        yield said(text, group=title, points=listed(points))
+        yield said(text, group=title, points=listed(map(name_of, points)))
         yield from equations(step, together, "v", found, here.omega)
         yield from not_turning(together)
         yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
@@ -134,18 +131,10 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
 
 def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[Block]:
     """A point of a link whose rotation is known."""
+    yield from of_known_link(here, about, "v", found)
+    yield _turned(here, about)
     if not about.base.fixed:
-        if here.first:
-            text = _("Point {point} belongs to link {link}, whose rotation is known:")
-            yield said(text, point=name_of(about.point), link=about.link)
-            yield from equations(Step((), ()), [about], "v", found, here.omega)
-        yield _turned(here, about)
         yield here.v.read(here.v.of(about.point))
-    else:
-        if here.first:
-            text = _("Point {point} belongs to link {link}, whose rotation is known:")
-            yield said(text, point=name_of(about.point), link=about.link)
-        yield _turned(here, about)
 
 
 def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:

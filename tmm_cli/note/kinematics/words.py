@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Line, said
+from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.kinematics.on_paper import Here, OnPaper
 from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import About, OnGuide, Spot, Step, VectorEquation
+from tmm_cli.plans.vector_equations import About, OnGuide, Ratio, Spot, Step, VectorEquation
 from tmm_cli.plans.velocity import massive
 
 
 def sense(value: float) -> str:
     """Of what turns."""
     return _("counterclockwise") if value > 0 else _("clockwise")
-
-
-def listed(spots: Iterable[Spot]) -> Line:
-    """Points one after another."""
-    found: list[Symbol | str] = []
-    for spot in spots:
-        found += [", "] if found else []
-        found.append(name_of(spot))
-    return tuple(found)
 
 
 def name_of(spot: Spot) -> Symbol:
@@ -78,6 +69,19 @@ def equal(*symbols: Symbol) -> Block:
     """Quantities that are one."""
     letters = [Letter(one) for one in symbols]
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
+
+
+def begun(
+    here: Here, step: Step, by_ratio: Callable[[Here, Step, Ratio], Iterable[Block]]
+) -> Iterable[Block]:  # fmt: skip
+    """How a group begins: what its higher pairs give."""
+    assert step.group is not None
+    if step.ratios:
+        yield said(_("Group {group} is found from its higher pairs."), group=step.group.title)
+    elif not here.first:
+        yield said(_("Group {group} gives:"), group=step.group.title)
+    for ratio in step.ratios:
+        yield from by_ratio(here, step, ratio)
 
 
 def turning_as_one(step: Step, rates: Collection[str], letter: str, *, explained: bool) -> Iterable[Block]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
-from tmm_cli.results.reports.space import KINDS, contour_table, redundancy
+from tmm_cli.results.reports.space import contour_table, redundancy
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import ROMAN
 from tmm_cli.structure.spatial import Findings, LocalFreedom
@@ -18,7 +18,7 @@ def tables(results: ChainResults) -> Iterable[Table]:
     yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(found), _notes(found))
     yield table_of_words(
         "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
-        [(p.name, f"{p.i} - {p.j}", _(KINDS[p.kind]) if p.kind else "", str(p.freedoms), ROMAN[p.pair_class])
+        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class])
          for p in found.chain.pairs],
     )  # fmt: skip
     if found.contours:

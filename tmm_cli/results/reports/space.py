@@ -5,24 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import N_, _
+from tmm_cli.language import _
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.contours import Contour, contours
 from tmm_cli.structure.redundancy import space
-
-KINDS = {
-    "turning": N_("turning"),
-    "sliding": N_("sliding"),
-    "screw": N_("screw"),
-    "cylindrical": N_("cylindrical"),
-    "spherical with a pin": N_("spherical with a pin"),
-    "universal": N_("universal"),
-    "spherical": N_("spherical"),
-    "planar": N_("planar"),
-    "sphere in cylinder": N_("sphere in cylinder"),
-    "cylinder on plane": N_("cylinder on plane"),
-    "sphere on plane": N_("sphere on plane"),
-}
 
 
 def tables(results: Results) -> Iterable[Table]:
@@ -55,7 +41,7 @@ def tables(results: Results) -> Iterable[Table]:
         yield table_of_words(
             "replacements", _("Pairs that leave no redundant constraints"),
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
-            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", _(KINDS[r.was]), _(KINDS[r.kind]), str(r.freedoms))
+            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", _(r.was), _(r.kind), str(r.freedoms))
              for r in found.replacements],
             (note,),
         )  # fmt: skip

@@ -17,6 +17,8 @@ from tmm_cli.roots import bisect
 from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, centre, equal_angles, unit
 
 APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between
+FIRST, ROUNDS = 512, 9  # places of a loop that are looked at first, then rounds between those that are far apart
+HALVINGS: Final = 60  # to the ends of its parts
 HALF: Final = np.longdouble("1.57079632679489661923132169163975144")  # a right angle
 FULL: Final = 4 * HALF
 
@@ -126,14 +128,12 @@ def _circle(poses: Poses, equal: list[int], odd: int) -> Circle:
     return Circle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
 
 
-def scanned(found: Curve, size: float, first: int, rounds: int) -> list[Any]:
+def scanned(found: Curve, size: float) -> list[Any]:
     """Parameters all round every loop, nearer to each other where dyads of a sensible place change fast."""
-    return [] if isinstance(found, One) else [_scanned(found, loop, size, first, rounds) for loop in range(len(found))]
+    return [] if isinstance(found, One) else [_scanned(found, loop, size) for loop in range(len(found))]
 
 
-def parts(
-    found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int, halvings: int
-) -> Rows | None:  # fmt: skip
+def parts(found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int) -> Rows | None:
     """The parts where dyads are good, with about `count` places in all; their ends are exact but for few halvings."""
     if isinstance(found, One):
         return Rows(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
@@ -142,7 +142,7 @@ def parts(
         here = good(found.at(loop, t))
         starts, ends = (np.flatnonzero(x) for x in (here[1:] & ~here[:-1], here[:-1] & ~here[1:]))
         inside, outside = np.concatenate([t[starts + 1], t[ends]]), np.concatenate([t[starts], t[ends + 1]])
-        edges, __ = bisect(lambda at, loop=loop: good(found.at(loop, at)), inside, outside, halvings)  # type: ignore[misc]
+        edges, __ = bisect(lambda at, loop=loop: good(found.at(loop, at)), inside, outside, HALVINGS)  # type: ignore[misc]
         low, high = np.split(edges, [len(starts)])
         low = np.concatenate([t[:1] if here[0] else t[:0], low])
         high = np.concatenate([high, t[-1:] if here[-1] else t[:0]])
@@ -167,13 +167,13 @@ def parts(
     return Rows(found, np.concatenate([t for __, t in made]), loops, first, last)
 
 
-def _scanned(found: Loops | Circle, loop: int, size: float, first: int, rounds: int) -> Any:
+def _scanned(found: Loops | Circle, loop: int, size: float) -> Any:
     def wide(t: Any) -> Any:
         dyads = found.at(loop, t)
         near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size
         return (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
 
-    return denser(wide, first, rounds)
+    return denser(wide, FIRST, ROUNDS)
 
 
 def denser(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:

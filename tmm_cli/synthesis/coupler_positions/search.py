@@ -15,31 +15,15 @@ from typing import Any, Final
 
 import numpy as np
 
+from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses
 from tmm_cli.synthesis.coupler_positions.curve import Curve, One, Rows, curve, parts, scanned
+from tmm_cli.synthesis.four_bar import sharpest
 
-OUTER, INNER = 9, 17  # places of AB, and of DC for each of them, that are compared in a round of the last search
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How thorough a search is.
-
-    count: places on a curve, about; starts, and rounds in which all of them are improved; last: how many are searched
-    on, for how many rounds, and rounds within a round. Of a loop: places that are looked at first, then rounds between
-    those that are far apart, and halvings to the ends of its parts.
-    """
-
-    count: int
-    starts: int
-    coarse: int
-    last: tuple[tuple[int, int, int], ...]
-    first: int
-    rounds: int
-    halvings: int
-
-
-FULL: Final = Effort(400, 160, 24, ((10, 10, 8), (2, 20, 12)), 512, 9, 60)
+COUNT: Final = 400  # places on a curve, about
+STARTS, ROUNDS = 160, 24  # pairs of places that are improved together, and for how many rounds
+LAST: Final = 5  # the best of them, improved alone
+APART, REACH = 0.05, 2.0  # steps between places: what differs; how far from them the best is looked for then
 
 
 @dataclass(frozen=True)
@@ -54,17 +38,17 @@ class Limits:
 
 
 def best(
-    poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False, effort: Effort = FULL
+    poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False
 ) -> tuple[Dyads, Dyads, float] | None:  # fmt: skip
     """Dyads AB and DC and how good they are: the least transmission angle (rad), or less than zero where there is a
     defect, or the coupler or frame is not sensible. None where no link is sensible. loose: branches are not asked for.
     """
     whole = curve(poses)
-    scans = scanned(whole, size, effort.first, effort.rounds)
+    scans = scanned(whole, size)
 
     def rows(name: str, order: Poses | None) -> Rows | None:
         found = One(given[name]) if name in given else whole
-        return _rows(poses, found, scans, size, limits, order, effort)
+        return _rows(poses, found, scans, size, limits, order)
 
     one, other = rows("AB", None if loose else poses), rows("DC", None)
     if one is None and not loose:
@@ -76,16 +60,15 @@ def best(
         return scored(poses, one.at(x), other.at(y), limits, loose)
 
     table = score(np.arange(len(one.t))[:, None], np.arange(len(other.t))[None, :])
-    x, y = _starts(table, one, other, effort.starts)
-    x, y, value = _climbed(score, x, y, one, other, effort.coarse)
-    for last in effort.last:
-        x, y, value = _finished(score, (x, y, value), one, other, last)
+    x, y = _starts(table, one, other)
+    x, y, value = _climbed(score, x, y, one, other)
+    x, y, value = _finished(score, x, y, value, one, other)
     at = int(np.argmax(value))
     return one.at(x[at : at + 1])[0], other.at(y[at : at + 1])[0], float(value[at])
 
 
 def _rows(
-    poses: Poses, found: Curve, scans: list[Any], size: float, limits: Limits, order: Poses | None, effort: Effort
+    poses: Poses, found: Curve, scans: list[Any], size: float, limits: Limits, order: Poses | None
 ) -> Rows | None:
     def good(dyads: Dyads) -> Any:
         with np.errstate(all="ignore"):
@@ -100,7 +83,7 @@ def _rows(
             turn = steps.sum(-1)
             return sound & ((turn < 2 * np.pi) | (turn > 2 * np.pi * (steps.shape[-1] - 1)))
 
-    return parts(found, scans, good, size, effort.count, effort.halvings)
+    return parts(found, scans, good, size, COUNT)
 
 
 def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool = False) -> Any:
@@ -114,23 +97,12 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
         turned = np.mod(np.diff(np.angle(b - a[..., None]), axis=-1), 2 * np.pi)
         l2, l4 = np.abs(np.asarray(one.pin - other.pin, complex)), np.abs(a - d)
         start = np.angle((b[..., 0] - a) / (d - a))
-        low_sine, high_sine = np.asarray(np.inf), np.asarray(-np.inf)
-        largest: Any = 0.0
-        for k in range(b.shape[-1]):
-            span = (c[..., k] - b[..., k]) * np.conj(c[..., k] - d)
-            sine = span.imag / (l2 * l3)
-            low_sine, high_sine = np.minimum(low_sine, sine), np.maximum(high_sine, sine)
-            largest = np.maximum(largest, np.abs(span.real) / (l2 * l3))
-        branch = 0.0 if loose else np.maximum(0, -np.maximum(low_sine, -high_sine))
+        sines = ((c - b) * np.conj(c - d[..., None])).imag / (l2 * l3)[..., None]
+        branch = 0.0 if loose else np.maximum(0, -np.maximum(sines.min(-1), -sines.max(-1)))
         value: Any = -np.inf
         for steps in (turned, turned - 2 * np.pi):
             way = steps.sum(-1)
-            worst = largest
-            low, high = start + np.minimum(way, 0), start + np.maximum(way, 0)
-            for line, reach in ((0.0, l1 - l4), (np.pi, l1 + l4)):
-                there = line + 2 * np.pi * np.ceil((low - line) / (2 * np.pi)) <= high
-                cosine = np.abs(l2 * l2 + l3 * l3 - reach * reach) / (2 * l2 * l3)
-                worst = np.where(there, np.maximum(worst, cosine), worst)
+            worst, __ = sharpest((l1, l2, l3, l4), start + np.minimum(way, 0), start + np.maximum(way, 0))
             back = np.maximum(0, np.abs(way) - 2 * np.pi + 1e-12)
             wrong = branch + np.maximum(0, worst - 1) + (0 if loose else back)
             value = np.maximum(value, np.where(wrong > 0, -wrong, np.arccos(np.minimum(worst, 1))))
@@ -141,27 +113,25 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
     return np.where(np.isfinite(value), value, -99.0)
 
 
-def _starts(table: Any, one: Rows, other: Rows, count: int) -> tuple[Any, Any]:
+def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
     """Places (numbers) of pairs that are not worse than their neighbours on the same parts, the best first."""
     top = np.ones(table.shape, bool)
-    for axis, rows in ((0, one), (1, other)):
-        next_is_same = (rows.low[1:] == rows.low[:-1]).reshape((-1, 1) if axis == 0 else (1, -1))
-        values = np.moveaxis(table, axis, 0)
-        same = np.moveaxis(next_is_same, axis, 0)
-        peak = np.moveaxis(top, axis, 0)
+    for axis, rows in enumerate((one, other)):
+        values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
+        same = (rows.low[1:] == rows.low[:-1])[:, None]
         peak[:-1] &= ~same | (values[:-1] >= values[1:])
         peak[1:] &= ~same | (values[1:] >= values[:-1])
     x, y = np.nonzero(top)
-    order = np.argsort(-table[x, y], kind="stable")[:count]
+    order = np.argsort(-table[x, y], kind="stable")[:STARTS]
     return x[order].astype(float), y[order].astype(float)
 
 
-def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows, rounds: int) -> tuple[Any, Any, Any]:
+def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
     """Starts improved together: a small table round each, smaller where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((one, x), (other, y))]
     step = np.ones(len(x))
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         near = [
             np.clip(at[:, None] + step[:, None] * shifts, low[:, None], high[:, None])
             for at, (low, high) in zip((x, y), ends, strict=True)
@@ -176,40 +146,24 @@ def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows, rounds: int) ->
     return x, y, value
 
 
-def _finished(
-    score: Any, starts: tuple[Any, Any, Any], one: Rows, other: Rows, last: tuple[int, int, int]
-) -> tuple[Any, Any, Any]:
-    """The best of the starts, by the best place of DC for every place of AB."""
-    x, y, value = starts
-    count, rounds, inner_rounds = last
-    order = np.argsort(-value, kind="stable")
+def _finished(score: Any, x: Any, y: Any, value: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
+    """The best places that differ, improved: of the best place of DC for every place of AB the best."""
     kept: list[int] = []
-    for k in order:
-        if all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > 0.05 for m in kept):
-            kept.append(int(k))
-        if len(kept) == count:
-            break
-    x, y, value = x[kept], y[kept], value[kept]
-    first, end_x = (ends[x.astype(int)] for ends in (one.low, one.high))
-    start, end = (ends[y.astype(int)] for ends in (other.low, other.high))
-    middle_y, found = y, (x, y, value)
-    wide = np.full(len(x), 2.0)
-    for _ in range(rounds):
-        xs = np.clip(found[0][:, None] + wide[:, None] * np.linspace(-1, 1, OUTER), first[:, None], end_x[:, None])
-        low = np.maximum(np.minimum(middle_y, found[1]) - 2, start)[:, None] + 0 * xs
-        high = np.minimum(np.maximum(middle_y, found[1]) + 2, end)[:, None] + 0 * xs
-        for _ in range(inner_rounds):
-            ys = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, INNER)
-            table = score(xs[..., None] + 0 * ys, ys)
-            at = np.argmax(table, axis=-1)[..., None]
-            low = np.take_along_axis(ys, np.maximum(at - 1, 0), -1)[..., 0]
-            high = np.take_along_axis(ys, np.minimum(at + 1, INNER - 1), -1)[..., 0]
-        best_y = np.take_along_axis(ys, at, -1)[..., 0]
-        values = np.take_along_axis(table, at, -1)[..., 0]
-        k = np.argmax(values, axis=-1)[:, None]
-        new = [np.take_along_axis(z, k, -1)[:, 0] for z in (xs, best_y, values)]
-        better = new[2] > found[2]
-        found = tuple(np.where(better, a, b) for a, b in zip(new, found, strict=True))  # type: ignore[assignment]
-        inner = (k[:, 0] > 0) & (k[:, 0] < OUTER - 1)
-        wide = np.where(inner, wide * 0.3, wide)
-    return found
+    for k in np.argsort(-value, kind="stable").tolist():
+        if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
+            kept.append(k)
+    (low, high), (first, last) = (_about(rows, at[kept]) for rows, at in ((one, x), (other, y)))
+
+    def of_best(x: Any) -> tuple[Any, Any]:
+        """The best places of DC for places of AB, those of all starts again and again; how bad they are."""
+        again = len(x) // len(kept)
+        return least(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
+
+    x, bad = least(lambda x: of_best(x)[1], low, high)
+    return x, of_best(x)[0], -bad
+
+
+def _about(rows: Rows, at: Any) -> tuple[Any, Any]:
+    """Ends of the ways to both sides of places within which their peak is looked for."""
+    here = at.astype(int)
+    return np.maximum(at - REACH, rows.low[here]), np.minimum(at + REACH, rows.high[here])

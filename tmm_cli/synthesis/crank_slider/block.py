@@ -9,14 +9,9 @@ from pydantic import Field
 from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, NUMBER, SPEED
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
-from tmm_cli.synthesis.crank_slider.solver import Task
+from tmm_cli.synthesis.crank_slider.solver import QUANTITIES, Task
 
-WANTS = {
-    "stroke": LENGTH, "speed": SPEED, "crank_speed": ANGULAR_SPEED,
-    "ratio": NUMBER, "nu": NUMBER, "k": NUMBER, "pressure": ANGLE, "e": LENGTH,
-}  # fmt: skip
 STROKES = (("stroke",), ("speed", "crank_speed"))
 PAIRS = (("ratio", "nu"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
 
@@ -41,4 +36,4 @@ def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
     for sets in (STROKES, PAIRS):
         one_of(shape, sets, _("these keys do not determine a crank-slider"))
-    return Task(**numbers(shape, values, WANTS))
+    return Task(**numbers(shape, values, QUANTITIES))

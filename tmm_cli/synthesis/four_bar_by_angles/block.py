@@ -12,18 +12,17 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.quantities import ANGLE, NUMBER
 from tmm_cli.synthesis.blocks import Block, Range, numbers
 from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES, FUNCTIONS, Function
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task
+from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS
 
 DOMAINS = {
     "log10(x)": "x more than 0", "ln(x)": "x more than 0", "sqrt(x)": "x of 0 or more", "x^1.5": "x of 0 or more",
     "1/x": "x on one side of 0",
 }  # fmt: skip
 MOST = 361  # pairs of angles
-LENGTHS = dict.fromkeys(("l1", "l2", "l3", "l4"), LENGTH)
-ZEROS = dict.fromkeys(("phi0", "psi0"), ANGLE)
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
 

@@ -22,19 +22,23 @@ from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, c
 from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes, off, reached
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value, given
 from tmm_cli.vectors import settled
 
 __all__ = ["PARAMETERS", "Task", "solve"]
-PARAMETERS: Final = {
-    "l1": "length", "l2": "length", "l3": "length", "l4": "length",
-    "phi0": "angle", "psi0": "angle", "phi1": "angle", "psi1": "angle",
+LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
+    "l1": ("length", N_("input l1 = AB")), "l2": ("length", N_("coupler l2 = BC")),
+    "l3": ("length", N_("output l3 = DC")), "l4": ("length", N_("frame l4 = AD")),
 }  # fmt: skip
-NAMES: Final = {
-    "l1": N_("input l1 = AB"), "l2": N_("coupler l2 = BC"), "l3": N_("output l3 = DC"), "l4": N_("frame l4 = AD"),
-    "phi0": N_("phi0, zero of the input angle, from AD"), "psi0": N_("psi0, zero of the output angle, from AD"),
-    "phi1": N_("angle of AB from AD in the first pair"), "psi1": N_("angle of DC from AD in the first pair"),
+ZEROS: Final = {
+    "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
+    "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
+}
+FOUND: Final = {
+    **LENGTHS, **ZEROS, "phi1": ("angle", N_("angle of AB from AD in the first pair")),
+    "psi1": ("angle", N_("angle of DC from AD in the first pair")),
 }  # fmt: skip
+PARAMETERS: Final = {name: kind for name, (kind, __) in FOUND.items()}
 DEFECTS: Final = {
     "": N_("none: all pairs on one assembly, reached in order"),
     "branch": N_("branch: some pairs are on the other assembly"),
@@ -141,10 +145,8 @@ def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
     first = task.psi[0] + (off(one, task)[0] if task.approximate else 0.0)
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
     numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
-    # more digits only where they are asked
-    plain = float if isinstance(next(iter(task.lengths.values())), float) else np.longdouble
     return [
-        *(Value(key, plain(numbers[key]), kind, NAMES[key]) for key, kind in PARAMETERS.items()),
+        *(Value(key, float(numbers[key]), *what) for key, what in FOUND.items()),
         Value("", mark.least, "angle", N_("least transmission angle over the range")),
         Value("", DEFECTS[str(mark.defect)], "word", N_("defects")),
         *([Value("", _mean(one, task), "angle", MEAN)] if task.approximate else []),
@@ -269,7 +271,7 @@ def _row(task: Task, one: Bars, mark: Quality) -> tuple[float, ...]:
 
 
 def _given(task: Task) -> tuple[Value, ...]:
-    values = [Value(name, value, "length", NAMES[name]) for name, value in task.lengths.items()]
+    values = [Value(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
     if task.function:
         text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table, straight between its rows")
         of_x = "angle" if task.function.name in ANGLES else "number"
@@ -283,5 +285,4 @@ def _given(task: Task) -> tuple[Value, ...]:
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)
         values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]
-    zeros = {"phi0": task.phi0, "psi0": task.psi0}
-    return (*values, *(Value(key, value, "angle", NAMES[key]) for key, value in zeros.items() if value is not None))
+    return *values, *given(task, ZEROS)

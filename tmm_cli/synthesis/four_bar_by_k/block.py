@@ -10,13 +10,12 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.quantities import LENGTH
 from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar_by_k.arcs import Task
+from tmm_cli.synthesis.four_bar_by_k.solver import QUANTITIES
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
-WANTS = {"l3": LENGTH, "psi1": ANGLE, "psi2": ANGLE, "k": NUMBER,
-         **dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), LENGTH)}  # fmt: skip
 WAYS = ("choose", "l1", "l2", "l4", "near", "xA", "yA")
 
 
@@ -53,7 +52,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
             allowed=_("one of {ways}").format(ways=", ".join(WAYS)),
             key=True,
         )
-    found = numbers(shape, values, WANTS)
+    found = numbers(shape, values, QUANTITIES)
     for key in ("support", "near"):
         if getattr(shape, key) is not None:
             found[key] = values.vector(getattr(shape, key), LENGTH, (key,))

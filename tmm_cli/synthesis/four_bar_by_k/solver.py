@@ -26,7 +26,7 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
 )  # fmt: skip
 from tmm_cli.synthesis.four_bar_by_k.drawing import construction, diagrams, listing, side_name
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value, given
 from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
@@ -197,8 +197,7 @@ def _given(task: Task) -> tuple[Value, ...]:
         "xA": N_("by its x"),
         "yA": N_("by its height"),
     }[task.choose]
-    given = [Value(n, getattr(task, n), *what) for n, what in QUANTITIES.items() if getattr(task, n) is not None]
-    return *given, Value("", choice, "word", N_("choice of A"))
+    return *given(task, QUANTITIES), Value("", choice, "word", N_("choice of A"))
 
 
 def _found(task: Task, f: Found) -> tuple[Value, ...]:

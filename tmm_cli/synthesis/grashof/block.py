@@ -10,13 +10,11 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import LENGTH
 from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar import FourBar
-from tmm_cli.synthesis.grashof.solver import CrankSlider, SlottedLever, Task
+from tmm_cli.synthesis.grashof.solver import LINKS, CrankSlider, SlottedLever, Task
 
 Link = Literal["l1", "l2", "l3", "l4"]
-LENGTHS = dict.fromkeys(("l1", "l2", "l3", "l4", "r", "l", "e", "OA", "OC"), LENGTH)
 SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record, keys that it needs, keys that it may have
     (FourBar, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
     (CrankSlider, ("r", "l"), ("e",)),
@@ -43,7 +41,7 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The lengths in m. Raises ProblemError."""
-    found = numbers(shape, values, LENGTHS)
+    found = numbers(shape, values, LINKS)
     given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
     fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:

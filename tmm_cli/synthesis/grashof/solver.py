@@ -10,13 +10,14 @@ import numpy as np
 from tmm_cli.language import N_, _
 from tmm_cli.synthesis.four_bar import CHANGE, TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.tolerances import SAME_RATIO
 
 PARAMETERS: Final[dict[str, str]] = {}
-LINKS: Final = {
-    "l1": N_("link 1"), "l2": N_("link 2"), "l3": N_("link 3"), "l4": N_("link 4"), "r": N_("crank r"),
-    "l": N_("connecting rod l"), "e": N_("offset e"), "OA": N_("crank OA"), "OC": N_("frame OC"),
+LINKS: Final = {  # that a task may give: kind and what they are called
+    "l1": ("length", N_("link 1")), "l2": ("length", N_("link 2")), "l3": ("length", N_("link 3")),
+    "l4": ("length", N_("link 4")), "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")),
+    "e": ("length", N_("offset e")), "OA": ("length", N_("crank OA")), "OC": ("length", N_("frame OC")),
 }  # fmt: skip
 FOUR_BARS: Final = {
     "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
@@ -106,11 +107,9 @@ def refuse(task: Task) -> None:
 
 def solve(task: Task) -> Outcome:
     """The answer for one file. Raises Infeasible for what is no mechanism."""
-    lengths = {name: value for name, value in vars(task).items() if name not in ("frame", "driver")}
     refuse(task)
-    given = tuple(Value(name, value, "length", LINKS[name]) for name, value in lengths.items())
     if isinstance(task, FourBar):
-        return _four_bar(task, given)
+        return _four_bar(task)
     if isinstance(task, CrankSlider):
         found, kinds, margin = crank_slider(task), SLIDERS, N_("l - (r + e)")
         source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
@@ -119,16 +118,17 @@ def solve(task: Task) -> Outcome:
         source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
     name = list(kinds)[int(found.kind)]
     values = (Value("", kinds[name], "word", N_("type")), Value("", found.margin, "length", margin))
-    return Outcome(given, values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
+    return Outcome(given(task, LINKS), values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
 
 
-def _four_bar(task: FourBar, given: tuple[Value, ...]) -> Outcome:
+def _four_bar(task: FourBar) -> Outcome:
     found = turning(task)
     change = int(found.kind) >= CHANGE
     at_change, fully, rocks = (
         N_("turns fully or rocks: decided in the change positions"), N_("turns fully"), N_("rocks"),
     )  # fmt: skip
-    given += (
+    asked = (
+        *given(task, LINKS),
         Value("frame", f"l{task.frame}", "word", N_("frame")),
         Value("driver", f"l{task.driver}", "word", N_("driver")),
     )
@@ -140,7 +140,7 @@ def _four_bar(task: FourBar, given: tuple[Value, ...]) -> Outcome:
         values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
                "four-bar linkages, Mechanism and Machine Theory 20 (1985)")  # fmt: skip
-    return Outcome(given, tuple(values), source, _turning(bool(found.turns[0]), change))
+    return Outcome(asked, tuple(values), source, _turning(bool(found.turns[0]), change))
 
 
 def _turning(turns: bool, change: bool) -> tuple[Demand, ...]:

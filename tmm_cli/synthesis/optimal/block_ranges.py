@@ -147,4 +147,4 @@ def _kind_of(source: Any, sense: ValueReader) -> str | None:
         found = evaluate_quantity(source, sense.parameters, sense.units).dimension
     except ProblemError:
         return None  # said when it is evaluated
-    return next((name for name, kind in KINDS.items() if kind.dimension == found), None)
+    return None if found is None else found.name

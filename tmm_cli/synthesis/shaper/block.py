@@ -9,12 +9,8 @@ from pydantic import Field
 from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
-from tmm_cli.synthesis.shaper.solver import Task
-
-FRAMES = {"OC": LENGTH, "frame_ratio": NUMBER, "OA": LENGTH}
-RODS = {"DE": LENGTH, "rod_ratio": NUMBER, "pressure": ANGLE}
+from tmm_cli.synthesis.shaper.solver import FRAMES, QUANTITIES, RODS, Task
 
 
 class Shape(Block):
@@ -37,4 +33,4 @@ def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
     for ways in (FRAMES, RODS):
         one_of(shape, [(key,) for key in ways], _("these keys do not determine a shaper"))
-    return Task(**numbers(shape, values, {"stroke": LENGTH, "k": NUMBER, **FRAMES, **RODS}))
+    return Task(**numbers(shape, values, QUANTITIES))

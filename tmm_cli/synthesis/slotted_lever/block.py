@@ -10,14 +10,13 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.synthesis.blocks import Block, Range, numbers, one_of
-from tmm_cli.synthesis.slotted_lever.solver import Task
+from tmm_cli.synthesis.slotted_lever.solver import QUANTITIES, Task
 
 ENDS = (("B1", "B2"), ("CB",))
 SWINGS = (("k",), ("swing",))
 FRAMES = (("OC",), ("OA",), ("within",))
-WANTS = {"k": NUMBER, "swing": ANGLE, "CB": LENGTH, "OC": LENGTH, "OA": LENGTH}
 
 
 class Shape(Block):
@@ -49,7 +48,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
         one_of(shape, sets, _("these keys do not determine a slotted lever")) for sets in (ENDS, SWINGS, FRAMES)
     )
     _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
-    found = numbers(shape, values, WANTS)
+    found = numbers(shape, values, QUANTITIES)
     if ends == ("CB",):
         found["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
         found["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))

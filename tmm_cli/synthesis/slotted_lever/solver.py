@@ -17,12 +17,16 @@ import numpy as np
 from tmm_cli.language import N_, _
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.synthesis.slotted_lever.drawing import construction, family
 from tmm_cli.tolerances import DEAD_SWING
 from tmm_cli.vectors import settled
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
+QUANTITIES: Final = {  # that a task may give: kind and what they are called
+    "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
+    "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
+}  # fmt: skip
 QUICK_RETURN: Final = N_(
     "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
 )
@@ -135,31 +139,27 @@ def solve(task: Task) -> Outcome:
 
 
 def _given(task: Task) -> tuple[Value, ...]:
-    given = []
+    values: list[Value] = []
     if task.CB is None:
         for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
-            given += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
-    kinds = {
-        "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
-        "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
-    }  # fmt: skip
-    given += [Value(n, getattr(task, n), *what) for n, what in kinds.items() if getattr(task, n) is not None]
+            values += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
+    values += given(task, QUANTITIES)
     if task.within is not None:
         force = N_("least force: the longest that leaves the stone on CB")
-        given += [
+        values += [
             Value("", task.within[0], "length", N_("frame OC, at least")),
             Value("", task.within[1], "length", N_("frame OC, at most")),
             Value("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
         ]
-    return tuple(given)
+    return tuple(values)
 
 
 def _found(task: Task, f: Found) -> tuple[Value, ...]:
     away = f.o - f.c
     return (
-        Value("OA", f.crank, "length", N_("crank OA")),
-        Value("OC", f.frame, "length", N_("frame OC")),
-        Value("CB", f.lever, "length", N_("lever CB")),
+        Value("OA", f.crank, *QUANTITIES["OA"]),
+        Value("OC", f.frame, *QUANTITIES["OC"]),
+        Value("CB", f.lever, *QUANTITIES["CB"]),
         Value("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
         Value("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
         Value("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
