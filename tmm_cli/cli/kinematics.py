@@ -21,6 +21,7 @@ from tmm_cli.language import _
 from tmm_cli.library import inputs_of, solve
 from tmm_cli.problem.refusals import in_words_of
 
+INTERMITTENT = ("intermittent", "intermittent-cycle")
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
 ]
@@ -51,7 +52,7 @@ def kinematics(
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
-    usual = ("quality", "properties", "pressure", "cycle", "points", "link-motion", "slides", "centres")
+    usual = ("quality", "properties", *INTERMITTENT, "pressure", "cycle", "points", "link-motion", "slides", "centres")
     names = ("points", "link-motion") if asked else usual
 
     def work(file: str) -> int:

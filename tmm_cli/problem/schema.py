@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Field
 
 from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
+from tmm_cli.problem.schema_intermittent import Wheels
 from tmm_cli.problem.schema_loads import Load, Mass
 from tmm_cli.problem.schema_meshes import Cam, Gear, Rack
 from tmm_cli.problem.schema_parts import (
@@ -195,6 +196,7 @@ class File(FileHead):
     cycle: Value | None = Field(
         default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
     )
+    intermittent: Wheels = Field(default={}, description="wheels that a link takes along on some strokes only")
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
