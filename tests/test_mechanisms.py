@@ -231,7 +231,7 @@ def test_steps_of_the_ratchet_are_half_a_turn_together():
     for radius in (100, 125):
         ends = [meet(0, x + h, radius, rod, radius * 1j) for x in (-397.6138276043, -241.4402949608)]
         steps.append(abs(np.angle(ends[0] / ends[1])))
-    assert shown("gear-lever/ratchet-feed") == pytest.approx(steps, abs=1e-12)
+    assert shown("gear-lever/ratchet-feed")[:2] == pytest.approx(steps, abs=1e-12)
     assert math.degrees(sum(steps)) == pytest.approx(180, abs=1e-9)
 
 

@@ -21,6 +21,7 @@ from tmm_cli.errors import (
     NoTurnError,
     OutOfRangeError,
     RunawayError,
+    SettingError,
     SketchMismatchError,
     SpeedsEndError,
     StandstillError,
@@ -114,6 +115,20 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
                 _("this link cannot drive: it is not joined to the frame"), path=("links",), found=quote(link),
                 allowed=", ".join(allowed), near=nearest(link, list(allowed)), key=True,
             )  # fmt: skip
+        case SettingError(path=path, error=own):
+            within = _stage_error(own, problem)
+            return ProblemError(within.message, path=path, found=within.found, allowed=within.allowed)
+        case MissingStrokesError(link=link, path=("intermittent", *__, "moves_with") as path):
+            return ProblemError(
+                _("this link never turns back: the wheel would not stand"), path=path, found=quote(link),
+                allowed=_("a link that swings"),
+            )  # fmt: skip
+        case MissingStrokesError(path=("intermittent", *__) as path):
+            return ProblemError(
+                _("there is no working stroke"),
+                path=path,
+                allowed=_("forward, backward, or an output that has strokes"),
+            )
         case MissingStrokesError(link=link, path=path):
             what = _("no output is joined to the frame")
             if link is not None:
@@ -135,6 +150,10 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             wanted = _("a law of motion is found for one crank that turns fully")
             if path == ("balancing",):
                 wanted = _("what shakes is found for one crank that turns fully")
+            if path[0] == "intermittent":
+                fit = _("a crank that turns fully, or a driver with a stroke that the linkage can go")
+                wanted = _("intermittent motion is found over a cycle, and the driver has none")
+                return ProblemError(wanted, path=path, key=True, allowed=f"{fit}; driver: {{stroke: [0, 100]}}")
             return ProblemError(
                 wanted, path=path, key=True, allowed=_("one driver that turns round and round"),
             )  # fmt: skip

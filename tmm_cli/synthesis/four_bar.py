@@ -94,13 +94,18 @@ def cosine(l2: Any, l3: Any, square: Any) -> Any:
     return (l2 * l2 + l3 * l3 - square) / (2 * l2 * l3)
 
 
-def extreme_inputs(low: Any, high: Any) -> Any:
-    """Angles of AB from AD between low and high (rad, one axis more) among which BD, and with it BCD, is extreme: both
-    ends, and where B lies on AD; the lower end again where it does not.
+def sharpest(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[Any, Any]:
+    """The largest size of the cosine of BCD while AB turns from low to high (rad from AD), and the angle of AB there.
+
+    lengths: l1 to l4. BD, and with it BCD, is extreme at both ends, and where B lies on AD.
     """
-    low, high = np.asarray(low)[..., None], np.asarray(high)[..., None]
+    l1, l2, l3, l4, low, high = (np.asarray(x)[..., None] for x in (*lengths, low, high))
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
-    return np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
+    places = np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
+    sizes = np.abs(cosine(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(places)))
+    worst = np.argmax(sizes, axis=-1)[..., None]  # what is no number is the worst
+    size, place = (np.take_along_axis(x, worst, axis=-1)[..., 0] for x in (sizes, places))
+    return size, place
 
 
 @dataclass(frozen=True)

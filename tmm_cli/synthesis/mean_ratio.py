@@ -13,18 +13,18 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.roots import bisect
-from tmm_cli.vectors import Real, pi
+from tmm_cli.vectors import Real
 
 
 def theta_of(k: Any) -> Any:
     """The angle theta between the extreme cranks, from k."""
     k = np.asarray(k)
-    return pi(1.0 * k) * (k - 1) / (k + 1)
+    return np.pi * (k - 1) / (k + 1)
 
 
 def k_of(theta: Any) -> Any:
     """The coefficient k from theta."""
-    return (pi(theta) + theta) / (pi(theta) - theta)
+    return (np.pi + theta) / (np.pi - theta)
 
 
 def ratio(slope: Callable[[Real], Real], shares: Real) -> float:

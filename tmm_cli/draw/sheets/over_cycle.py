@@ -130,10 +130,8 @@ def shaking(results: Results, q: Any) -> list[Quantities]:
     found = results.balancing
     if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
         return []
-    from tmm_cli.analysis.balancing import shaken  # few files ask for it
-
     ways = [(_("without counterweights"), found.before), (_("with counterweights"), found.after)]
-    told = [(*way, curve) for way, curve in zip(ways, shaken(results.mechanism, found.cycle, q), strict=True)]
+    told = [(*way, curve) for way, curve in zip(ways, found.at(results.mechanism, q), strict=True)]
     told = told[::-1] if found.cycle.counterweights else told[:1]  # dashed is without, as in the hodograph
     nothing = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
 

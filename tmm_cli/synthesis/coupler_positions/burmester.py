@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.synthesis.four_bar import extreme_inputs
+from tmm_cli.synthesis.four_bar import sharpest
 from tmm_cli.tolerances import DEAD_COSINE, NO_TURN
 
 EXACT: Final = np.longdouble
@@ -141,13 +141,8 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
     found = []
     for turn in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
         low, high = phi[..., 0] + np.minimum(turn, 0), phi[..., 0] + np.maximum(turn, 0)
-        places = extreme_inputs(low, high)
         with np.errstate(all="ignore"):
-            rest = (l2**2 + l3**2 - l1**2 - l4**2)[..., None]
-            size = np.abs(rest + (2 * l1 * l4)[..., None] * np.cos(places)) / (2 * l2 * l3)[..., None]
-        worst = np.argmax(np.where(np.isnan(size), np.inf, size), -1)[..., None]
-        largest = np.take_along_axis(size, worst, -1)[..., 0]
-        where = np.take_along_axis(places, worst, -1)[..., 0]
+            largest, where = sharpest((l1, l2, l3, l4), low, high)
         locks = ~(largest < dead)
         back = np.abs(turn) >= 2 * np.pi
         defect = np.where(branch, 1, np.where(back, 2, np.where(locks, 3, 0)))

@@ -18,6 +18,7 @@ import numpy as np
 from tmm_cli.roots import least
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses
 from tmm_cli.synthesis.coupler_positions.curve import Curve, One, Rows, curve, parts, scanned
+from tmm_cli.synthesis.four_bar import sharpest
 
 COUNT: Final = 400  # places on a curve, about
 STARTS, ROUNDS = 160, 24  # pairs of places that are improved together, and for how many rounds
@@ -96,23 +97,12 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
         turned = np.mod(np.diff(np.angle(b - a[..., None]), axis=-1), 2 * np.pi)
         l2, l4 = np.abs(np.asarray(one.pin - other.pin, complex)), np.abs(a - d)
         start = np.angle((b[..., 0] - a) / (d - a))
-        low_sine, high_sine = np.asarray(np.inf), np.asarray(-np.inf)
-        largest: Any = 0.0
-        for k in range(b.shape[-1]):
-            span = (c[..., k] - b[..., k]) * np.conj(c[..., k] - d)
-            sine = span.imag / (l2 * l3)
-            low_sine, high_sine = np.minimum(low_sine, sine), np.maximum(high_sine, sine)
-            largest = np.maximum(largest, np.abs(span.real) / (l2 * l3))
-        branch = 0.0 if loose else np.maximum(0, -np.maximum(low_sine, -high_sine))
+        sines = ((c - b) * np.conj(c - d[..., None])).imag / (l2 * l3)[..., None]
+        branch = 0.0 if loose else np.maximum(0, -np.maximum(sines.min(-1), -sines.max(-1)))
         value: Any = -np.inf
         for steps in (turned, turned - 2 * np.pi):
             way = steps.sum(-1)
-            worst = largest
-            low, high = start + np.minimum(way, 0), start + np.maximum(way, 0)
-            for line, reach in ((0.0, l1 - l4), (np.pi, l1 + l4)):
-                there = line + 2 * np.pi * np.ceil((low - line) / (2 * np.pi)) <= high
-                cosine = np.abs(l2 * l2 + l3 * l3 - reach * reach) / (2 * l2 * l3)
-                worst = np.where(there, np.maximum(worst, cosine), worst)
+            worst, __ = sharpest((l1, l2, l3, l4), start + np.minimum(way, 0), start + np.maximum(way, 0))
             back = np.maximum(0, np.abs(way) - 2 * np.pi + 1e-12)
             wrong = branch + np.maximum(0, worst - 1) + (0 if loose else back)
             value = np.maximum(value, np.where(wrong > 0, -wrong, np.arccos(np.minimum(worst, 1))))
@@ -126,11 +116,9 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
 def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
     """Places (numbers) of pairs that are not worse than their neighbours on the same parts, the best first."""
     top = np.ones(table.shape, bool)
-    for axis, rows in ((0, one), (1, other)):
-        next_is_same = (rows.low[1:] == rows.low[:-1]).reshape((-1, 1) if axis == 0 else (1, -1))
-        values = np.moveaxis(table, axis, 0)
-        same = np.moveaxis(next_is_same, axis, 0)
-        peak = np.moveaxis(top, axis, 0)
+    for axis, rows in enumerate((one, other)):
+        values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
+        same = (rows.low[1:] == rows.low[:-1])[:, None]
         peak[:-1] &= ~same | (values[:-1] >= values[1:])
         peak[1:] &= ~same | (values[1:] >= values[:-1])
     x, y = np.nonzero(top)

@@ -66,8 +66,7 @@ def solve(task: Task) -> Outcome:
     """The task of one file. Raises Infeasible."""
     one, other, mark = guiding(task)
     numbers = _parameters(task, one, other)
-    plain = np.longdouble if isinstance(task.angles[0], np.longdouble) else float
-    values = [Value(name, plain(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
+    values = [Value(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
         Value("", float(mark.least), "angle", N_("least transmission angle on the way")),
         Value("", float(mark.turn), "angle", N_("turn of AB from the first to the last position")),

@@ -4,7 +4,7 @@ The triangle A B1 B2 of the crank's pivot and the slider's extreme positions has
 height nu on h, and the angle theta at A:
     h = sqrt((L + 1)^2 - nu^2) - sqrt((L - 1)^2 - nu^2) = 2 sqrt(1 + (L^2 - 1) sin^2(theta/2)),
     nu = (L^2 - 1) sin(theta) / h,   sin(lambda_max) = (1 + nu)/L.
-All functions take floats or arrays of any precision. Differences of near numbers are nowhere taken.
+All functions take floats or arrays. Differences of near numbers are nowhere taken.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from tmm_cli.synthesis.crank_slider.drawing import construction
 from tmm_cli.synthesis.mean_ratio import k_of, theta_of
 from tmm_cli.synthesis.measures import crank_turns, mean_speed, pressure, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
-from tmm_cli.vectors import pi
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -170,7 +169,7 @@ def _stroke(task: Task) -> Any:
     """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
-    return pi(1.0 * task.speed) * task.speed / task.crank_speed
+    return np.pi * task.speed / task.crank_speed
 
 
 def refuse(task: Task) -> None:

@@ -50,6 +50,6 @@ class Function:
     def precision(self, count: int) -> tuple[Any, Any]:
         """Angles at the precision points: Chebyshev's spacing, x = middle - half range cos((2j - 1) pi/(2 n))."""
         turns = np.arange(1, 2 * count, 2) / np.longdouble(2 * count)
-        share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(np.asarray(self.phi[0]).dtype)
+        share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(float)
         phi = self.phi[0] + share * (self.phi[1] - self.phi[0])
         return phi, self.wanted(phi)

@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from tmm_cli.roots import least
-from tmm_cli.synthesis.four_bar import FourBar, cosine, extreme_inputs, turning
+from tmm_cli.synthesis.four_bar import FourBar, sharpest, turning
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein, least_squares
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars
 from tmm_cli.synthesis.four_bar_by_angles.function import Function
@@ -69,15 +69,13 @@ class Quality(NamedTuple):
 
 
 def quality(found: Bars, task: Task) -> Quality:
-    """What four-bars are worth; BD, and with it the angle BCD, is extreme at the ends and on AD."""
-    l1, l2, l3, phi0 = (np.asarray(x, dtype=float)[..., None] for x in (found.l1, found.l2, found.l3, found.phi0))
+    """What four-bars are worth."""
+    l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (found.l1, found.l2, found.l3, found.phi0))
+    l4 = np.ones(np.shape(l1))
     with np.errstate(all="ignore"):
-        ends = np.sort(phi0 + np.asarray(task.span, dtype=float), axis=-1)
-        places = extreme_inputs(ends[..., 0], ends[..., 1])
-        cosines = cosine(l2, l3, 1 + l1 * l1 - 2 * l1 * np.cos(places))
+        ends = np.sort(phi0[..., None] + np.asarray(task.span, dtype=float), axis=-1)
+        size, worst = sharpest((l1, l2, l3, l4), ends[..., 0], ends[..., 1])
         terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
-        k = np.argmax(np.abs(cosines), axis=-1)[..., None]
-        sharpest = np.take_along_axis(np.abs(cosines), k, axis=-1)[..., 0]
         b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
         sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
         branch = np.any(sides != sides[..., :1], axis=-1) & (not task.approximate)  # they are compared with one only
@@ -85,10 +83,9 @@ def quality(found: Bars, task: Task) -> Quality:
         for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
             if given is not None:
                 turned |= np.cos(np.asarray(given - zero, dtype=float)) < 0
-    defect = np.where(branch, "branch", np.where(1 - sharpest <= DEAD_COSINE_DOUBLE * terms[..., 0], "locks", ""))
-    turns = turning(FourBar(l1[..., 0], l2[..., 0], l3[..., 0], np.ones(np.shape(branch)))).turns[..., 0]
-    worst = np.take_along_axis(places, k, axis=-1)[..., 0]
-    return Quality(np.arccos(np.minimum(1.0, sharpest)), worst, defect[()], turns, turned)
+    defect = np.where(branch, "branch", np.where(1 - size <= DEAD_COSINE_DOUBLE * terms, "locks", ""))
+    turns = turning(FourBar(l1, l2, l3, l4)).turns[..., 0]
+    return Quality(np.arccos(np.minimum(1.0, size)), worst, defect[()], turns, turned)
 
 
 def through(task: Task) -> Bars:

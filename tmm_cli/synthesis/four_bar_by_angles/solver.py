@@ -145,10 +145,8 @@ def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
     first = task.psi[0] + (off(one, task)[0] if task.approximate else 0.0)
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
     numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
-    # more digits only where they are asked
-    plain = float if isinstance(next(iter(task.lengths.values())), float) else np.longdouble
     return [
-        *(Value(key, plain(numbers[key]), *what) for key, what in FOUND.items()),
+        *(Value(key, float(numbers[key]), *what) for key, what in FOUND.items()),
         Value("", mark.least, "angle", N_("least transmission angle over the range")),
         Value("", DEFECTS[str(mark.defect)], "word", N_("defects")),
         *([Value("", _mean(one, task), "angle", MEAN)] if task.approximate else []),

@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_cli.synthesis.four_bar import cosine as cosine_of
 from tmm_cli.synthesis.mean_ratio import theta_of
-from tmm_cli.vectors import pi, settled
+from tmm_cli.vectors import settled
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
@@ -85,10 +85,7 @@ class Found:
 def widest(task: Task, side: Any) -> Any:
     """The bound of beta on an arc; negative where the arc has no pivot."""
     half, theta = task.swing / 2, task.theta
-    return np.where(
-        np.asarray(side) > 0, pi(1.0 * half) / 2 - half - theta,
-        pi(1.0 * half) / 2 - np.abs(half - theta / 2) - theta / 2,
-    )  # fmt: skip
+    return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
 def bound(task: Task, side: Any) -> Any:
@@ -138,7 +135,7 @@ def places(task: Task, side: int, count: int = 400) -> Any:
         beta = float(widest(task, side)) * np.linspace(END, 1 - END, count)
         by_angle = np.sin(beta + theta / 2) / np.sin(theta / 2)
         found = np.unique(np.clip(np.concatenate((found, by_angle)), 1 + first, most - END * (most - 1)))
-    return found.astype(np.result_type(task.theta, float))  # places between are found in the precision of the data
+    return found
 
 
 def whole(task: Task, side: int, count: int = 121) -> Any:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tmm_cli.language import N_, Phrase
+from tmm_cli.roots import least
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.optimal.evolution import Evolved
@@ -19,8 +20,6 @@ from tmm_cli.variants.variant import Places
 from tmm_cli.vectors import Real, Vector
 
 CURVE = 361  # places of a path or a law that is drawn
-ZOOMS = 6  # of the place where a path comes nearest
-CLOSER = 12  # times, each
 NONE = np.zeros(0)
 
 Read = Callable[[Places, str], Real]
@@ -143,13 +142,10 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
 
 
 def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
-    """Shares of the way at which a path comes nearest to points: closer and closer about the nearest place."""
-    grid, width = np.broadcast_to(np.linspace(0, 1, CURVE), (len(wanted), CURVE)), 1 / (CURVE - 1)
-    nearest: Real = np.zeros(len(wanted))
-    for __ in range(ZOOMS):
-        grid = grid if closed else np.clip(grid, 0, 1)
-        there = path(grid.ravel()).reshape(grid.shape)
-        nearest = grid[np.arange(len(wanted)), np.argmin(np.abs(there - wanted[:, None]), axis=1)]
-        grid = nearest[:, None] + width * np.linspace(-1, 1, 2 * CLOSER + 1)
-        width /= CLOSER
-    return nearest
+    """Shares of the way at which a path comes nearest to points."""
+    shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
+    near = shares[np.argmin(np.abs(path(shares) - wanted[:, None]), axis=1)]
+    low, high = near - step, near + step
+    ends = (low, high) if closed else (np.maximum(low, 0.0), np.minimum(high, 1.0))
+    found: Real = least(lambda some: np.abs(path(some) - np.resize(wanted, len(some))), *ends)[0]
+    return found

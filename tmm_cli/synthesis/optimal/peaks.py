@@ -11,6 +11,7 @@ from math import perm
 
 import numpy as np
 
+from tmm_cli.roots import least
 from tmm_cli.vectors import Real
 
 WINDOW = 33  # places about a peak
@@ -19,7 +20,6 @@ FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T 
 NEWTON = 6
 RIVALS = 8  # highest places of what may jump
 RIVAL = 0.3  # of its range: a lower peak so far below the highest one is no rival
-ZOOMS = 9  # of a peak that may be a jump
 FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
 
 
@@ -83,13 +83,9 @@ def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float
     y = curve(scan)
     best, step = float(np.nanmax(y)), scan[1] - scan[0]
     middle = scan[peaks_of(y, RIVALS, closed)]
-    for _ in range(ZOOMS):
-        shares = middle[:, None] + step * np.linspace(-1, 1, WINDOW)
-        shares = shares if closed else np.clip(shares, 0.0, 1.0)
-        there = curve(shares.ravel()).reshape(shares.shape)
-        middle = shares[np.arange(len(middle)), np.argmax(np.nan_to_num(there, nan=-np.inf), axis=1)]
-        best, step = max(best, float(np.nanmax(there))), 2 * step / (WINDOW - 1)
-    return best
+    ends = (middle - step, middle + step) if closed else (np.maximum(middle - step, 0), np.minimum(middle + step, 1))
+    __, lowest = least(lambda shares: np.nan_to_num(-curve(shares), nan=np.inf), *ends)
+    return max(best, -float(np.min(lowest)))
 
 
 def peaks_of(y: Real, most: int, closed: bool) -> list[int]:
