@@ -161,4 +161,5 @@ def lettered(mark: str, index: str = "") -> Symbol:
 
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
     """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
-    return lettered("M_b" if turns else "F_b", link if several else "")
+    index = link if several else ""
+    return lettered("M_b", index) if turns else lettered("F_b", index)
