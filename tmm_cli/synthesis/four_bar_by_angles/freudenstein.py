@@ -16,6 +16,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from tmm_cli.double_double import PI, DoubleDouble
+from tmm_cli.vectors import unit
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4
@@ -45,7 +46,7 @@ class Bars(NamedTuple):
 
     def pins(self, phi: Any, psi: Any) -> tuple[Any, Any]:
         """Pins B and C for given angles (without the zero angles), over l4; A is 0, D is 1."""
-        return self.l1 * _unit(self.phi0 + phi), 1 + self.l3 * _unit(self.psi0 + psi)
+        return self.l1 * unit(self.phi0 + phi), 1 + self.l3 * unit(self.psi0 + psi)
 
 
 def inverse(rows: Any) -> Any:
@@ -245,10 +246,6 @@ def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
 
 def _rows(phi: Any, psi: Any) -> Any:
     return np.stack([np.cos(psi), -np.cos(phi), np.ones_like(np.asarray(phi, dtype=EXACT))], axis=-1)
-
-
-def _unit(angle: Any) -> Any:
-    return np.cos(angle) + 1j * np.sin(angle)
 
 
 def _wrapped(angle: Any) -> Any:
