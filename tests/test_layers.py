@@ -49,6 +49,7 @@ READS_A_TASK = (
 )
 PROBLEM_LEANS_ON = (  # names of pairs, and what stands among the numbers of a file: a cam's law, motors, flywheels
     "structure", "pairs.cam_law", "dynamics.task", "dynamics.balancing_task", "dynamics.motors", "dynamics.sizes",
+    "kinematics.intermittent_task",
 )  # fmt: skip
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
 MAY_IMPORT_SCIPY = {"synthesis", "dynamics"}
@@ -56,19 +57,15 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "door": "the whole library, when one of its names is asked for",
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
-    "library": "synthesis, for files with a task; all assemblies, for --assemblies",
-    "analysis.on_request": "the law of motion and balancing, for files that ask for it",
+    "library": "synthesis, for files with a task; centres, for files that ask for them",
+    "analysis.on_request": "the law of motion, balancing and intermittent motion, for files that ask for it",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
-    "draw.sheets.over_cycle": "balancing, for files that ask for it",
     "grading.exports.group": "drawing",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",
-    "grading.tables": "an extra: xlsxwriter",
-    "results.for_people": "an extra: xlsxwriter",
-    "grading.exports.xlsx": "an extra: xlsxwriter",
-    "grading.submissions.template": "an extra: xlsxwriter",
+    "results.workbook": "an extra: xlsxwriter",
 }
 
 

@@ -204,3 +204,11 @@ class NoFlywheelError(LinkageError):
 
 class UnsettledError(LinkageError):
     """No counterweights of the radii that are told balance: their own masses, on pivots that move, want ever more."""
+
+
+class SettingError(LinkageError):
+    """One of the settings that take turns, by its path in the file, is refused: `error` says why."""
+
+    def __init__(self, path: tuple[str | int, ...], error: LinkageError) -> None:
+        super().__init__(".".join(map(str, path)))
+        self.path, self.error = path, error

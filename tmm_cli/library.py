@@ -85,6 +85,7 @@ def inputs_of(problem: Problem) -> Inputs:
         extended,
         dynamics=problem.dynamics,
         balancing=problem.balancing,
+        wheels=problem.wheels,
     )
 
 
@@ -110,7 +111,7 @@ def count(problem: ChainProblem) -> ChainResults:
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError.
 
-    What hangs on the driver of the file is left out: its law of motion, balancing, loads by its angle.
+    What hangs on the driver of the file is left out: its law of motion, balancing, wheels, loads by its angle.
     """
     whole = problem.whole
     with in_words_of(whole):
@@ -119,19 +120,9 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
         own for own in linkage.loads if own.window is None and (own.table is None or own.table.against == "stroke")
     )
     linkage, request = replace(linkage, loads=loads, turns=1), replace(whole.request, places=(), start=0.0)
-    return replace(whole, linkage=linkage, request=request, extended=None, dynamics=None, balancing=None, shows={})
-
-
-def assemblies(problem: Problem | TaskProblem, positions: Sequence[int] | None = None) -> Results:
-    """Kinematics with every real assembly of the groups at these positions, or the first in detail.
-
-    Where the sketch does not decide among them: the structure with the assemblies at the sketch. Raises ProblemError.
-    """
-    from tmm_cli.analysis.all_assemblies import with_assemblies
-
-    whole = problem.whole
-    with in_words_of(whole):
-        return with_assemblies(inputs_of(whole), positions, whole)
+    return replace(
+        whole, linkage=linkage, request=request, extended=None, dynamics=None, balancing=None, wheels=(), shows={}
+    )
 
 
 def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -> Batch:

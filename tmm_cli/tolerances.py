@@ -70,6 +70,8 @@ TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for
 # At rest, or nothing
 RESTS = 1e-12  # of the longest run, of the largest speed: less is rounding
 SETS_OFF = 1e-9  # sizes of the linkage a radian, or one: what moves by less is at an end of its way
+WHOLE_TURNS = 1e-9  # turns: a wheel that has made whole ones but for less has made them but for rounding
+SHOCKLESS = 1e-9  # of the largest angular speed: what jumps by less at the ends of a stroke does not jump
 NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
 NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign changes jumps there
 NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly

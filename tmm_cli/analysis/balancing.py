@@ -32,6 +32,10 @@ class Balancing:
     pivot: str
     corrections: Vector = field(default_factory=lambda: np.empty(0, complex))
 
+    def at(self, mechanism: Mechanism, q: Real) -> tuple[Shaking, Shaking]:
+        """What shakes at other places of the driver, without counterweights and with them."""
+        return _shaken(mechanism, self.cycle, q)
+
 
 def balancing(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> Balancing:
     """Over the cycle from the driver's place `start` on, and at places. Raises NoCycleError, UnsettledError."""
@@ -46,10 +50,10 @@ def balancing(mechanism: Mechanism, start: float, places: Real, task: BalancingT
     about = complex(linkage.local(FRAME, pivot)) if pivot else 0j
     cycle = balanced(steadily(mechanism, q), task, about)
     corrections = np.empty(0, complex) if task.rotor is None else task.rotor.corrections()
-    return Balancing(task, q, cycle, *shaken(mechanism, cycle, places), pivot, corrections)
+    return Balancing(task, q, cycle, *_shaken(mechanism, cycle, places), pivot, corrections)
 
 
-def shaken(mechanism: Mechanism, found: Balanced, q: Real) -> tuple[Shaking, Shaking]:
+def _shaken(mechanism: Mechanism, found: Balanced, q: Real) -> tuple[Shaking, Shaking]:
     """What shakes at places of the driver, without counterweights and with them."""
     motion, about = steadily(mechanism, q), found.before.about
     return shaking(motion, about), shaking(motion, about, found.counterweights)

@@ -30,6 +30,7 @@ from tmm_cli.vectors import Real
 if TYPE_CHECKING:
     from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.intermittent_task import WheelTask
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
 
@@ -41,7 +42,7 @@ class Inputs:
     pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
     the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
     None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
-    as the structure alone does not need them. dynamics, balancing: what is asked of them.
+    as the structure alone does not need them. dynamics, balancing, wheels: what is asked of them.
     """
 
     linkage: Linkage
@@ -52,6 +53,7 @@ class Inputs:
     sized: bool = True
     dynamics: SteadyTask | RunTask | None = None
     balancing: BalancingTask | None = None
+    wheels: tuple[WheelTask, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

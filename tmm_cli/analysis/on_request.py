@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.intermittent import Intermittent
 
 
 def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
@@ -46,3 +47,13 @@ def balancing(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balancing:
     from tmm_cli.analysis.balancing import balancing as found
 
     return found(mechanism, float(mechanism.asked[0]), q, task)
+
+
+def intermittent(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[Intermittent, ...]:
+    """Wheels over a cycle from position 0 on; running: a law of motion that was found, which then holds with every
+    setting. Raises what `analysis.intermittent` raises.
+    """
+    from tmm_cli.analysis.intermittent import intermittent as found
+
+    start = float(mechanism.asked[0])
+    return found(mechanism, start, lambda linkage: driver_motion(linkage, start) if running is None else running)

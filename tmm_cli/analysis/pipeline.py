@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.analysis.extended import near_dead, refined
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.analysis.on_request import balancing, driver_motion, law_of_motion
+from tmm_cli.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
 from tmm_cli.analysis.requirements import refuse_unmet
 from tmm_cli.analysis.selection import carriers, check
 from tmm_cli.assembly.solvable import mobile
@@ -44,6 +44,7 @@ if TYPE_CHECKING:  # only the listing of assemblies enumerates them
     from tmm_cli.analysis.single_run import SingleRun
     from tmm_cli.assembly.enumerate import Assemblies
     from tmm_cli.kinematics.centres import Centre
+    from tmm_cli.kinematics.intermittent import Intermittent
 
 CYCLE = 720  # places over which losses are summed up
 
@@ -56,7 +57,8 @@ class Results:
 
     of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
     on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
-    are there where they are asked for by name. problem: whatever the caller wants to find here again.
+    are there where they are asked for by name. wheels: those of the block intermittent. problem: whatever the caller
+    wants to find here again.
     """
 
     inputs: Inputs
@@ -72,6 +74,7 @@ class Results:
     energy: Energy | None = None
     running: Running | SingleRun | None = None
     balancing: Balancing | None = None
+    wheels: tuple[Intermittent, ...] | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     centres: Mapping[int, Sequence[Centre]] | None = None
     extremes: tuple[Extreme, ...] | None = None
@@ -211,6 +214,8 @@ def solve(
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
     results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
+    if inputs.wheels and not of:
+        results = replace(results, wheels=intermittent(results.mechanism, results.running))
     if stage == "kinematics":
         return results
     results = with_forces(results)

@@ -53,7 +53,8 @@ def chart(accuracy: Accuracy, linkage: str) -> Figure:
         axes.set_ylim(LOW, HIGH)
         errors(axes, range(-20, 5, 4))
         axes.set_yticks([10.0**k for k in range(-20, 5)], minor=True)
-        bare(axes, NAMED[quantity])
+        left, below = number % 3 == 0, number > 1
+        bare(axes, NAMED[quantity], "µs a position" * below, "largest relative error" * left)
         for family in FAMILIES:
             _family(axes, [row for row in rows if row.family == family], quantity)
         for row in rows:
@@ -62,10 +63,6 @@ def chart(accuracy: Accuracy, linkage: str) -> Figure:
         axes.axhline(TARGETS[quantity], color=RED, lw=0.7, ls="-.", zorder=1)
         if quantity == "balancing":
             axes.axhline(FIVE, color=GREEN, lw=1.1, zorder=2)
-        if number % 3 == 0:
-            axes.set_ylabel("largest relative error", fontsize=9)
-        if number > 1:
-            axes.set_xlabel("µs a position", fontsize=9)
     _legend(figure, rows)
     figure.subplots_adjust(left=0.07, right=0.98, top=0.885, bottom=0.07, hspace=0.24, wspace=0.2)
     return figure

@@ -1,7 +1,8 @@
-"""What charts share: an A4 page with its title, plain numbers, light grids."""
+"""What charts share: an A4 page with its title, plain numbers, light grids; its picture."""
 
 from __future__ import annotations
 
+import io
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -12,6 +13,7 @@ from tmm_cli.plans.record import LANDSCAPE
 
 MM = 1 / 25.4  # inches
 DARK, GREY, RED, BLUE, GREEN, ORANGE = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c77700"
+DPI = 110
 PLAIN = FuncFormatter(lambda value, __: f"{value:g}")
 
 
@@ -25,9 +27,11 @@ def page(title: str, caption: str, share: float = 1.0) -> Figure:
     return figure
 
 
-def bare(axes: Any, title: str) -> None:
-    """A title, small figures, a light grid behind."""
+def bare(axes: Any, title: str, x: str = "", y: str = "") -> None:
+    """A title, what the axes are, small figures, a light grid behind."""
     axes.set_title(title, fontsize=10, loc="left")
+    axes.set_xlabel(x, fontsize=9)
+    axes.set_ylabel(y, fontsize=9)
     axes.tick_params(labelsize=8)
     axes.grid(True, color="#e2e2e2", lw=0.5)
     axes.set_axisbelow(True)
@@ -46,3 +50,10 @@ def errors(axes: Any, powers: range) -> None:
     axes.set_yscale("log")
     axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
     axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def png(figure: Figure) -> bytes:
+    """Its picture; the same figure gives the same bytes."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None}, pil_kwargs={"compress_level": 3})
+    return stream.getvalue()

@@ -13,7 +13,7 @@ SHARE = 0.75  # of the height of a landscape sheet
 
 def charts(measured: Savings) -> dict[str, Figure]:
     """By the names of their files."""
-    return dict.fromkeys(("savings.png", "savings.svg"), chart(measured))
+    return {"savings.png": chart(measured)}
 
 
 def chart(measured: Savings) -> Figure:

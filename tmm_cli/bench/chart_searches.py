@@ -49,10 +49,8 @@ def _rates(axes: Any, measured: Searches) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlim(sizes[0] / 1.5, sizes[-1] * 1.5)
     axes.set_ylim(0, 1.45 * max(r.per_second for r in measured.rates) / 1e3)
-    axes.set_xlabel("candidates in a generation", fontsize=9)
-    axes.set_ylabel("thousand candidates a second", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    bare(axes, "Candidates a second")
+    bare(axes, "Candidates a second", "candidates in a generation", "thousand candidates a second")
 
 
 def _found(axes: Any, measured: Searches) -> None:
@@ -72,8 +70,6 @@ def _found(axes: Any, measured: Searches) -> None:
     axes.set_ylim(FLOOR / 2, None)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, __: f"{value:g}".replace("e-0", "e-")))
     axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("thousand candidates evaluated", fontsize=9)
-    axes.set_ylabel("above the best known, %", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    near = "{near} of {count} seeds within 0.1 % of the best known"
-    bare(axes, near.format(near=measured.near, count=len(measured.found)))
+    near = f"{measured.near} of {len(measured.found)} seeds within 0.1 % of the best known"
+    bare(axes, near, "thousand candidates evaluated", "above the best known, %")

@@ -42,10 +42,8 @@ def _times(axes: Any, speed: Speed) -> None:
         axes.plot(x, [r.by_hand for r in races], "s--", ms=4.5, lw=1, mfc="white", color=colour,
                   label=f"{name}, by hand")  # fmt: skip
     decades(axes)
-    axes.set_xlabel("positions", fontsize=9)
-    axes.set_ylabel("ns a position", fontsize=9)
     axes.legend(fontsize=8, frameon=False)
-    bare(axes, "Time a position")
+    bare(axes, "Time a position", "positions", "ns a position")
 
 
 def _ratios(axes: Any, speed: Speed) -> None:
@@ -62,10 +60,8 @@ def _ratios(axes: Any, speed: Speed) -> None:
     axes.axhline(1, color=GREY, lw=0.8, zorder=0)
     axes.set_ylim(0, 1.25 * max([1.3, *(r.ratio for r in speed.races)]))
     axes.set_xticks(range(len(kinds)), [f"{variants} x {positions}" for variants, positions in kinds], fontsize=8)
-    axes.set_xlabel("variants x positions", fontsize=9)
-    axes.set_ylabel("tmm / by hand", fontsize=9)
     axes.legend(fontsize=8, frameon=False, ncol=3, loc="upper left")
-    bare(axes, "Ratio, and what is allowed")
+    bare(axes, "Ratio, and what is allowed", "variants x positions", "tmm / by hand")
 
 
 def _growth(axes: Any, growth: Growth) -> None:
@@ -75,7 +71,5 @@ def _growth(axes: Any, growth: Growth) -> None:
     axes.plot(n, t, "o", ms=5, color=RED)
     decades(axes)
     what = GROWING[growth.what][0]
-    axes.set_xlabel(what, fontsize=9)
-    axes.set_ylabel("ms", fontsize=9)
     axes.legend(fontsize=8, frameon=False, loc="upper left")
-    bare(axes, f"Growth with {what}: exponent {growth.exponent:.3f}")
+    bare(axes, f"Growth with {what}: exponent {growth.exponent:.3f}", what, "ms")

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli.analysis.all_assemblies import with_assemblies
 from tmm_cli.analysis.centres import with_centres
 from tmm_cli.analysis.extremes import with_extremes
 from tmm_cli.analysis.pipeline import Results
@@ -17,8 +18,10 @@ from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
-from tmm_cli.library import assemblies, solve
+from tmm_cli.library import inputs_of, solve
+from tmm_cli.problem.refusals import in_words_of
 
+INTERMITTENT = ("intermittent", "intermittent-cycle")
 Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
 ]
@@ -49,7 +52,7 @@ def kinematics(
 ) -> None:
     """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
-    usual = ("quality", "properties", "pressure", "cycle", "points", "link-motion", "slides", "centres")
+    usual = ("quality", "properties", *INTERMITTENT, "pressure", "cycle", "points", "link-motion", "slides", "centres")
     names = ("points", "link-motion") if asked else usual
 
     def work(file: str) -> int:
@@ -78,7 +81,9 @@ def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
-    results = assemblies(opened(file, settings), positions)
+    problem = opened(file, settings).whole
+    with in_words_of(problem):
+        results = with_assemblies(inputs_of(problem), positions, problem)
     code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
         if here.undecided is not None:

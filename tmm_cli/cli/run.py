@@ -35,6 +35,8 @@ SHOWN = (
     "groups",
     "quality",
     "properties",
+    "intermittent",
+    "intermittent-cycle",
     "cycle",
     "dynamics",
     "checks",

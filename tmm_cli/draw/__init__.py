@@ -16,6 +16,7 @@ from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import groups
 from tmm_cli.draw.sheets.hodographs import balancing as shaking
+from tmm_cli.draw.sheets.intermittent import intermittent
 from tmm_cli.draw.sheets.law_of_motion import law_of_motion
 from tmm_cli.draw.sheets.lever import lever
 from tmm_cli.draw.sheets.mechanism import Position, position
@@ -65,6 +66,7 @@ def _of_mechanism(results: Results) -> Drawn:
         yield from shaking(results)
         yield from law_of_motion(results)
         yield from single_run(results)
+        yield from intermittent(results)
 
 
 def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:

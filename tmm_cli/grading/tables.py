@@ -16,6 +16,7 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote, under
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.results.text import csv_cell
+from tmm_cli.results.workbook import empty_workbook
 
 LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
 WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")
@@ -68,12 +69,12 @@ def csv_of(rows: Iterable[Sequence[str]]) -> bytes:
 
 def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
     """Sheets of texts and numbers; no cell is a formula or a link. None where nothing is installed that writes them."""
-    try:
-        import xlsxwriter
-    except ImportError:
-        return None
     stream = io.BytesIO()
-    with xlsxwriter.Workbook(stream, {"in_memory": True}) as book:
+    try:
+        found = empty_workbook("variants.xlsx", stream, {"in_memory": True})
+    except ProblemError:
+        return None
+    with found as book:
         bold = book.add_format({"bold": True})
         for name, rows in sheets.items():
             sheet = book.add_worksheet(name)

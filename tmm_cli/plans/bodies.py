@@ -35,11 +35,6 @@ class Acting:
     pair: str = ""
 
     @property
-    def name(self) -> str:
-        """In one line."""
-        return self.symbol.name
-
-    @property
     def couple(self) -> bool:
         return self.force == 0
 

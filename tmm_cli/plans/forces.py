@@ -26,11 +26,6 @@ class ForcePlan:
     driving: bool = False
     full: tuple[NamedVector, ...] = ()
 
-    @property
-    def equation(self) -> str:
-        """Its vectors in order, as the plan's vector equation."""
-        return " + ".join(v.name for v in self.plan.vectors if v.kind != "inner") + " = 0"
-
 
 def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> tuple[ForcePlan, ...]:
     """Last group first, as they are drawn, and the driving links at the end.

@@ -18,8 +18,8 @@ FIRST, LONG = 20, 720  # positions more that are judged for what was searched fo
 
 def parts(linkage: Linkage) -> int:
     """The size of a linkage: links with their pairs, points on them, loads and springs."""
-    points = sum(len(linkage.links[name].points) for name in linkage.moving)
-    return LINK * len(linkage.moving) + POINT * points + LOAD * (len(linkage.loads) + len(linkage.springs))
+    links, points, loads = _counted(linkage)
+    return LINK * links + POINT * points + LOAD * loads
 
 
 def refuse_work(linkage: Linkage, request: Request) -> None:
@@ -74,7 +74,11 @@ def _searched(linkage: Linkage) -> int:
 
 
 def _told(linkage: Linkage) -> str:
+    links, points, loads = _counted(linkage)
+    return _("{links} links, {points} points, {loads} loads").format(links=links, points=points, loads=loads)
+
+
+def _counted(linkage: Linkage) -> tuple[int, int, int]:
+    """Moving links, points on them, loads and springs."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
-    loads = len(linkage.loads) + len(linkage.springs)
-    text = _("{links} links, {points} points, {loads} loads")
-    return text.format(links=len(linkage.moving), points=points, loads=loads)
+    return len(linkage.moving), points, len(linkage.loads) + len(linkage.springs)

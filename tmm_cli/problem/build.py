@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
@@ -28,6 +28,9 @@ from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
+
+if TYPE_CHECKING:
+    from tmm_cli.kinematics.intermittent_task import WheelTask
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -121,6 +124,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
         TitleTexts(**shape.sheet.model_dump()), _task("dynamics", shape, linkage, values),
         _task("balancing", shape, linkage, values), shape.reference, shape.shows, values, tree,
+        wheels=_wheels(shape, tree, linkage, values),
     )  # fmt: skip
 
 
@@ -158,6 +162,23 @@ def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader)
         return None
     module = import_module(f"tmm_cli.problem.build_{block}")
     return getattr(module, f"build_{block}")(shape, linkage, values)
+
+
+def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
+    """What is asked of intermittent motion, which is found in doubles alone."""
+    if not shape.intermittent or isinstance(values.units, ExtendedUnits):
+        return ()
+
+    def other(settings: Mapping[str, object]) -> Linkage:
+        """The linkage with other values of parameters; what a task of synthesis found stays."""
+        given = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
+        own = parameters({**shape.parameters, **settings}, values.units, given)
+        alone = shape.model_copy(update={"intermittent": {}})
+        return build_shape(alone, tree, ValueReader(own, values.units)).linkage
+
+    module = import_module("tmm_cli.problem.build_intermittent")  # few files have the block
+    wheels: tuple[WheelTask, ...] = module.build_wheels(shape, linkage, values, other)
+    return wheels
 
 
 def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:

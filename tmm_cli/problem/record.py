@@ -18,6 +18,7 @@ from tmm_cli.structure.spatial import SpatialChain
 if TYPE_CHECKING:
     from tmm_cli.dynamics.balancing_task import BalancingTask
     from tmm_cli.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.kinematics.intermittent_task import WheelTask
     from tmm_cli.synthesis.record import Outcome
 
 
@@ -51,7 +52,8 @@ class Problem:
     errors found later are located with; extended: makes the same as double-doubles from the decimals of the file.
     pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
     them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
-    reference: of the mechanism in a list; shows: properties by their words, whose values are read by `values`.
+    reference: of the mechanism in a list; shows: properties by their words, whose values are read by `values`. wheels:
+    what is asked of intermittent motion.
     """
 
     name: str
@@ -74,6 +76,7 @@ class Problem:
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
     extended: Callable[[], Problem] | None = field(default=None, compare=False, repr=False)
+    wheels: tuple[WheelTask, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def whole(self) -> Problem:

@@ -21,6 +21,7 @@ from tmm_cli.errors import (
     NoTurnError,
     OutOfRangeError,
     RunawayError,
+    SettingError,
     SketchMismatchError,
     SpeedsEndError,
     StandstillError,
@@ -31,7 +32,7 @@ from tmm_cli.errors import (
     WeakMotorError,
 )
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote
+from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.structure.assur import Structure
@@ -105,15 +106,25 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
         case UnknownPositionError(number=number, count=count):
             return no_position(number, count, "positions")
         case UnknownNameError(name=name, allowed=allowed):
-            return ProblemError(
-                _("there is no such point, link or centre of mass"), path=("links",), found=quote(name),
-                allowed=", ".join(allowed), near=nearest(name, list(allowed)), key=True,
-            )  # fmt: skip
+            what = _("there is no such point, link or centre of mass")
+            return unknown_name(name, allowed, what, path=("links",), key=True)
         case NotOnFrameError(link=link, allowed=allowed):
+            what = _("this link cannot drive: it is not joined to the frame")
+            return unknown_name(link, allowed, what, path=("links",), key=True)
+        case SettingError(path=path, error=own):
+            within = _stage_error(own, problem)
+            return ProblemError(within.message, path=path, found=within.found, allowed=within.allowed)
+        case MissingStrokesError(link=link, path=("intermittent", *__, "moves_with") as path):
             return ProblemError(
-                _("this link cannot drive: it is not joined to the frame"), path=("links",), found=quote(link),
-                allowed=", ".join(allowed), near=nearest(link, list(allowed)), key=True,
+                _("this link never turns back: the wheel would not stand"), path=path, found=quote(link),
+                allowed=_("a link that swings"),
             )  # fmt: skip
+        case MissingStrokesError(path=("intermittent", *__) as path):
+            return ProblemError(
+                _("there is no working stroke"),
+                path=path,
+                allowed=_("forward, backward, or an output that has strokes"),
+            )
         case MissingStrokesError(link=link, path=path):
             what = _("no output is joined to the frame")
             if link is not None:
@@ -135,6 +146,10 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
             wanted = _("a law of motion is found for one crank that turns fully")
             if path == ("balancing",):
                 wanted = _("what shakes is found for one crank that turns fully")
+            if path[0] == "intermittent":
+                fit = _("a crank that turns fully, or a driver with a stroke that the linkage can go")
+                wanted = _("intermittent motion is found over a cycle, and the driver has none")
+                return ProblemError(wanted, path=path, key=True, allowed=f"{fit}; driver: {{stroke: [0, 100]}}")
             return ProblemError(
                 wanted, path=path, key=True, allowed=_("one driver that turns round and round"),
             )  # fmt: skip

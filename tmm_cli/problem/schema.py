@@ -13,11 +13,13 @@ from pydantic import BeforeValidator, Field
 
 from tmm_cli.problem.schema_balancing import Balancing
 from tmm_cli.problem.schema_dynamics import Dynamics
+from tmm_cli.problem.schema_intermittent import Wheels
 from tmm_cli.problem.schema_loads import Load, Mass
 from tmm_cli.problem.schema_meshes import Cam, Gear, Rack
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
+    FileHead,
     Name,
     Place,
     Strict,
@@ -156,13 +158,9 @@ class Checks(Strict):
     pressure_turning: Value | None = Field(default=None, description="largest pressure angle on a turning link; 45 deg")
 
 
-class File(Strict):
+class File(FileHead):
     """A problem of planar lever mechanisms."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
-    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
-    title: str = Field(default="", max_length=200)
-    description: str = Field(default="", max_length=4000)
     reference: str = Field(default="", max_length=100, description="of the mechanism, in a book or a list: M7, Fig. 7")
     shows: Shows = Field(default={}, description="properties as numbers: {swing: {of: psi, expected: 2*a}}")
     units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
@@ -198,6 +196,7 @@ class File(Strict):
     cycle: Value | None = Field(
         default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
     )
+    intermittent: Wheels = Field(default={}, description="wheels that a link takes along on some strokes only")
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")

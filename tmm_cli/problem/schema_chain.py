@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from tmm_cli.problem.schema_parts import MAX_LINKS, Name, Strict
+from tmm_cli.problem.schema_parts import MAX_LINKS, FileHead, Name, Strict
 from tmm_cli.problem.schema_shown import Shows
 
 MAX_PAIRS = 300
@@ -51,13 +51,9 @@ class SpatialStructure(Strict):
     spatial: Spatial
 
 
-class SpatialFile(Strict):
+class SpatialFile(FileHead):
     """A chain in space without dimensions: only its structure is counted."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
-    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
-    title: str = Field(default="", max_length=200)
-    description: str = Field(default="", max_length=4000)
     reference: str = Field(default="", max_length=100, description="of the mechanism in a book or a list")
     shows: Shows = Field(default={}, description="W, Wm, q or m: {mobility: {of: W, expected: 9}}")
     structure: SpatialStructure

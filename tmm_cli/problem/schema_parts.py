@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
@@ -52,6 +52,15 @@ class Strict(BaseModel):
 
     # built when it first validates: a model that is part of another needs no validator of its own
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
+
+
+class FileHead(Strict):
+    """What every problem file begins with."""
+
+    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
+    title: str = Field(default="", max_length=200)
+    description: str = Field(default="", max_length=4000)
 
 
 class OnLine(Strict):

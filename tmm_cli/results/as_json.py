@@ -15,6 +15,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import ENGLISH, spoken
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.json_intermittent import WHEEL
 from tmm_cli.results.json_motion import MOTION_PARTS
 from tmm_cli.results.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.results.properties import properties_shown
@@ -92,6 +93,8 @@ EXTREME = record(
     Field("high_at", NUMBER, "driver's place there"),
 )
 LAST = (
+    Field("intermittent", list_of(WHEEL), "wheels that a link takes along on some strokes, over a cycle", "wheels",
+          "wheels"),
     Field("centres", map_of(list_of(CENTRE)), "asked for: instantaneous centres, by the numbers of positions",
           lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()}, "centres"),
     Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),

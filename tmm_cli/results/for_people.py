@@ -9,15 +9,14 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from datetime import datetime
 from typing import Any, Literal
 
-from tmm_cli.language import _, half_up, typeset
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.language import half_up, typeset
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.results.table import Column, Table
 from tmm_cli.results.terminal import figures
 from tmm_cli.results.text import csv_cell
+from tmm_cli.results.workbook import WRITTEN, empty_workbook
 
 Kind = Literal["xlsx", "csv-local"]
 Cell = str | float | None
@@ -28,8 +27,6 @@ MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 WIDTHS = 8.0, 60.0  # of columns, letters: at least, at most
 HEAD_HEIGHT = 32  # points: two lines
 LONGEST_NAME, FORBIDDEN = 31, re.compile(r"[\[\]:*?/\\']")  # of sheets
-WRITTEN = datetime(2000, 1, 1)  # the same tables give the same bytes
-PLAIN = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
 
 
 def files(kind: Kind, tables: Iterable[Table], units: UnitSystem) -> Files:
@@ -76,14 +73,8 @@ def _text(cell: Cell) -> str:
 
 def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
     """Sheets with headings that stay in sight. Texts are written as texts: nothing in it is a formula or a link."""
-    try:
-        from xlsxwriter import Workbook
-    except ImportError:
-        raise ProblemError(
-            _("tables.xlsx is written by xlsxwriter, which is not installed"), allowed="pip install 'tmm-cli[excel]'"
-        ) from None
     stream = io.BytesIO()
-    with Workbook(stream, PLAIN) as book:
+    with empty_workbook("tables.xlsx", stream) as book:
         book.set_properties({"created": WRITTEN})
         formats = {
             "title": book.add_format({"bold": True, "font_size": 12}),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from tmm_cli.results.reports.synthesis import parameters
 from tmm_cli.results.shown import FILE_WORDS, show, show_vector
 from tmm_cli.results.stages import link_name
 from tmm_cli.results.table import Table, table_of_words
+
+if TYPE_CHECKING:
+    from tmm_cli.kinematics.intermittent_task import WheelTask
 
 
 def given(problem: Problem) -> Iterable[Table]:
@@ -86,6 +90,8 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
     if linkage.turns > 1:
         yield _("loads come again after"), _("{turns} turns of the crank").format(turns=linkage.turns)
+    for wheel in problem.wheels:
+        yield _("wheel {name}").format(name=wheel.name), _wheel(wheel)
     yield _("positions"), _positions(problem, measure)
     sketch = linkage.sketch
     places = [show(problem, sketch.at, measure)]
@@ -94,6 +100,22 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     yield _("sketch, driver at"), ", ".join(places)
     yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law(problem)))
     yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
+
+
+def _wheel(wheel: WheelTask) -> str:
+    """What takes it along, and when."""
+    words = {
+        "forward": _("moves with link {link} while that turns counterclockwise, and stands else"),
+        "backward": _("moves with link {link} while that turns clockwise, and stands else"),
+        "working stroke": _("moves with link {link} in the working stroke, and stands else"),
+        "idle stroke": _("moves with link {link} in the idle stroke, and stands else"),
+    }
+    told = [words[wheel.when].format(link=wheel.link)]
+    if len(wheel.settings) > 1:
+        settings = [", ".join(f"{name} = {value}" for name, value in s.values.items()) for s in wheel.settings]
+        text = _("settings take turns, one a cycle of the driver: {settings}")
+        told.append(text.format(settings="; ".join(own or _("as the file says") for own in settings)))
+    return "; ".join(told)
 
 
 def _law(problem: Problem) -> Iterable[str]:

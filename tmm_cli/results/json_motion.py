@@ -251,14 +251,6 @@ SINGLE = record(
 )  # fmt: skip
 
 
-def _steady(results: Results) -> bool:
-    return results.running is not None and results.running.task.cyclic
-
-
-def _single(results: Results) -> bool:
-    return results.running is not None and not results.running.task.cyclic
-
-
 TANGENT = record(
     "a tangent to the energy-mass diagram",
     Field("x", NUMBER, "way of the driver at which it touches"),
@@ -305,8 +297,8 @@ MOTION_PARTS = (
     Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     Field("forces", FORCES, "force plan", lambda r: r, "lever"),
     Field("lever", LEVER, "the Zhukovsky lever", lambda r: r, "lever"),
-    Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, _steady),
-    Field("run", SINGLE, "a single run", "running", _single),
+    Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, "steady"),
+    Field("run", SINGLE, "a single run", there="single", read="single"),
     Field("balancing", BALANCING, "what shakes the frame at constant speed of the driver", there="balancing"),
     Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
           "energy"),

@@ -42,11 +42,12 @@ LINK = record(
     Field("label", TEXT, "the file's own name", "link.label"),
     Field("points", NAMES, "its points", "link.points"),
 )
+ENDS = Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j))
 PAIR = record(
     "a pair",
     Field("name", TEXT, "point or guide; a compound hinge's further pairs have primes"),
     Field("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
-    Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j)),
+    ENDS,
     Field("point", TEXT, "hinge or running point"),
 )
 PASSIVE = record(
@@ -105,7 +106,7 @@ CHAIN = (
 REPLACEMENT = record(
     "a pair",
     Field("pair", TEXT, "name", "pair.name"),
-    Field("links", NAMES, "first and second link", lambda replacement: (replacement.pair.i, replacement.pair.j)),
+    *inside("pair", (ENDS,)),
     Field("was", TEXT, "kind"),
     Field("kind", TEXT, "kind it is to have"),
     Field("freedoms", NUMBER, "of that kind"),
@@ -133,7 +134,7 @@ SPACE = record(
 CHAIN_PAIR = record(
     "a pair",
     Field("name", TEXT, "name"),
-    Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j)),
+    ENDS,
     Field("kind", optional(TEXT), "null when only freedoms are given", lambda pair: pair.kind or None),
     Field("freedoms", NUMBER, "1 to 5"),
     Field("class", NUMBER, "number of its constraints", "pair_class"),

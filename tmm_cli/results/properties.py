@@ -13,11 +13,13 @@ from tmm_cli.analysis import pipeline
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.analysis.quantities import quantities
 from tmm_cli.analysis.quantities.base import STAGES, Quantity
+from tmm_cli.analysis.quantities.intermittent import of_wheels
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote, under
+from tmm_cli.problem.errors import ProblemError, no_position, path_text, quote, under, unknown_name
 from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Path
@@ -102,7 +104,7 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
     if task.within is not None:
         dimension = place_dimension(results.linkage.driver.kind)
     if task.per is not None:
-        by, of = task.per, quantities(results.linkage, results.structure)
+        by, of = task.per, _named(results)
         if isinstance(by, str) and by in of:
             if of[by].dimension != dimension:
                 raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(by))
@@ -116,13 +118,15 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
     return Property(name, value, dimension, expected)
 
 
+def _named(results: Results) -> dict[str, Quantity]:
+    """All quantities, and those of wheels."""
+    return {**quantities(results.linkage, results.structure), **of_wheels(results.inputs.wheels)}
+
+
 def _known(name: str, key: str, results: Results) -> Quantity:
-    known = quantities(results.linkage, results.structure)
+    known = _named(results)
     if name not in known:
-        raise ProblemError(
-            _("there is no quantity of that name"), path=(key,), found=quote(name), allowed=", ".join(known),
-            near=nearest(name, known),
-        )  # fmt: skip
+        raise unknown_name(name, known, _("there is no quantity of that name"), path=(key,))
     return known[name]
 
 
@@ -137,11 +141,21 @@ def _with_settings(task: Shown, results: Results) -> Results:
     """The same linkage with other values of parameters, as far as the results go."""
     problem: Problem = results.problem
     assert problem.source is not None
-    other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
     stage = stage if results.reactions is None else "forces"
-    inputs = replace(results.inputs, linkage=other.linkage, request=other.request, extended=None)
-    return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
+    try:
+        other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+        inputs = replace(
+            results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None
+        )
+        with in_words_of(other):
+            return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
+    except ProblemError as error:  # its place is that of what the parameters spoil
+        told = _("with these parameters the file would be refused: {reason}")
+        reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+        raise ProblemError(
+            told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
+        ) from None
 
 
 def _broken(hinge: str, results: Results) -> Results:

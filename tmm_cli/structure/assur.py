@@ -132,11 +132,6 @@ class Structure:
         return sum(passive.constraints for passive in self.passive)
 
     @property
-    def driver(self) -> Driver:
-        """The first driver."""
-        return self.drivers[0]
-
-    @property
     def higher(self) -> int:
         """Number of higher pairs, p2."""
         return sum(not pair.lower for pair in self.pairs)

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import VALUE, Name, Strict, Value, checked_value
+from tmm_cli.problem.schema_parts import VALUE, FileHead, Name, Strict, Value, checked_value
 from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.values import ValueReader
@@ -70,13 +70,9 @@ class OfTheFile(Exception):  # noqa: N818  it says whose the error is
         self.error = error
 
 
-class SynthesisFile(Strict):
+class SynthesisFile(FileHead):
     """A problem file without a linkage, for `tmm synthesis` alone."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
-    lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
-    title: str = Field(default="", max_length=200)
-    description: str = Field(default="", max_length=4000)
     units: dict[str, str] = Field(default_factory=dict)
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
     synthesis: dict[str, Any]

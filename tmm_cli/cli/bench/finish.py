@@ -11,7 +11,7 @@ from typing import Annotated, NoReturn, TypeVar
 import typer
 from matplotlib.figure import Figure
 
-from tmm_cli.bench.figures import FIGURES
+from tmm_cli.bench.chart_axes import png
 from tmm_cli.bench.measured import Measured
 from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
@@ -72,7 +72,7 @@ def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
         contents[f"{name}.csv"] = lines.getvalue().encode()
     elif len(measured.tables) == 1:
         contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
-    contents |= {file: FIGURES[file.rpartition(".")[2]](figure) for file, figure in charts.items()}
+    contents |= {file: png(figure) for file, figure in charts.items()}
     for file, content in contents.items():
         write_whole(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)

@@ -188,7 +188,7 @@ def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: 
         after = np.array(leaps, dtype=int) + 1
         whole = np.insert(values, after, np.nan)
         curves.append(Curve(np.insert(xs, after, np.nan), whole, course.name, colour, style))
-        every = slice(None, None, math.ceil(len(marks) / MARKS))
+        every = slice(None, None, math.ceil(len(marks) / MARKS) or 1)
         curves.append(Curve(marks[every], np.broadcast_to(points, np.shape(marks))[every], "", colour, dots=True))
         for i in leaps:
             told = [numeral(v, ".4g") if len(found.courses) <= WRITTEN else "" for v in (values[i], values[i + 1])]

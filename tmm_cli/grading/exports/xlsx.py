@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from datetime import datetime
 from itertools import count, islice
 from typing import Any
 
@@ -16,18 +15,15 @@ from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.shown import shown
 from tmm_cli.grading.statistics import tables
-from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column
+from tmm_cli.results.workbook import WRITTEN, empty_workbook
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
 MARKS_WIDTH, ANSWERS_WIDTHS = 13.0, (16.0, 24.0, 24.0, 9.0, 8.0)  # of columns between the first and the last, letters
 ANSWERS_HEADER = ("student", "asked", "answer", "right value", "error, %", "points", "reasons")
 HEAD_HEIGHT = 32  # points: two lines
-WRITTEN = datetime(2000, 1, 1)  # the same marks give the same bytes
-PLAIN = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
@@ -37,14 +33,8 @@ def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
 
 def _workbook(book: Gradebook) -> bytes:
     """Raises ProblemError where nothing is installed that writes it."""
-    try:
-        from xlsxwriter import Workbook
-    except ImportError:
-        raise ProblemError(
-            _("marks.xlsx is written by xlsxwriter, which is not installed"), allowed="pip install 'tmm-cli[excel]'"
-        ) from None
     stream = io.BytesIO()
-    with Workbook(stream, PLAIN) as workbook:
+    with empty_workbook("marks.xlsx", stream) as workbook:
         workbook.set_properties({"created": WRITTEN, "title": "marks"})
         formats = {name: workbook.add_format({"bg_color": colour}) for name, colour in COLOURS.items()}
         head = workbook.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})

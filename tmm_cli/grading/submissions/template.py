@@ -15,6 +15,7 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.quantities import ANGLE
 from tmm_cli.results.files import write_whole
+from tmm_cli.results.workbook import empty_workbook
 
 COLUMNS = ("quantity", "position", "unit", "value", "x", "y", "size")  # and the angle, in the file's unit
 SCALAR, VECTOR = COLUMNS[3:4], (*COLUMNS[4:], "angle")  # where an answer is written
@@ -51,15 +52,9 @@ def _csv(task: Task) -> bytes:
 
 def _xlsx(task: Task) -> bytes:
     """Where no answer belongs is grey."""
-    try:
-        from xlsxwriter import Workbook
-    except ImportError:
-        raise ProblemError(
-            _("XLSX is written by xlsxwriter, which is not installed"),
-            allowed=_("CSV; or: pip install 'tmm-cli[excel]'"),
-        ) from None
     found = io.BytesIO()
-    with Workbook(found, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}) as book:
+    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+    with empty_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
         sheet = book.add_worksheet("answers")
         head, grey = book.add_format({"bold": True, "bottom": 1}), book.add_format({"bg_color": "#D9D9D9"})
         room = book.add_format({"border": 1})

@@ -21,6 +21,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("chain", "chain", ()),
     ("quality", "motion", ("quality",)),
     ("properties", "problem", ("properties",)),
+    ("intermittent", "wheels", ("intermittent", "intermittent-cycle", "intermittent-course")),
     ("pressure", "motion", ("pressure",)),
     ("cycle", "motion", ("cycle",)),
     ("kinematics", "motion", ("points", "link-motion", "slides")),
