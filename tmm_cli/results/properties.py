@@ -17,7 +17,7 @@ from tmm_cli.analysis.quantities.intermittent import of_wheels
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, path_text, quote, under
+from tmm_cli.problem.errors import ProblemError, no_position, path_text, quote, under, unknown_name
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.schema_shown import Shown
@@ -126,10 +126,7 @@ def _named(results: Results) -> dict[str, Quantity]:
 def _known(name: str, key: str, results: Results) -> Quantity:
     known = _named(results)
     if name not in known:
-        raise ProblemError(
-            _("there is no quantity of that name"), path=(key,), found=quote(name), allowed=", ".join(known),
-            near=nearest(name, known),
-        )  # fmt: skip
+        raise unknown_name(name, known, _("there is no quantity of that name"), path=(key,))
     return known[name]
 
 

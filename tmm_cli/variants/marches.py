@@ -147,7 +147,7 @@ class Marches:
             moved = np.where(good, share - gone, 1.0)
             slope = np.where(good, (found - x) / moved, slope)
             x, v = np.where(good, found, x), np.where(good & (share == 1), rates, v)
-            stride = np.where(good, stride / FIRST_SHARE, stride / 2)
+            stride = np.where(good, np.where(gone > 0, 2 * stride, 1.0), stride / 2)
             gone = np.where(good, share, gone)
             if np.all(gone == 1):
                 break
