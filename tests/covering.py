@@ -6,14 +6,18 @@ and so not covered. Nothing here is shared with the code that puts labels where 
 
 from __future__ import annotations
 
+import cmath
+import math
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.paper.fonts import ink
+from tmm_cli.draw.paper.fonts import HALF, UNITS, drawable, font
+from tmm_cli.draw.paper.fonts import corners as box_of
 
 TOUCH = 0.05  # mm: less than a thin line is wide
 
@@ -55,6 +59,22 @@ def covered(drawing: Drawing) -> list[Covered]:
         if seen[row, number]:
             found.append(Covered(texts[row].text, "line", "rim of a circle", depth, texts[row].at))
     return found
+
+
+@cache
+def _reach(letter: str, bold: bool, italic: bool) -> tuple[float, float]:
+    low, high = font(bold, italic).load_char(ord(drawable(letter))).bbox[1::2]
+    return low / 64 / UNITS, high / 64 / UNITS
+
+
+def ink(mark: Text) -> tuple[complex, complex, complex, complex]:
+    """Corners of the box that holds the letters themselves: no higher and no lower than they are, mm."""
+    reaches = [_reach(letter, mark.bold, mark.italic) for letter in mark.text if letter != " "]
+    low, high = min(low for low, __ in reaches), max(high for __, high in reaches)
+    first, last, *__ = box_of(mark)
+    up = 1j * cmath.rect(mark.size, math.radians(mark.turn))
+    base = (0.5 - HALF) * up
+    return first + base + low * up, last + base + low * up, last + base + high * up, first + base + high * up
 
 
 def _meeting(boxes: Any, figures: Any, width: Any) -> list[tuple[int, int, float]]:

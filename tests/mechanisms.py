@@ -24,8 +24,10 @@ ROWS = 33
 LACKING: dict[int, str] = {
     14: "structure only: its links move in space",
     18: "what holds the flange while it stands, the other slide in its slot, is in no contact in the calculation",
-    20: "of Figs. 23 to 29 only Fig. 24 has a file; the others set one length or angle, which `--set` does",
-    21: "the rods of Figs. 31b (with a spring) and 34 have no files of their own",
+    20: "Figs. 23, 28 and 29 set one length or angle of a link, which `--set` does with any file; Fig. 26 sets by "
+    "wedges what Fig. 25 sets by a sleeve",
+    21: "Fig. 31b has no file: its text names no stop against which the spring holds the levers, and without one the "
+    "rod gives under any load; of Fig. 34 the control cylinder is left out",
     26: "ratchet-feed takes both places of its pin as given; ratchet-return is what moves it while the shaft stands",
     31: "structure only: its links move in space",
 }

@@ -222,6 +222,47 @@ def test_a_rod_without_its_bolt_lets_the_crank_turn_beside_a_slider_that_stands(
     assert any(name.startswith("lever") for name in drawn("settings/safety-rod-broken"))
 
 
+def test_an_open_rod_rocks_beside_a_slider_that_stands_and_closes_at_the_top():
+    closed, idle = solved("settings/breaking-rod"), solved("settings/breaking-rod-open")
+    assert closed.structure.mobility + closed.structure.redundant == 1
+    assert idle.structure.mobility == 3 * 4 - 2 * 5 == 2
+    assert idle.driver_range.full and np.all(idle.motion.moving) and np.ptp(idle.motion.named("E").x) == 0
+
+    def elbows(motion):
+        return motion.link("3").angle - motion.link("2").angle
+
+    assert elbows(closed.motion) == pytest.approx(np.zeros(12), abs=1e-12)
+    assert elbows(idle.motion)[0] == pytest.approx(0, abs=1e-12)
+    assert np.all(np.abs(elbows(idle.motion)[1:]) > math.radians(5))
+    e, x, angles = -340j, 25 - 130j, []
+    for phi in np.linspace(90, 450, 721):
+        a = 60 * unit(phi)
+        x = meet(a, e, math.hypot(190, 25), math.hypot(210, 25), x)
+        angles.append((np.angle((x - a) / (190 + 25j)), np.angle((e - x) / (210 - 25j))))
+    swings = np.ptp(np.unwrap(np.array(angles), axis=0), axis=0)
+    assert shown("settings/breaking-rod-open")[3:] == pytest.approx(swings, abs=1e-5)
+
+
+def test_the_initial_position_of_a_pusher_by_circles():
+    found = shown("settings/initial-position")
+    for number, rod in enumerate((206, 210, 214)):
+        b, heights = 30 + 215j, []
+        for phi in np.linspace(0, 360, 3601):
+            b = meet(20 * unit(phi), 160 + 215j, rod, 130, b)
+            d = 160 + 215j - 100 / 130 * (b - 160 - 215j)
+            heights.append(d.imag + 15)
+        assert 1000 * found[number] == pytest.approx(min(heights), abs=1e-4)
+        if rod != 210:
+            assert 1000 * found[3 if rod == 206 else 4] == pytest.approx(np.ptp(heights), abs=1e-4)
+
+
+def test_the_stroke_of_an_eccentric_sleeve_is_twice_the_sum_of_two_vectors():
+    for number, angle in enumerate((0, 90, 180)):
+        assert 1000 * shown("settings/eccentric-sleeve")[number] == pytest.approx(
+            2 * abs(10 + 8 * unit(angle)), abs=1e-9
+        )
+
+
 # gear-lever
 
 

@@ -34,7 +34,7 @@ def equations(name):
 
 
 def moments(equation):
-    return {term.acting.name: term.moment for term in equation.terms}
+    return {term.acting.symbol.name: term.moment for term in equation.terms}
 
 
 def exactness(term, centre):
@@ -127,7 +127,7 @@ def test_the_stone_s_forces_along_the_slot_give_the_normal_reaction():
     by_hand = dot(along, 1.5 * (-9.81j - complex(motion.centre("2").a[k])))
     group = next(part for part in loaded_parts(motion, results.reactions, k) if part.links == ("2", "3"))
     stone = next(one for one in group.sums if one.link == "2")
-    assert stone.found.acting.name == "R₁₂ⁿ" and stone.value == pytest.approx(abs(by_hand), rel=1e-10)
+    assert stone.found.acting.symbol.name == "R₁₂ⁿ" and stone.value == pytest.approx(abs(by_hand), rel=1e-10)
 
 
 def test_moments_of_a_crank_about_its_pivot_balance_it():

@@ -118,6 +118,7 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
         ("{of: H, without: A}", "shows.it.of: without a hinge only the structure is known\n  found:   'H'"),
         ("{of: W, without: Q}", "shows.it.without: there is no hinge of that name\n  found:   'Q'"),
         ("{of: H, set: {Q: 3}}", "there is no parameter of that name\n  found:   'Q'"),
+        ("{of: H, set: {l: 3}}", "shows.it.set: with these parameters the file would be refused: sketch.at: group "),
     ],
 )
 def test_slips_are_refused_at_their_place(tmp_path, block, message):

@@ -50,6 +50,11 @@ def test_a_motor_of_direct_current_comes_to_its_speed_exponentially():
     assert found.speed == pytest.approx(10 * (1 - np.exp(-50 / (2 * 10) * found.time)), rel=1e-9, abs=1e-12)
 
 
+def test_a_trial_step_may_be_so_quick_that_its_square_is_infinite():
+    found = acceleration(machine(ripple=0.6), RunTask(), np.zeros(1), np.ones(1), np.array([1e200]))
+    assert found == np.inf  # the step is not taken; a file with a drive of 1e9 over ten turns came to this
+
+
 @pytest.mark.parametrize("times", [10, 1e3, 1e5])
 def test_a_motor_too_strong_brings_its_machine_to_its_speed_without_load(times):
     found = run(machine(load=-80.0, ripple=0.6), RunTask(motor=Linear(500.0 * times, 12.0)))

@@ -88,6 +88,8 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
          "\n  found:   '(40 + 60) mm', at 'mm'" + ARITHMETIC),
         ("at: 60", "at: atan2(1, 2)", "x.yaml:8:14: sketch.at: a comma in brackets needs quotes here"
          "\n  found:   'atan2(1, 2)'\n  allowed: \"atan2(1, 2)\""),
+        ("[300, 0]", "(300, 0)", "x.yaml:2:24: points.D: two coordinates [x, y] are wanted"
+         "\n  found:   '(300, 0)'\n  allowed: [300, 0]"),
         ("[300, 0]", "[hypot(300, 0), 0]", "x.yaml:2:25: points.D[0]: a comma in brackets needs quotes here"
          "\n  found:   'hypot(300, 0)'\n  allowed: \"hypot(300, 0)\""),
     ],

@@ -9,7 +9,7 @@ from pathlib import Path
 from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, unknown_name
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.files import write_whole
 from tmm_cli.results.schemes import Written
@@ -103,10 +103,7 @@ def named_types(text: str) -> tuple[str, ...]:
         name = word.strip().upper()
         if name not in TYPES and name not in CLASSES:
             known = [*CLASSES, *(name for name in TYPES if name not in CLASSES)]
-            raise ProblemError(
-                _("there is no such group"), path=("--groups",), found=quote(word.strip()), allowed=", ".join(known),
-                near=nearest(name, known),
-            )  # fmt: skip
+            raise unknown_name(word.strip(), known, _("there is no such group"), path=("--groups",))
         found += CLASSES.get(name, (name,))
     return tuple(dict.fromkeys(found))
 

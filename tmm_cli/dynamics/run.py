@@ -165,7 +165,8 @@ def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float
     x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
     load, driving = float(machine.moment(x)[0]), _driving(task, t, x, speed)
     inertia = task.flywheel + float(machine.inertia(x)[0])
-    own = driving + load - task.brake - float(machine.slope(x)[0]) * speed**2 / 2
+    squared = speed * speed  # not **: far beyond its end a trial step may be so quick that this is infinite
+    own = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
     return [speed, own / inertia, driving * speed, load * speed, -task.brake * speed]
 
 

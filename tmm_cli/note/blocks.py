@@ -173,6 +173,11 @@ def line(*parts: Inline) -> Line:
     return tuple(parts)
 
 
+def cells(*parts: Inline | Line) -> tuple[Line, ...]:
+    """Of a row of a table."""
+    return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
+
+
 def listed(parts: Iterable[Inline], between: str = ", ") -> Line:
     """One after another."""
     return tuple(one for k, part in enumerate(parts) for one in ((between, part) if k else (part,)))

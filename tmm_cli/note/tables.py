@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tmm_cli.language import spelt
-from tmm_cli.note.blocks import Line, Rows
+from tmm_cli.language import _, spelt
+from tmm_cli.note.blocks import Line, Rows, cells
 from tmm_cli.note.context import Subject, by_hand, with_degrees
 from tmm_cli.note.expression import fixed, plain, rounded
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.results.table import Column, Table
-from tmm_cli.results.terminal import cells, figures
+from tmm_cli.results.terminal import cells as cells_of
+from tmm_cli.results.terminal import figures
 
 DIGITS = 4
 NONE = "—"
@@ -40,6 +41,13 @@ def rows_of(
     return Rows(caption or table.title, tuple(head), rows, key)
 
 
+def over_positions(subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str) -> Rows:
+    """A row a position; columns: the head and the texts of each."""
+    rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
+    head = cells(_("position"), *(head for head, __ in columns))
+    return Rows(caption, head, tuple(cells(*row) for row in rows), key)
+
+
 def unbroken(text: str) -> str:
     """Kept on one line of a cell."""
     return text.replace(" ", "\N{NO-BREAK SPACE}")
@@ -60,7 +68,7 @@ def _told_apart(table: Table, shown: list[list[str]]) -> None:
 def _texts(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
     """Without powers of ten as far as people write numbers so."""
     if column.dimension is None:
-        return cells(column, units, range(len(column.values)))
+        return cells_of(column, units, range(len(column.values)))
     write = fixed if zeros else plain
     told = zip(column.numbers(units).tolist(), figures(column, units).tolist(), strict=True)
     return [write(rounded(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told]

@@ -148,19 +148,9 @@ def in_letters(segment: str) -> str:
     return segment.translate(_BELOW)
 
 
-def reaction_name(by: str, on: str, part: str = "") -> str:
-    """R₃₄: from link 3 on link 4; part: τ tangential, n normal."""
-    return reaction_symbol(by, on, part).name
-
-
 def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
-    """The same with indices; letter: M of the couple that a guide or a cam bears."""
+    """R₃₄: from link 3 on link 4; part: τ tangential, n normal; letter: M of the couple that a guide or a cam bears."""
     return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
-
-
-def balance_name(link: str, several: bool, *, turns: bool = False) -> str:
-    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
-    return balance_symbol(link, several, turns=turns).name
 
 
 def lettered(mark: str, index: str = "") -> Symbol:
@@ -170,6 +160,6 @@ def lettered(mark: str, index: str = "") -> Symbol:
 
 
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
-    """The same with indices."""
+    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
     index = link if several else ""
     return lettered("M_b", index) if turns else lettered("F_b", index)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, quote, unknown_name
 from tmm_cli.problem.scalars import comma_error
 from tmm_cli.problem.units import PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension
@@ -190,10 +190,7 @@ class Parser:
             raise ProblemError(_("a unit without a number before it"), found=quote(name), allowed=f"e.g. 1 {name}")
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
-        raise ProblemError(
-            _("there is no such parameter"), found=quote(name), allowed=", ".join(self.parameters) or "none is given",
-            near=nearest(name, names),
-        )  # fmt: skip
+        raise unknown_name(name, names, _("there is no such parameter"), ", ".join(self.parameters) or "none is given")
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):

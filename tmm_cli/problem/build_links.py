@@ -10,7 +10,7 @@ from typing import Any
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Hinge, Link, Slide, hinged
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, unknown_name
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
 from tmm_cli.quantities import ANGLE, LENGTH
@@ -137,10 +137,8 @@ class _Reader:
             among = _("guides: {guides}; links: {links}").format(
                 guides=", ".join(guides) or _("none"), links=", ".join(self.links)
             )
-            raise ProblemError(
-                _("there is no such guide or link"), path=(*part.path, "on"), found=quote(given.on), allowed=among,
-                near=nearest(given.on, [*guides, *(n for n in self.links if n != runner)]),
-            )  # fmt: skip
+            known = [*guides, *(n for n in self.links if n != runner)]
+            raise unknown_name(given.on, known, _("there is no such guide or link"), among, path=(*part.path, "on"))
         self.values.different((runner, carrier), (*part.path, "on"))
         through, angle, ends = self.guide(line, carrier)
         bounded = carrier != FRAME and not (given.unbounded or line.given.unbounded)

@@ -154,6 +154,8 @@ class Composer:
         if event.value.count("(") <= event.value.count(")"):
             return
         if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + LONGEST_CALL]):
+            if cut[0].startswith("("):  # as coordinates are written on paper
+                self.refuse(event, path, _("two coordinates [x, y] are wanted"), quote(cut[0]), f"[{cut[0][1:-1]}]")
             self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:

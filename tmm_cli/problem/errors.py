@@ -175,6 +175,18 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     return folded[close[0]] if close else None
 
 
+def unknown_name(
+    name: str, known: Iterable[str], message: str, allowed: str | None = None, *, path: Path = (),
+    file: str | None = None, key: bool = False,
+) -> ProblemError:  # fmt: skip
+    """Of a name that is none of those known, with the nearest of them; allowed: where they are not told one by one."""
+    names = list(known)
+    return ProblemError(
+        message, path=path, found=quote(name), allowed=allowed or ", ".join(names) or None, near=nearest(name, names),
+        file=file, key=key,
+    )  # fmt: skip
+
+
 def no_position(number: int, count: int, *path: str | int) -> ProblemError:
     """Of the number of a position, where there are so many of them."""
     allowed = _("0 to {last}").format(last=count - 1)
@@ -186,8 +198,7 @@ def chosen_names(text: str, known: Iterable[str], option: str, reason: str) -> l
     wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)
     for name in wanted or [text]:
         if name not in allowed:
-            near = nearest(name, allowed)
-            raise ProblemError(reason, found=quote(name), allowed=", ".join(allowed), near=near, file=option)
+            raise unknown_name(name, allowed, reason, file=option)
     return wanted
 
 

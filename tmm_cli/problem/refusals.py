@@ -32,7 +32,7 @@ from tmm_cli.errors import (
     WeakMotorError,
 )
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote
+from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.structure.assur import Structure
@@ -106,15 +106,11 @@ def _stage_error(error: LinkageError, problem: Problem) -> ProblemError:
         case UnknownPositionError(number=number, count=count):
             return no_position(number, count, "positions")
         case UnknownNameError(name=name, allowed=allowed):
-            return ProblemError(
-                _("there is no such point, link or centre of mass"), path=("links",), found=quote(name),
-                allowed=", ".join(allowed), near=nearest(name, list(allowed)), key=True,
-            )  # fmt: skip
+            what = _("there is no such point, link or centre of mass")
+            return unknown_name(name, allowed, what, path=("links",), key=True)
         case NotOnFrameError(link=link, allowed=allowed):
-            return ProblemError(
-                _("this link cannot drive: it is not joined to the frame"), path=("links",), found=quote(link),
-                allowed=", ".join(allowed), near=nearest(link, list(allowed)), key=True,
-            )  # fmt: skip
+            what = _("this link cannot drive: it is not joined to the frame")
+            return unknown_name(link, allowed, what, path=("links",), key=True)
         case SettingError(path=path, error=own):
             within = _stage_error(own, problem)
             return ProblemError(within.message, path=path, found=within.found, allowed=within.allowed)

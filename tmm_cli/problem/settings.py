@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, unknown_name
 from tmm_cli.problem.scalars import plain_value
 from tmm_cli.problem.tree import Path, Tree
 
@@ -25,10 +25,8 @@ def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
         if not sign or not name:
             raise ProblemError(_("a name and a value are wanted"), allowed="--set OA=120", file=words)
         if name not in parameters:
-            raise ProblemError(
-                _("there is no parameter of that name"), path=path, found=quote(name), file=words,
-                allowed=", ".join(parameters) or _("none: the file has no parameters"), near=nearest(name, parameters),
-            )  # fmt: skip
+            none = None if parameters else _("none: the file has no parameters")
+            raise unknown_name(name, parameters, _("there is no parameter of that name"), none, path=path, file=words)
         if path in given:
             raise ProblemError(_("this is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
         given[path] = words

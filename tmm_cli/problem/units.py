@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from tmm_cli.double_double import PI, DoubleDouble
 from tmm_cli.language import ENGLISH, _, language, spelt
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under, unknown_name
 from tmm_cli.problem.scalars import finite_float
 from tmm_cli.quantities import (
     ANGLE,
@@ -205,10 +205,7 @@ class UnitSystem:
             if full not in KINDS or full == "number":
                 short = {long: short for short, long in _LONG.items()}
                 keys = [short.get(kind, kind) for kind in KINDS if kind != "number"]
-                raise ProblemError(
-                    _("unknown key"), path=(key,), found=quote(key), allowed=", ".join(keys),
-                    near=nearest(key, keys), key=True,
-                )  # fmt: skip
+                raise unknown_name(key, keys, _("unknown key"), path=(key,), key=True)
             kind = KINDS[full]
             with under(key):
                 found = parse_unit(name).dimension

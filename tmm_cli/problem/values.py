@@ -12,7 +12,7 @@ import numpy as np
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.arithmetic import MOST_ANGLE
-from tmm_cli.problem.errors import ProblemError, nearest, quote, under
+from tmm_cli.problem.errors import ProblemError, nearest, quote, under, unknown_name
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity
 from tmm_cli.problem.schema_parts import OnLine
 from tmm_cli.problem.tree import Path
@@ -122,10 +122,7 @@ class ValueReader:
         """The name, if there is one like it."""
         if name in names:
             return name
-        raise ProblemError(
-            unknown(what), path=path, found=quote(name),
-            allowed=", ".join(names) or None, near=nearest(name, names), key=key,
-        )  # fmt: skip
+        raise unknown_name(name, names, unknown(what), path=path, key=key)
 
     @staticmethod
     def different(links: Sequence[str], path: Path) -> None:

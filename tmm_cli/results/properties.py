@@ -17,8 +17,9 @@ from tmm_cli.analysis.quantities.intermittent import of_wheels
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
-from tmm_cli.problem.errors import ProblemError, nearest, no_position, quote, under
+from tmm_cli.problem.errors import ProblemError, no_position, path_text, quote, under, unknown_name
 from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Path
@@ -125,10 +126,7 @@ def _named(results: Results) -> dict[str, Quantity]:
 def _known(name: str, key: str, results: Results) -> Quantity:
     known = _named(results)
     if name not in known:
-        raise ProblemError(
-            _("there is no quantity of that name"), path=(key,), found=quote(name), allowed=", ".join(known),
-            near=nearest(name, known),
-        )  # fmt: skip
+        raise unknown_name(name, known, _("there is no quantity of that name"), path=(key,))
     return known[name]
 
 
@@ -143,11 +141,21 @@ def _with_settings(task: Shown, results: Results) -> Results:
     """The same linkage with other values of parameters, as far as the results go."""
     problem: Problem = results.problem
     assert problem.source is not None
-    other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
     stage = stage if results.reactions is None else "forces"
-    inputs = replace(results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None)
-    return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
+    try:
+        other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+        inputs = replace(
+            results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None
+        )
+        with in_words_of(other):
+            return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
+    except ProblemError as error:  # its place is that of what the parameters spoil
+        told = _("with these parameters the file would be refused: {reason}")
+        reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+        raise ProblemError(
+            told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
+        ) from None
 
 
 def _broken(hinge: str, results: Results) -> Results:

@@ -12,6 +12,7 @@ from random import Random
 
 from tmm_cli.schemes.draft import CRANK, CRANK_AT, Draft, SchemeLayout, Unfit, whole
 from tmm_cli.schemes.schemes import Placed, Scheme
+from tmm_cli.vectors import cross
 
 TRIALS = 250
 
@@ -52,7 +53,7 @@ class _GroupByGroup(Draft):
         nA, nB, nC = self.name(X, A), next(self.names), self.name(Y, C)
         self.bar(a, nA, A, nB, B)
         self.bar(b, nC, C, nB, B)
-        self.lose(_sine(B - A, B - C))
+        self.lose(cross(B - A, B - C) / (abs(B - A) * abs(B - C)))
         legs = abs(B - A), abs(B - C)
         self.spare(min(sum(legs) - abs(base), abs(base) - abs(legs[0] - legs[1])))
 
@@ -73,9 +74,10 @@ class _GroupByGroup(Draft):
         self.slide(Y, b, B, turn, nB)
         self.lose(math.cos(cmath.phase(B - A) - turn))
         # off the guide, or off the guide of a crank that turns about its pivot
-        off = abs(_across(A - B, turn))
+        along = cmath.rect(1, turn)
+        off = abs(cross(along, A - B))
         if Y in self.cranks:
-            off = abs(A - self.pivot(Y)) + abs(_across(B - self.pivot(Y), turn))
+            off = abs(A - self.pivot(Y)) + abs(cross(along, B - self.pivot(Y)))
         self.spare(abs(B - A) - off)
 
     def rpr(self, group: Placed) -> None:
@@ -141,7 +143,7 @@ class _GroupByGroup(Draft):
             self.bar(leg, at or self.name(0, A), A, name, B)
         # the ternary link is lost when the lines of its legs meet in one point
         ways = [(corner - A) / abs(corner - A) for corner, A in zip(corners, outer, strict=True)]
-        rows = [(w.real, w.imag, ((c - middle).conjugate() * w).imag / 75) for w, c in zip(ways, corners, strict=True)]
+        rows = [(w.real, w.imag, cross(c - middle, w) / 75) for w, c in zip(ways, corners, strict=True)]
         self.lose(_determinant(rows))
 
     def iv(self, group: Placed) -> None:
@@ -161,15 +163,6 @@ class _GroupByGroup(Draft):
 def _held(group: Placed) -> list[int]:
     """The links that a group is attached to, in the order of its outer pairs."""
     return [known for known, _, _ in group.outer]
-
-
-def _sine(a: complex, b: complex) -> float:
-    return (a.conjugate() * b).imag / (abs(a) * abs(b))
-
-
-def _across(way: complex, turn: float) -> float:
-    """How far a way leads to the left of a direction."""
-    return (way * cmath.rect(1, -turn)).imag
 
 
 def _determinant(rows: list[tuple[float, float, float]]) -> float:

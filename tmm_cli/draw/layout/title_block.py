@@ -30,7 +30,7 @@ class Titles:
 def frame(paper: tuple[float, float]) -> Line:
     """The frame of the field."""
     low, high = inner(paper)
-    return _rectangle(low, high, BOLD)
+    return _rectangle(low, high)
 
 
 def inner(paper: tuple[float, float]) -> tuple[complex, complex]:
@@ -48,7 +48,7 @@ def title_block(titles: Titles, corner: complex) -> Iterable[Mark]:
 
 def _gost(titles: Titles) -> list[Mark]:
     texts = titles.texts
-    marks: list[Mark] = [_rectangle(0j, 185 + 55j, BOLD)]
+    marks: list[Mark] = [_rectangle(0j, 185 + 55j)]
     marks += _lines("x", ((17, 0, 55), (40, 0, 55), (55, 0, 55), (65, 0, 55), (7, 30, 55), (135, 0, 40)), BOLD)
     marks += _lines("x", ((150, 20, 40), (167, 20, 40), (155, 15, 20)), BOLD)
     marks += _lines("x", ((140, 20, 35), (145, 20, 35)), FINE)
@@ -75,7 +75,7 @@ def _gost(titles: Titles) -> list[Mark]:
 
 def _plain(titles: Titles) -> list[Mark]:
     texts = titles.texts
-    marks: list[Mark] = [_rectangle(0j, 140 + 32j, BOLD)]
+    marks: list[Mark] = [_rectangle(0j, 140 + 32j)]
     marks += _lines("y", ((8, 0, 140), (16, 0, 140), (24, 0, 140)), FINE)
     marks += _lines("x", ((105, 16, 32), (85, 0, 16), (20, 0, 16), (105, 0, 16)), FINE)
     cells = (
@@ -90,9 +90,9 @@ def _plain(titles: Titles) -> list[Mark]:
     return marks
 
 
-def _rectangle(low: complex, high: complex, width: float) -> Line:
+def _rectangle(low: complex, high: complex) -> Line:
     across = (high - low).real
-    return Line((low, low + across, high, high - across, low), DARK, width, layer="frame", z=8.0)
+    return Line((low, low + across, high, high - across, low), DARK, BOLD, layer="frame", z=8.0)
 
 
 def _lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[Line]:

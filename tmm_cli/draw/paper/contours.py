@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from contourpy import contour_generator
 from numpy.typing import NDArray
 
 from tmm_cli.tolerances import SAME_PLACES
@@ -16,31 +17,8 @@ Share = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a no
 
 def contour(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
     """Lines on which values (columns, rows) have a level, as places column + i row; none in cells that lack a value."""
-    above = values >= level
-    whole = np.isfinite(values[:-1, :-1] + values[1:, :-1] + values[1:, 1:] + values[:-1, 1:])
-    mixed = np.stack([above[i : i + len(above) - 1, j : j + above.shape[1] - 1] for i, j in CORNERS])
-    pieces: list[tuple[complex, complex]] = []
-    cells = np.argwhere(whole & np.any(mixed != mixed[0], axis=0))
-
-    def share(one: tuple[int, int], other: tuple[int, int]) -> float:
-        return float((level - values[one]) / (values[other] - values[one]))
-
-    for i, j in np.argwhere(~whole).tolist():  # of three corners, a triangle
-        nodes = [(i + a, j + b) for a, b in CORNERS if np.isfinite(values[i + a, j + b])]
-        if len(nodes) == 3:
-            pairs = [sorted(pair) for pair in zip(nodes, nodes[1:] + nodes[:1], strict=True)]
-            ends = [
-                complex(*one) + share(one, other) * (complex(*other) - complex(*one))
-                for one, other in pairs if above[one] != above[other]
-            ]  # fmt: skip
-            pieces += [(ends[0], ends[1])] if ends else []
-    middles = (values[:-1, :-1] + values[1:, :-1] + values[1:, 1:] + values[:-1, 1:]) / 4
-    for i, j in cells.tolist():
-        crossed = [place for _, _, place in _crossings(above, i, j, share)]
-        if len(crossed) == 4 and (middles[i, j] >= level) != above[i, j]:  # a saddle: its middle tells what is joined
-            crossed = crossed[1:] + crossed[:1]
-        pieces += [(crossed[k], crossed[k + 1]) for k in range(0, len(crossed), 2)]
-    return _joined(pieces)
+    lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
+    return [places[:, 0] + 1j * places[:, 1] for places in map(np.asarray, lines)]
 
 
 def borders(inside: NDArray[Any], share: Share) -> list[NDArray[Any]]:

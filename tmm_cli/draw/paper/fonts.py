@@ -67,12 +67,6 @@ def outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDA
     return np.concatenate(places), np.concatenate(codes)
 
 
-@cache
-def _reach(letter: str, bold: bool, italic: bool) -> tuple[float, float]:
-    low, high = font(bold, italic).load_char(ord(drawable(letter))).bbox[1::2]
-    return low / 64 / UNITS, high / 64 / UNITS
-
-
 def start(mark: Text) -> complex:
     """The left end of a text, at half the height of its letters, mm."""
     left = SHARE[mark.align] * width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
@@ -92,16 +86,6 @@ def corners(mark: Text) -> tuple[complex, complex, complex, complex]:
     end = low + width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
     up = 1j * mark.size * along
     return low, end, end + up, low + up
-
-
-def ink(mark: Text) -> tuple[complex, complex, complex, complex]:
-    """Corners of the box that holds the letters themselves: no higher and no lower than they are, mm."""
-    reaches = [_reach(letter, mark.bold, mark.italic) for letter in mark.text if letter != " "]
-    low, high = min(low for low, __ in reaches), max(high for __, high in reaches)
-    first, last, *__ = corners(mark)
-    up = 1j * cmath.rect(mark.size, math.radians(mark.turn))
-    base = (0.5 - HALF) * up
-    return first + base + low * up, last + base + low * up, last + base + high * up, first + base + high * up
 
 
 @cache

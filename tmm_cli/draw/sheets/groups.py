@@ -155,7 +155,7 @@ def sliding_lead(sheet: Sheet, scene: Scene, pair: Pair, part: Part, look: Look)
         box(sheet, at, along, FREE, look.box, look, "--")
         return
     reach = (look.box[0] / 2 + BEYOND + 2) * along
-    rails(sheet, at - reach, at + reach, look.box[1], FREE, "--")
+    rails(sheet, at - reach, at + reach, look.box[1])
     box(sheet, at, along, part.colour, look.box, look)
 
 

@@ -19,7 +19,7 @@ from tmm_cli.draw.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.lever import POLE, LeverPlan, Pair, lever_plan
-from tmm_cli.plans.record import Symbol, balance_name, balance_symbol, in_letters
+from tmm_cli.plans.record import Symbol, balance_symbol, in_letters
 from tmm_cli.tolerances import NO_DIFFERENCE
 
 MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
@@ -118,7 +118,7 @@ def _several(here: Position) -> Iterable[str]:
     for balance in reactions.balances:
         ratio = float(np.broadcast_to(motion.drives[balance.driver.link].first, motion.q.shape)[k])
         turns = balance.moment is not None
-        name = balance_name(balance.driver.link, True, turns=turns)
+        name = balance_symbol(balance.driver.link, True, turns=turns).name
         names.append(name if ratio == 1 else f"{numeral(ratio, '+.4g')}·{name}")
         yield _("{name} = {value} {unit} (force plan)").format(
             name=name, value=numeral(float(balance.generalized[k]), ".6g"), unit=spelt("N·m" if turns else "N")

@@ -13,7 +13,7 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.pressure import angle, followers, named
 from tmm_cli.language import _, translated
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.record import balance_name, reaction_name
+from tmm_cli.plans.record import balance_symbol, reaction_symbol
 from tmm_cli.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -76,7 +76,7 @@ def balances(whole: Results, results: Results) -> list[Quantities]:
     found: dict[bool, list[Course]] = {True: [], False: []}
     for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
         turns = curve.moment is not None if several else curve.kind == "moment"
-        name = balance_name(curve.driver.link, several, turns=turns) if several else ""
+        name = balance_symbol(curve.driver.link, several, turns=turns).name if several else ""
         values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
         found[turns].append(Course(name, values, dots))
     moments = _("balancing moments") if several else _("balancing moment")
@@ -93,8 +93,8 @@ def reactions(whole: Results, results: Results) -> list[Quantities]:
     found = []
     for words, on_frame in ((_("reactions of the frame"), True), (_("between moving links"), False)):
         courses = [
-            Course(f"{reaction_name(r.by, r.on)} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
-            for r in whole.reactions.all
+            Course(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
+            for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
             if (FRAME in (r.on, r.by)) == on_frame
         ]
         found += [Quantities(words, FORCE, courses[i : i + MOST], "R") for i in range(0, len(courses), MOST)]

@@ -90,14 +90,8 @@ def body(sheet: Sheet, form: Form, colour: str, look: Look) -> None:
                 shift = side * (end - start) / abs(end - start)
                 sheet.ground.line(start + shift, end + shift)
     for at, one, other in form.welds:
-        weld(
-            sheet,
-            at,
-            one,
-            other,
-            colour,
-            look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0,
-        )
+        hidden = look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0
+        weld(sheet, at, one, other, colour, hidden)
 
 
 def weld(sheet: Sheet, at: complex, one: complex, other: complex, colour: str, hidden: float = 0.0) -> None:
@@ -124,12 +118,12 @@ def box(
         sheet.line([*corners, corners[0]], colour, 1.2, style, 4.1)
 
 
-def rails(sheet: Sheet, start: complex, end: complex, width: float, colour: str = DARK, style: Style = "-") -> None:
-    """Two lines along the way of a box of this width."""
+def rails(sheet: Sheet, start: complex, end: complex, width: float) -> None:
+    """What a lead would slide in: two lines along the way of a box of this width."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + GAP)
-        sheet.line([start + shift, end + shift], colour, 1.0, style, 2.5)
+        sheet.line([start + shift, end + shift], FREE, 1.0, "--", 2.5)
 
 
 def quiet(

@@ -197,14 +197,8 @@ def arrows(sheet: Sheet, scene: Scene, drawn: Rendered, look: Look, hue: Mapping
         at = sheet.on(drawn.scene.at(pair))
         if pair.slide is not None:
             along = scene.along(pair.slide) * driver.sense * (1 if pair.slide.runner == driver.link else -1)
-            sliding_arrow(
-                sheet,
-                drawn.cylinders.get(pair.name, at),
-                along,
-                look.box[1],
-                driver_name(driver, "v"),
-                hue[driver.link],
-            )
+            middle, name = drawn.cylinders.get(pair.name, at), driver_name(driver, "v")
+            sliding_arrow(sheet, middle, along, look.box[1], name, hue[driver.link])
         else:
             ends = [end - at for edge in drawn.forms[driver.link].edges for end in edge]
             arm = max(ends, key=abs, default=1 + 0j)

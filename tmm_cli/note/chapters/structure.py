@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.draw.sheets.structure import counted, parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, line, paragraph, said
+from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, cells, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
 from tmm_cli.note.math import Words
@@ -39,13 +39,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
 
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
-    told = [
-        (name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
+    rows = tuple(
+        cells(name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
         for name in subject.results.structure.links
-    ]
-    rows = tuple(tuple(line(text) for text in row) for row in told)
-    head = tuple(line(text) for text in (_("link"), _("kind"), _("motion"), _("points")))
-    return Rows(_("Moving links"), head, rows, "links")
+    )
+    return Rows(_("Moving links"), cells(_("link"), _("kind"), _("motion"), _("points")), rows, "links")
 
 
 def _motion(linkage: Linkage, name: str) -> str:
@@ -58,16 +56,10 @@ def _motion(linkage: Linkage, name: str) -> str:
 
 def _pairs(structure: Structure) -> Rows:
     rows = tuple(
-        (
-            line(p.name),
-            line(f"{link_name(p.i)} – {link_name(p.j)}"),
-            line(_(PAIRS[p.kind])),
-            line("1" if p.lower else "2"),
-        )
+        cells(p.name, f"{link_name(p.i)} – {link_name(p.j)}", _(PAIRS[p.kind]), "1" if p.lower else "2")
         for p in structure.pairs
     )
-    head = tuple(line(text) for text in (_("pair"), _("links"), _("kind"), _("freedoms")))
-    return Rows(_("Kinematic pairs"), head, rows, "pairs")
+    return Rows(_("Kinematic pairs"), cells(_("pair"), _("links"), _("kind"), _("freedoms")), rows, "pairs")
 
 
 def _mobility(structure: Structure) -> Iterable[Block]:
@@ -112,11 +104,9 @@ def _groups(subject: Subject) -> Iterable[Block]:
             ),
             table=Ref("groups"),
         )  # fmt: skip
-        head = (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
+        head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
         rows = tuple(_group(group) for group in structure.groups)
-        yield Rows(
-            _("Assur groups, in the order in which they are joined"), tuple(line(h) for h in head), rows, "groups"
-        )
+        yield Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups")
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
@@ -147,7 +137,6 @@ def _group(group: Group) -> tuple[Line, ...]:
     own = f"{w} = {3 * n - 2 * lower - higher - drivers}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
     outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
-    return (
-        line(group.title), line(ROMAN[min(group.group_class, 10)]), line(str(group.order)), line(counted(group.type)),
-        line(", ".join(pair.name for pair in group.inner) or NONE), line(outer), line(own),
-    )  # fmt: skip
+    inner = ", ".join(pair.name for pair in group.inner) or NONE
+    roman, order = ROMAN[min(group.group_class, 10)], str(group.order)
+    return cells(group.title, roman, order, counted(group.type), inner, outer, own)

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, line, paragraph, said, several
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, line, paragraph, said, several
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
 from tmm_cli.plans.bodies import named
@@ -93,11 +93,10 @@ def _gravity(subject: Subject) -> Iterable[Block]:
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        (line(name), line(called(link.label) or _(ROLES[roles[name]])), _lengths(subject, link) or line(NONE))
+        cells(name, called(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
         for name, link in linkage.links.items() if name != FRAME
     )  # fmt: skip
-    head = (line(_("link")), line(_("is called")), line(_("sizes")))
-    return Rows(_("Links and their sizes"), head, rows, "sizes")
+    return Rows(_("Links and their sizes"), cells(_("link"), _("is called"), _("sizes")), rows, "sizes")
 
 
 def _lengths(subject: Subject, link: Link) -> Line:
@@ -118,16 +117,14 @@ def _lengths(subject: Subject, link: Link) -> Line:
 
 def _fixed(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    rows = [
-        (line(point), *_place(subject, place), line(NONE))
-        for point, place in linkage.links[FRAME].points.items()
-    ]  # fmt: skip
+    points = linkage.links[FRAME].points.items()
+    rows = [cells(point, *_place(subject, place), NONE) for point, place in points]
     for slide in linkage.slides:
         if slide.carrier == FRAME:
             angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE, 6)
-            rows.append((line(_("guide {name}").format(name=slide.name)), *_place(subject, slide.through), line(angle)))
+            rows.append(cells(_("guide {name}").format(name=slide.name), *_place(subject, slide.through), angle))
     unit = subject.unit(LENGTH)
-    head = (line(_("point")), line(f"x, {unit}"), line(f"y, {unit}"), line(_("direction")))
+    head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
     shown = tuple(row if any(r[3] != (NONE,) for r in rows) else row[:3] for row in rows)
     caption = _("Fixed points and guides") if _guided(subject) else _("Fixed points")
     return Rows(caption, head[: len(shown[0]) if shown else 3], shown, "fixed")
@@ -137,10 +134,9 @@ def _guided(subject: Subject) -> bool:
     return any(slide.carrier == FRAME for slide in subject.results.linkage.slides)
 
 
-def _place(subject: Subject, place: complex) -> tuple[Line, Line]:
+def _place(subject: Subject, place: complex) -> tuple[Line, ...]:
     value, units = complex(np.ravel(place)[0]), subject.results.problem.units
-    x, y = (subject.text(float(units.from_si(part, LENGTH)), 6) for part in (value.real, value.imag))
-    return line(x), line(y)
+    return cells(*(subject.text(float(units.from_si(part, LENGTH)), 6) for part in (value.real, value.imag)))
 
 
 def _masses(subject: Subject) -> Rows:
@@ -149,10 +145,8 @@ def _masses(subject: Subject) -> Rows:
     for name in heavy(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
-        rows.append((
-            line(name), line(subject.text(float(units.from_si(mass, MASS)), 6)),
-            line(subject.text(float(units.from_si(inertia, INERTIA)), 6)), *_place(subject, link.centre),
-        ))  # fmt: skip
+        own = (float(units.from_si(mass, MASS)), float(units.from_si(inertia, INERTIA)))
+        rows.append(cells(name, *(subject.text(value, 6) for value in own), *_place(subject, link.centre)))
     head = (
         line(_("link")), line(Symbol("m"), f", {subject.unit(MASS)}"),
         line(Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
@@ -165,7 +159,7 @@ def _masses(subject: Subject) -> Rows:
 
 def _loads(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    head = tuple(line(text) for text in (_("load"), _("on link"), _("point of action"), _("size"), _("when")))
+    head = cells(_("load"), _("on link"), _("point of action"), _("size"), _("when"))
     return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
 
 
@@ -189,7 +183,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         first, last = (subject.value(angle, ANGLE, 6) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
     name = named(load.name, "P" if load.force else "M")
-    return line(name), line(link_name(load.link)), line(place if load.force else NONE), line(size), line(when)
+    return cells(name, link_name(load.link), place if load.force else NONE, size, when)
 
 
 def _wanted(subject: Subject) -> Iterable[str]:

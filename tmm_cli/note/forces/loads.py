@@ -12,7 +12,7 @@ from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
-from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, line, listed, said
+from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, cells, listed, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
 from tmm_cli.note.forces.words import direction, shown
@@ -175,16 +175,16 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
             told = f"{shown(subject, abs(push))} {_('N')}"
-            rows.append((line(force), line(load.link), line(told), line(direction(subject, push))))
+            rows.append(cells(force, load.link, told, direction(subject, push)))
         if abs(moment) > still:
             told = f"{shown(subject, abs(moment))} {_('N·m')}"
-            rows.append((line(couple), line(load.link), line(told), line(sense(moment))))
+            rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
         yield said(
             _("Table {table} lists everything that acts on the links in this position except the reactions."),
             table=Ref(f"loads-{k}"),
         )
-        head = (line(_("acts")), line(_("on link")), line(_("size")), line(_("angle from x, or sense")))
+        head = cells(_("acts"), _("on link"), _("size"), _("angle from x, or sense"))
         yield Rows(caption, head, tuple(rows), f"loads-{k}")
 
 

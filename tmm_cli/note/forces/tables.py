@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
 from tmm_cli.note.math import Letter, row
-from tmm_cli.note.tables import NONE
+from tmm_cli.note.tables import NONE, over_positions
 from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.results.reports.cycle import has_flywheel
 from tmm_cli.tolerances import NO_DIFFERENCE
@@ -55,14 +55,14 @@ def _sized(
     """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
     for first in range(0, len(forces), PAIRS):
         some = forces[first : first + PAIRS]
-        head: list[Line] = [line(_("position"))]
-        columns: list[Real] = []
+        columns: list[tuple[Line, list[str]]] = []
         for __, symbol, force, told in some:
-            head += [line(symbol, ", ", _("N")), line(_("angle, °"))]
             way, size = np.angle(force) if told is None else told, np.abs(force)
-            columns += [np.where(np.isnan(way) & np.isfinite(size), 0.0, size), way]
+            size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
+            columns.append((line(symbol, ", ", _("N")), _texts(subject, size, shown)))
+            columns.append((line(_("angle, °")), _texts(subject, way, angle)))
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
-        yield _table(subject, caption.format(names=names), head, columns, f"{key}-{first // PAIRS}", angles=True)
+        yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
 
 
 def balancing(subject: Subject) -> Iterable[Block]:
@@ -72,7 +72,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
     symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
     units = [_("N·m") if b.moment is not None else _("N") for b in balances]
     told = _("{symbol}, {unit}, by the force plan")
-    head = [line(_("position")), *(filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True))]
+    head = [filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True)]
     of_all = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
     head.append(filled(_("{symbol}, {unit}, by the lever"), symbol=of_all, unit=units[0]))
     columns = [*(b.generalized for b in balances), lever.balancing]
@@ -89,7 +89,8 @@ def balancing(subject: Subject) -> Iterable[Block]:
     caption = more if several else one
     yield from _signs(subject, of_all)
     yield said(_("The balancing load found in both ways is given in table {table}."), table=Ref("balance"))
-    yield _table(subject, caption, head, columns, "balance")
+    texts = [_texts(subject, column, shown) for column in columns]
+    yield over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
     if has_flywheel(results) and balances[0].moment is not None:
         yield said(
             _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
@@ -107,23 +108,11 @@ def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
     yield said(along if slides else turning, balance=balance)
 
 
-def _table(
-    subject: Subject, caption: str, head: Sequence[Line], columns: Sequence[Real], key: str, *, angles: bool = False
-) -> Rows:
-    """A row a position. angles: every second column is one."""
-    moving = subject.motion.moving
-    rows = []
-    for k, number in enumerate(subject.results.numbers):
-        cells = [line(str(number))]
-        for place, column in enumerate(columns):
-            value = _without_rounding(column, k) if moving[k] else np.nan
-            if not np.isfinite(value):
-                text = NONE
-            else:
-                text = angle(subject, value) if angles and place % 2 else shown(subject, value)
-            cells.append(line(text))
-        rows.append(tuple(cells))
-    return Rows(caption, tuple(head), tuple(rows), key)
+def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
+    """Values of all positions; a dash where it cannot move."""
+    values = [_without_rounding(column, k) for k in range(len(subject.results.numbers))]
+    there = np.isfinite(values) & subject.motion.moving
+    return [write(subject, value) if known else NONE for value, known in zip(values, there, strict=True)]
 
 
 def _without_rounding(column: Real, k: int) -> float:

@@ -13,6 +13,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import FIGURES, fixed
 from tmm_cli.note.kinematics.driver import output
 from tmm_cli.note.kinematics.on_paper import unit
+from tmm_cli.note.tables import over_positions
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.cycle import output_motion, states
 from tmm_cli.tolerances import NO_VECTOR
@@ -98,15 +99,9 @@ def _head(letter: str, links: Sequence[str]) -> Line:
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
-    results = subject.results
-    columns = [*_places(subject), *columns]
-    told = states(results)
-    rows = []
-    for k, number in enumerate(results.numbers):
-        cells = [line(_cell(subject, float(column.values[k]))) for column in columns]
-        rows.append((line(str(number)), *cells, *((line(told[k]),) if any(told) else ())))
-    head = [line(_("position")), *(column.head for column in columns), *((line(_("state")),) if any(told) else ())]
-    return Rows(caption, tuple(head), tuple(rows), key)
+    every, told = (*_places(subject), *columns), states(subject.results)
+    texts = [(column.head, [_cell(subject, float(value)) for value in column.values]) for column in every]
+    return over_positions(subject, caption, [*texts, *([(line(_("state")), told)] if any(told) else [])], key)
 
 
 def _places(subject: Subject) -> Iterable[Column]:

@@ -10,19 +10,19 @@ Arrays: tasks on the first axis, pairs on the last.
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from tmm_cli.double_double import PI, DoubleDouble
+from tmm_cli.vectors import unit
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4
 SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
 REFINEMENTS: Final = 6
 ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
-ON_CIRCLE: Final = 1e-6  # how near to the unit circle a root is on it
+REAL: Final = 5e-7  # rad: so near to a real angle a root is one
 
 
 class Bars(NamedTuple):
@@ -45,7 +45,7 @@ class Bars(NamedTuple):
 
     def pins(self, phi: Any, psi: Any) -> tuple[Any, Any]:
         """Pins B and C for given angles (without the zero angles), over l4; A is 0, D is 1."""
-        return self.l1 * _unit(self.phi0 + phi), 1 + self.l3 * _unit(self.psi0 + psi)
+        return self.l1 * unit(self.phi0 + phi), 1 + self.l3 * unit(self.psi0 + psi)
 
 
 def inverse(rows: Any) -> Any:
@@ -145,26 +145,17 @@ def angles_of_forms(forms: Any) -> Any:
     """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
     and sine vanish; nan where there is no more.
 
-    Times e^(3 i angle) a form is a cubic of z = e^(2 i angle): its roots on the unit circle are real angles, to half
-    their digits where two lie together, and `polished` makes them exact.
+    A form is a cubic of the tangent, whose real roots are known to half their digits where two lie together; `polished`
+    makes them exact.
     """
     found = np.full((len(forms), 3), EXACT(np.nan))
     size = np.max(np.abs(forms), axis=-1)
     for k in np.flatnonzero(np.isfinite(size) & (size > 0)):
-        z = np.roots(np.asarray(forms[k] / size[k], dtype=float) @ WAVES)
-        angles = np.sort(np.angle(z[np.abs(np.abs(z) - 1) < ON_CIRCLE]) / 2)
+        tangents = np.roots(np.asarray(forms[k] / size[k], dtype=float))
+        real = tangents.real[np.abs(tangents.imag) < REAL * (1 + np.abs(tangents) ** 2)]
+        angles = np.sort([*np.arctan(real), *[np.pi / 2] * (3 - len(tangents))])  # as its first terms are zero
         found[k, : len(angles)] = angles
     return found
-
-
-def _waves() -> Any:
-    """The cubic of z of each of the four terms of a form."""
-    sine, cosine = np.array([-1j, 1j]), np.array([1, 1])  # 2 sin, 2 cos: of e^(i angle), e^(-i angle)
-    terms = (sine, sine, sine), (sine, sine, cosine), (sine, cosine, cosine), (cosine, cosine, cosine)
-    return np.array([reduce(np.convolve, term) for term in terms])
-
-
-WAVES: Final = _waves()
 
 
 def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
@@ -245,10 +236,6 @@ def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
 
 def _rows(phi: Any, psi: Any) -> Any:
     return np.stack([np.cos(psi), -np.cos(phi), np.ones_like(np.asarray(phi, dtype=EXACT))], axis=-1)
-
-
-def _unit(angle: Any) -> Any:
-    return np.cos(angle) + 1j * np.sin(angle)
 
 
 def _wrapped(angle: Any) -> Any:

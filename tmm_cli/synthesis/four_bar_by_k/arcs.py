@@ -20,7 +20,7 @@ import numpy as np
 
 from tmm_cli.synthesis.four_bar import cosine as cosine_of
 from tmm_cli.synthesis.mean_ratio import theta_of
-from tmm_cli.vectors import settled
+from tmm_cli.vectors import settled, unit
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
@@ -109,7 +109,7 @@ def at(task: Task, w: Any, side: Any) -> Found:
     sines = [np.abs(cosine_of(l2, l3, (l4 + sign * l1) ** 2)) for sign in (-1, 1)]  # where A, B and D are in line
     way = np.where(np.asarray(task.psi2) > task.psi1, 1, -1)
     middle = (np.asarray(task.psi1) + task.psi2) / 2
-    frame = np.cos(middle) + 1j * np.sin(middle)
+    frame = unit(middle)
     a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
     a = settled(task.support + a, l4 + np.abs(task.support))
     return Found(
@@ -160,7 +160,7 @@ def line_places(task: Task) -> list[Any]:
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
-    way, height = (np.cos(middle) + 1j * np.sin(middle)) * (1j if task.choose == "xA" else 1), line(task)
+    way, height = unit(middle) * (1j if task.choose == "xA" else 1), line(task)
     both, apart = 2 * l3 * np.cos(half) * way, 2j * l3 * np.sin(half) * way  # C1 + C2, C2 - C1
     real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # of z where t = 0
     imag = l3 * l3 * np.sin(2 * half) + height * apart.real

@@ -27,7 +27,7 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import (
 from tmm_cli.synthesis.four_bar_by_k.drawing import construction, diagrams, listing, side_name
 from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
 from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Outcome, Value, given
-from tmm_cli.vectors import settled
+from tmm_cli.vectors import settled, unit
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -202,7 +202,7 @@ def _given(task: Task) -> tuple[Value, ...]:
 
 def _found(task: Task, f: Found) -> tuple[Value, ...]:
     """The four-bar, where its pivot stands, what that means for the crank, and how far the admissible arcs reach."""
-    at_c2 = task.support + task.l3 * (np.cos(task.psi2) + 1j * np.sin(task.psi2)) - f.a
+    at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     found = [
         Value("l1", f.l1, *QUANTITIES["l1"]),
         Value("l2", f.l2, *QUANTITIES["l2"]),

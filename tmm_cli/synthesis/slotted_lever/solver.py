@@ -20,7 +20,7 @@ from tmm_cli.synthesis.measures import crank_turns, end_angle, ratio, stroke
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 from tmm_cli.synthesis.slotted_lever.drawing import construction, family
 from tmm_cli.tolerances import DEAD_SWING
-from tmm_cli.vectors import settled
+from tmm_cli.vectors import settled, unit
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
@@ -87,7 +87,7 @@ def find(task: Task) -> Found:
         psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
     else:
         lever, c = np.asarray(task.CB), task.c
-        along = np.cos(task.axis) + 1j * np.sin(task.axis)
+        along = unit(task.axis)
         psi1, psi2 = task.axis - task.side * theta / 2, task.axis + task.side * theta / 2
     longest = lever / (1 + sine)
     if task.OA is not None:

@@ -18,7 +18,7 @@ from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.peaks import FIT, SIDE, peak, value
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
 from tmm_cli.variants.variant import WANTED
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, dot
 
 AWAY = 1e100  # where a variant cannot be assembled
 FOOT_STEPS = 3  # of Newton's method from the nearest corner: it is off by half a step at most
@@ -179,18 +179,14 @@ def _across(place: Any, wanted: Real, closed: bool) -> Real:
         low, high = np.maximum(low, -middle), np.minimum(high, count - 1 - middle)
     for __ in range(FOOT_STEPS):
         at, along, bend = (value(fit, u, order) for order in range(3))
-        slope, curve = _dot(at, along), _dot(along, along) + _dot(at, bend)
+        slope, curve = dot(at, along), dot(along, along) + dot(at, bend)
         u = np.clip(u - np.where(curve > 0, slope / curve, 0.0), low, high)
     at, along = value(fit, u), value(fit, u, 1)
-    end = np.abs(_dot(at, along)) > FOOT * np.abs(at) * np.abs(along)
+    end = np.abs(dot(at, along)) > FOOT * np.abs(at) * np.abs(along)
     normal = np.where(end, at / np.abs(at), 1j * along / np.abs(along))
     share = np.tensordot(FIT, np.cumprod([np.ones_like(u), *[u] * (2 * SIDE)], axis=0), 1)  # of each corner
-    found: Real = _dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
+    found: Real = dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
     return found.transpose(1, 2, 0)
-
-
-def _dot(a: Any, b: Any) -> Any:
-    return a.real * b.real + a.imag * b.imag
 
 
 def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
