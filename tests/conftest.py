@@ -9,6 +9,7 @@ import gc
 import os
 import shutil
 import sys
+from functools import cache
 from pathlib import Path
 
 import mpmath as mp
@@ -17,16 +18,20 @@ import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadFileScheduling
 
-ROOMS = ("from bank import NAMES", "from big_sheets import", "(browser")  # files that hold one go to one process
+ROOMS = ("from bank import NAMES", "from big_sheets import")  # files that hold one of these go to one process
+
+
+@cache
+def room_of(file):
+    text = Path(__file__).parents[1].joinpath(file).read_text(encoding="utf-8")
+    return next((room for room in ROOMS if room in text), file)
 
 
 class OfOneBank(LoadFileScheduling):
-    """Files that go through the whole bank share what they solve and draw; large sheets and Chromium are shared too."""
+    """Files that go through the whole bank share what they solve and draw, and so do those about large sheets."""
 
     def _split_scope(self, nodeid):
-        file = nodeid.split("::", 1)[0]
-        text = Path(__file__).parents[1].joinpath(file).read_text(encoding="utf-8")
-        return next((room for room in ROOMS if room in text), file)
+        return room_of(nodeid.split("::", 1)[0])
 
 
 def pytest_xdist_make_scheduler(config, log):
@@ -44,7 +49,7 @@ def fifty_digits():
         yield
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
     """Chromium, where it is installed with what drives it."""
     api = pytest.importorskip("playwright.sync_api")
