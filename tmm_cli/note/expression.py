@@ -263,18 +263,6 @@ def rounded(value: float, figures: int) -> float:
     return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
-def plain(value: float, figures: int) -> str:
-    """Figures without a power of ten where that is short: 1234.5, 0.00123, 1.2e-05."""
-    if value == 0:
-        return "0"
-    power = math.floor(math.log10(abs(value)))
-    if -4 <= power < WHOLE:
-        text = f"{value:.{max(figures - 1 - power, 0)}f}"
-        return text.rstrip("0").rstrip(".") if "." in text else text
-    mantissa, _, exponent = f"{half_up(value):.{figures - 1}e}".partition("e")
-    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
-
-
 def fixed(value: float, figures: int, terms: float = 0.0) -> str:
     """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
     if value == 0:
@@ -284,6 +272,12 @@ def fixed(value: float, figures: int, terms: float = 0.0) -> str:
         return f"{half_up(value):.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{half_up(value):.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
+
+
+def plain(value: float, figures: int) -> str:
+    """The same without zeros at the end: 1234.5, 0.00123, 1.2e-5."""
+    mantissa, *power = fixed(value, figures).split("e")
+    return "e".join((mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa, *power))
 
 
 def last_digit(text: str) -> float:

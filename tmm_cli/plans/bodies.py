@@ -103,7 +103,7 @@ class Loaded:
     def _loads(self, links: Collection[str]) -> Iterable[Acting]:
         for load in self.reactions.applied:
             if load.link in links:
-                kind: Kind = "inertia" if load.kind == "inertia" else "load"
+                kind = kind_of(load)
                 at = complex(self.motion.point(load.link, load.at).x[self.k])
                 force, couple = load_symbols(load)
                 yield Acting(force, kind, load.link, at, complex(load.force[self.k]))
@@ -162,6 +162,11 @@ def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
     acting = tuple(acting)
     largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
     return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
+
+
+def kind_of(load: Applied) -> Kind:
+    """As vectors of plans have it."""
+    return "inertia" if load.kind == "inertia" else "load"
 
 
 def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tmm_cli.forces.plan import GroupForces, Reaction, Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.plans.bodies import Loaded, load_symbols, part_across
+from tmm_cli.plans.bodies import Loaded, kind_of, load_symbols, part_across
 from tmm_cli.plans.leads import leads_of
 from tmm_cli.plans.record import Kind, NamedVector, Plan, Symbol, balance_symbol, reaction_symbol
 
@@ -119,8 +119,7 @@ def _borne(
             yield reaction_symbol(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
     for load in reactions.applied:
         if load.link == link and load.has_force:
-            kind: Kind = "inertia" if load.kind == "inertia" else "load"
-            yield load_symbols(load)[0], complex(load.force[k]), kind
+            yield load_symbols(load)[0], complex(load.force[k]), kind_of(load)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         own, base = balance.driver.link, balance.driver.base

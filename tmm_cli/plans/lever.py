@@ -12,9 +12,9 @@ from tmm_cli.forces.lever import Lever
 from tmm_cli.forces.plan import Balance, Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME
-from tmm_cli.plans.bodies import DRIVE, Acting, load_symbols, there
+from tmm_cli.plans.bodies import DRIVE, Acting, kind_of, load_symbols, there
 from tmm_cli.plans.moments import MomentEquation, Sought, numbered, terms
-from tmm_cli.plans.record import Kind, NamedVector, Symbol, balance_symbol
+from tmm_cli.plans.record import NamedVector, Symbol, balance_symbol
 from tmm_cli.plans.velocity import absolute, ends_of, massive, other_than, relative
 
 POLE = "p"
@@ -82,20 +82,16 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in told), equation)
 
 
-def _kind(load: Applied) -> Kind:
-    return "inertia" if load.kind == "inertia" else "load"
-
-
 def _force(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
     end = TURNED * complex(motion.point(load.link, load.at).first[k])
-    yield Acting(load_symbols(load)[0], _kind(load), load.link, end, complex(load.force[k]))
+    yield Acting(load_symbols(load)[0], kind_of(load), load.link, end, complex(load.force[k]))
 
 
 def _couple(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
     """M′, with the ratio of the link's speed to the driver's in it."""
     ratio, at = float(motion.link(load.link).first[k]), TURNED * complex(motion.point(load.link, load.at).first[k])
     symbol = load_symbols(load)[1].primed
-    yield Acting(symbol, _kind(load), load.link, at, 0j, float(load.moment[k]) * ratio)
+    yield Acting(symbol, kind_of(load), load.link, at, 0j, float(load.moment[k]) * ratio)
 
 
 def _pair(motion: Motion, load: Applied, k: int) -> Pair | None:
@@ -116,7 +112,7 @@ def _forces_of(motion: Motion, load: Applied, pair: Pair, k: int) -> Iterable[Ac
     force = 1j * arm * (pair.moment / abs(arm) ** 2)
     for local, symbol, sense in ((one, pair.symbol.primed, -1), (other, pair.symbol, 1)):
         end = TURNED * complex(motion.point(load.link, local).first[k])
-        yield Acting(symbol, _kind(load), load.link, end, sense * force)
+        yield Acting(symbol, kind_of(load), load.link, end, sense * force)
 
 
 def _balance(motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool) -> Iterable[Acting]:

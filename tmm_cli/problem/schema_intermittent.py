@@ -24,4 +24,4 @@ class Wheel(Strict):
     )
 
 
-Wheels = Annotated[dict[Name, Wheel], Field(max_length=10)]
+Wheels = Annotated[dict[Name, Wheel], Field(max_length=4)]  # a setting of a class III press takes 0.4 s

@@ -110,10 +110,10 @@ class Marches:
             return {**unknowns(states), **dets}
 
         self.program = record(stages, *[1] * (many + 1 + wants(kernels)))
-        _, _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
+        _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
-    def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real, Real]:
-        """Unknowns (unknowns, variants) closed from x; their rates; signs of the determinants (groups, variants).
+    def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
+        """Unknowns closed from x and their rates, (2, unknowns, variants); signs of determinants (groups, variants).
 
         signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
         """
@@ -121,9 +121,10 @@ class Marches:
         found = self.program(*data)
         dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
         sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
-        lost = np.where(sound, 0.0, np.nan)
-        place, rate = (np.stack([found.part(f"{part}{k}")[:, 0] for k in range(len(x))]) for part in "xv")
-        return place + lost, rate, dets
+        parts = np.stack([found.part(f"{part}{k}")[:, 0] for part in "xv" for k in range(len(x))])
+        there = parts.reshape(2, *x.shape)
+        there[0, :, ~sound] = np.nan
+        return there, dets
 
     def _near(self, found: Real, start: Real) -> Real:
         """Which variants closed near to their start."""
@@ -131,27 +132,29 @@ class Marches:
             near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < CORRECTION
         return near
 
-    def sketched(self, numbers: Real) -> tuple[Real, Real]:
-        """Unknowns of variants (variants, n) at the place of the sketch, and their rates; nan where they are lost."""
+    def sketched(self, numbers: Real) -> Real:
+        """Unknowns of variants (variants, n) at the place of the sketch and their rates, (2, unknowns, variants).
+
+        nan where they are lost.
+        """
         variants = len(numbers)
-        x = np.repeat(self.x[:, None], variants, axis=1)
-        v = np.full_like(x, np.nan)
+        there = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
         gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
-        slope = np.zeros_like(x)
+        slope = np.zeros_like(there[0])
         for _ in range(ROUNDS):
             share = np.minimum(gone + stride, 1.0)
-            start = x + slope * (share - gone)
+            start = there[0] + slope * (share - gone)
             between = self.first + share[:, None] * (numbers - self.first)
-            found, rates, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
-            good = self._near(found, start) & (gone < 1)
+            found, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
+            good = self._near(found[0], start) & (gone < 1)
             moved = np.where(good, share - gone, 1.0)
-            slope = np.where(good, (found - x) / moved, slope)
-            x, v = np.where(good, found, x), np.where(good & (share == 1), rates, v)
+            slope = np.where(good, (found[0] - there[0]) / moved, slope)
+            there = np.where(good, found, there)
             stride = np.where(good, np.where(gone > 0, 2 * stride, 1.0), stride / 2)
             gone = np.where(good, share, gone)
             if np.all(gone == 1):
                 break
-        return np.where(gone == 1, x, np.nan), v
+        return np.where(gone == 1, there, np.nan)
 
     def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> Ways:
         """Ways of variants over ranges (variants, 1), in so many steps up and down at most.
@@ -161,11 +164,10 @@ class Marches:
         if closed:
             half = (high - low) / 2
             low, high = self.at - half, self.at + half
-        x, v = self.sketched(numbers)
         n = -(-count // 2) if closed else count
         ends = np.stack([low[:, 0], high[:, 0]]) - self.at
         ends[0], ends[1] = np.minimum(ends[0], 0.0), np.maximum(ends[1], 0.0)
-        x, v = self._marched(numbers, x, v, ends / n, n)
+        x, v = self._marched(numbers, self.sketched(numbers), ends / n, n)
         gain = None
         if closed:
             gain = x[:, :, -1:] - x[:, :, :1]
@@ -175,8 +177,8 @@ class Marches:
             x[:, other] = np.nan  # a cycle later it is assembled otherwise
         return Ways(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
-    def _marched(self, numbers: Real, x: Real, v: Real, steps: Real, n: int) -> tuple[Real, Real]:
-        """Unknowns and rates (unknowns, variants, 2 n + 1) from those at the sketch on.
+    def _marched(self, numbers: Real, there: Real, steps: Real, n: int) -> Real:
+        """Unknowns and rates (2, unknowns, variants, 2 n + 1) from those at the sketch on.
 
         steps: their lengths down and up, (2, variants).
         """
@@ -184,33 +186,30 @@ class Marches:
         sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
         both = np.tile(numbers, (len(sides), 1))
         h = np.concatenate([steps[side] for side in sides])
-        now, rate = (np.tile(part, (1, len(sides))) for part in (x, v))
-        places, rates = (np.full((len(x), len(h), n + 1), np.nan) for _ in range(2))
-        places[:, :, 0], rates[:, :, 0] = now, rate
-        bend = np.zeros_like(now)
+        now = np.tile(there, (1, 1, len(sides)))
+        ways = np.full((*now.shape, n + 1), np.nan)
+        ways[..., 0] = now
+        bend = np.zeros_like(now[0])
         gone, size = np.zeros(len(h)), np.ones(len(h))  # in steps
-        going = np.isfinite(now[0])
+        going = np.isfinite(now[0, 0])
         while np.any(going):
             step = h * size
-            start = now + step * (rate + step / 2 * bend)
-            found, new, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
-            good = self._near(found, start) & going
+            start = now[0] + step * (now[1] + step / 2 * bend)
+            found, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
+            good = self._near(found[0], start) & going
             with np.errstate(invalid="ignore", divide="ignore"):
-                bend = np.where(good & (step != 0), (new - rate) / step, bend)
-            now, rate = np.where(good, found, now), np.where(good, new, rate)
+                bend = np.where(good & (step != 0), (found[1] - now[1]) / step, bend)
+            now = np.where(good, found, now)
             gone = gone + size * good
             whole = np.flatnonzero(good & (gone == np.floor(gone)))
-            node = gone[whole].astype(np.intp)
-            places[:, whole, node], rates[:, whole, node] = now[:, whole], rate[:, whole]
+            ways[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
             size = np.where(good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * size), size), size / 2)
             going = going & (gone < n) & (size >= SHORTEST)
-        ways = []
-        for part, there in ((places, x), (rates, v)):
-            side = {k: part[:, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
-            none = np.full((len(x), variants, n), np.nan)
-            down = side[0][:, :, :0:-1] if 0 in side else none
-            ways.append(np.concatenate([down, there[:, :, None], side[1][:, :, 1:] if 1 in side else none], axis=2))
-        return ways[0], ways[1]
+        nowhere = np.full((*there.shape, n), np.nan)
+        side = {k: ways[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
+        down = side[0][..., :0:-1] if 0 in side else nowhere
+        up = side[1][..., 1:] if 1 in side else nowhere
+        return np.concatenate([down, there[..., None], up], axis=-1)
 
 
 def _rough(kernel: Kernel) -> Kernel:

@@ -14,7 +14,7 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.sheets.mechanism import Position, place_of_driver
 from tmm_cli.language import _, numeral, translated
-from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.bodies import Loaded
 from tmm_cli.plans.record import Symbol, balance_symbol, reaction_symbol
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.quantities import (
@@ -108,18 +108,10 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
         return
-    own = {load.name: load_symbols(load) for load in reactions.applied}
-    forces = [(own[x.name][0], complex(x.force[k])) for x in reactions.applied if x.has_force]
+    given = Loaded.at(here.motion, reactions, k).given()
+    forces = [(one.symbol, one.force) for one in given if not one.couple]
     forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
-    moments = [(own[x.name][1], float(x.moment[k])) for x in reactions.applied if x.has_moment]
-    several = len(reactions.balances) > 1
-    for balance in reactions.balances:
-        turns = balance.kind == "moment" and balance.moment is not None
-        symbol = balance_symbol(balance.driver.link, several, turns=turns)
-        if turns:
-            moments.append((symbol, float(balance.generalized[k])))
-        else:
-            forces.append((symbol, complex(balance.vector[k])))
+    moments = [(one.symbol, one.moment) for one in given if one.couple]
     largest = max((abs(force) for __, force in forces), default=0.0)
     rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
     rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]

@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_cli.draw.paper.boxes import about
 from tmm_cli.draw.paper.labels import extent
+from tmm_cli.draw.paper.labels import gathered as in_place
 from tmm_cli.draw.paper.sheet import DARK, GREY_TEXT, THIN, Sheet
 from tmm_cli.vectors import Real, Vector, dot
 
@@ -131,15 +132,10 @@ def crowded(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> float:
 
 def gathered(numbers: Sequence[Number]) -> list[Number]:
     """Numbers that coincide on paper stand together, with an end of the way at its place."""
-    found: list[Number] = []
-    for number in numbers:
-        same = next((k for k, n in enumerate(found) if abs(n.run - number.run) < 0.5 and n.outer == number.outer), None)
-        if same is None:
-            found.append(number)
-        else:
-            both = found[same]
-            place = number if number.strong else both
-            found[same] = replace(place, text=f"{both.text}, {number.text}", strong=both.strong or number.strong)
+    found = []
+    for __, here in in_place((complex(number.run, number.outer), number) for number in numbers):
+        place = next((number for number in here if number.strong), here[0])
+        found.append(replace(place, text=", ".join(number.text for number in here)))
     return found
 
 

@@ -116,12 +116,11 @@ class Sheet:
         self.ground.boxes += [about(place, high, high) for place in places] or [about(middle, wide, high)]
 
     def label(
-        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal",
-        line: tuple[complex, complex] | None = None,
-    ) -> None:  # fmt: skip
-        """A text beside a place (mm), or anywhere beside a line; where exactly is decided when all is drawn."""
+        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal"
+    ) -> None:
+        """A text beside a place (mm); where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
-            self.labels.append(Label(text, anchor, size, colour, style, line))
+            self.labels.append(Label(text, anchor, size, colour, style))
 
     def line(
         self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: Style = "-", z: float = 3, *,
@@ -238,8 +237,8 @@ class Sheet:
 def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
     """Stretches of a polyline between places that are not finite."""
     array = np.asarray(places, complex)
-    gaps = np.flatnonzero(~np.isfinite(array))
-    for stretch in np.split(array, gaps):
+    finite = np.isfinite(array)
+    for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
         found = stretch[np.isfinite(stretch)]
         if len(found) > 1:
             yield tuple(found.tolist())

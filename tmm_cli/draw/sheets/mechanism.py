@@ -22,7 +22,6 @@ from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral, typeset
 from tmm_cli.plans.bodies import Loaded
-from tmm_cli.plans.record import PAD
 from tmm_cli.plans.velocity import massive
 from tmm_cli.quantities import ANGLE, LENGTH
 from tmm_cli.structure.cycle import DENSE
@@ -45,12 +44,10 @@ class Position:
         """velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
-    def sheet(
-        self, title: str, places: Iterable[complex] = (), pad: float = PAD, room: Room | None = None, **words: str
-    ) -> Sheet:
+    def sheet(self, title: str, places: Iterable[complex] = (), room: Room | None = None, **words: str) -> Sheet:
         """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
         subject = title.format(caption=self.caption, **words)
-        return Sheet(self.results.problem.title, subject, places, pad=pad, room=room)
+        return Sheet(self.results.problem.title, subject, places, room=room)
 
     @property
     def caption(self) -> str:
@@ -149,15 +146,6 @@ def once(path: Vector) -> list[complex]:
     near = np.abs(off - share * steps[None, :]) < ONE_LINE
     back = near & (dot(steps[:, None], steps[None, :]) < 0) & np.tri(len(steps), k=-1, dtype=bool)
     return [path[0], *np.where(back.any(axis=1), np.nan, path[1:]).tolist()]
-
-
-def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
-    """A sheet with these paths."""
-    found = paths(results)
-    used = [*fixed_pivots(results.linkage), *(place for path in found for place in path)]
-    sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
-    trace(sheet, found)
-    return sheet
 
 
 def detailed(results: Results) -> list[Position]:
