@@ -408,9 +408,9 @@ CASES = {
         "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s",
     ),
     "driver too fast to be followed": (
-        blocks.TWO, "2 rad/s", "1e15 rad/s", "1e15",
+        blocks.TWO, "2 rad/s", "1e11 rad/s", "1e11",
         "driver[1].speed: a driver is far faster than the first one\n"
-        "  found:   1e15 rad/s\n"
+        "  found:   1e11 rad/s\n"
         "  allowed: the fastest driver first",
     ),
     "two drivers: no real assembly": (
