@@ -17,11 +17,11 @@ import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadFileScheduling
 
-ROOMS = ("from bank import NAMES", "from big_sheets import")  # files that hold one of these go to one process
+ROOMS = ("from bank import NAMES", "from big_sheets import", "(browser")  # files that hold one go to one process
 
 
 class OfOneBank(LoadFileScheduling):
-    """Files that go through the whole bank share what they solve and draw, and so do those about large sheets."""
+    """Files that go through the whole bank share what they solve and draw; large sheets and Chromium are shared too."""
 
     def _split_scope(self, nodeid):
         file = nodeid.split("::", 1)[0]
@@ -33,7 +33,7 @@ def pytest_xdist_make_scheduler(config, log):
     return OfOneBank(config, log) if config.getoption("dist") == "loadfile" else None
 
 
-settings.register_profile("steady", derandomize=True, deadline=None)
+settings.register_profile("steady", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("steady")
 
 
@@ -44,7 +44,7 @@ def fifty_digits():
         yield
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
     """Chromium, where it is installed with what drives it."""
     api = pytest.importorskip("playwright.sync_api")
@@ -61,6 +61,7 @@ def browser():
 gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often
 sys.dont_write_bytecode = False  # or each process that a test starts would compile the whole product
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of what is started from here: its threads would share the cores
 
 if os.environ.get("TMM_LONGDOUBLE") == "double":  # before any module of tmm_cli is imported
     np.longdouble, np.clongdouble = np.double, np.cdouble

@@ -5,7 +5,7 @@ import math
 
 import pytest
 from bank import solved
-from test_commands import process, tmm
+from test_commands import tmm
 
 from tmm_cli.results.reports import tables
 
@@ -40,7 +40,7 @@ def run(folder, cd=520, when="", positions="count: 12", more=""):
 
 def test_the_table_stands_at_the_end_of_a_run_and_in_a_file(tmp_path):
     (tmp_path / "x.yaml").write_text(MECHANISM.format(cd=490, when="", positions="count: 12", more=""))
-    ended = process("run", "x.yaml", "--no-drawings", cwd=tmp_path)
+    ended = tmm("run", "x.yaml", "--no-drawings", cwd=tmp_path)
     assert ended.returncode == 0
     last = ended.stdout[ended.stdout.index("Checks\n" if "Checks\n" in ended.stdout else "Checks ") :]
     rows = [line.split("  ") for line in last.splitlines()]

@@ -195,10 +195,9 @@ def imported(*arguments):
     return set(done.stderr.splitlines()[-1].split())
 
 
-def test_structure_and_forces_import_neither_matplotlib_nor_scipy_and_version_nothing_heavy():
+def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heavy():
     heavy = {"numpy", "pydantic", "matplotlib", "scipy", "yaml"}
     assert heavy & imported("structure", str(SHAPER)) == {"numpy", "pydantic", "yaml"}
-    assert heavy & imported("forces", str(SHAPER)) == {"numpy", "pydantic", "yaml"}
     assert not heavy & imported("--version")
 
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_commands import ROOT, after_the_echo, process, tmm
+from test_commands import ROOT, after_the_echo, tmm
 
 from tmm_cli.results import files
 from tmm_cli.results.files import Staged, folder_name, folder_of, held, listed, write_whole
@@ -211,7 +211,7 @@ def test_a_run_killed_after_them_leaves_the_users_files_for_the_next_to_bring_ba
 
 
 def test_a_run_that_is_killed_while_it_writes_leaves_the_old_results_and_the_next_one_cleans(tmp_path):
-    assert process("run", SINE, "--no-drawings", "-o", tmp_path).returncode == 0
+    assert tmm("run", SINE, "--no-drawings", "-o", tmp_path).returncode == 0
     before = content(tmp_path / "sine")
     code = (
         "import os, sys\n"

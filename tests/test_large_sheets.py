@@ -25,7 +25,7 @@ from tmm_cli.plans.record import ROUND
 
 
 @given(st.lists(st.tuples(st.floats(10, 300), st.floats(10, 200)), min_size=1, max_size=12))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_packed_boxes_are_in_the_field_beside_the_title_block_and_do_not_overlap(sizes):
     field = Field(816.0, 584.0, (185.0, 55.0))
     places = pack(sizes, field)

@@ -94,8 +94,8 @@ def vectors(content: Any) -> Iterator[float]:
 
 def known(results: Results) -> np.ndarray:
     """Numbers of result.json, of the file and of what was read from it; in SI, units of the file, percent and rpm."""
-    found = list(leaves(json.loads("".join(json_text(sections(results))))))
-    found += vectors(json.loads("".join(json_text(sections(results)))))
+    record = json.loads("".join(json_text(sections(results))))
+    found = [*leaves(record), *vectors(record)]
     found += leaves(results.problem.source.data)
     found += [abs(results.linkage.gravity), np.angle(results.linkage.gravity)]
     for link in results.linkage.links.values():

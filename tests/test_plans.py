@@ -23,7 +23,7 @@ from tmm_cli.vectors import cross, dot
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_every_force_polygon_closes_and_the_inner_reaction_joins_its_corners(seed, kinds):
     _, motion, _, reactions = generic(linkage(seed, kinds))
     for k in range(len(motion.q)):
@@ -38,7 +38,7 @@ def test_every_force_polygon_closes_and_the_inner_reaction_joins_its_corners(see
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_parts_of_accelerations_lead_from_one_end_to_the_next(seed, kinds):
     _, motion, *_ = generic(linkage(seed, kinds))
     plan = acceleration_plan(motion, 0)

@@ -53,7 +53,7 @@ def generic(it):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_groups_are_found_as_they_were_put_together(seed, kinds):
     structure = analyse(linkage(seed, kinds))
     assert structure.mobility == structure.freedom == 1
@@ -66,7 +66,7 @@ def test_groups_are_found_as_they_were_put_together(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_pairs_stay_closed_in_place_velocity_and_acceleration(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, *_ = generic(it)
@@ -95,7 +95,7 @@ def test_pairs_stay_closed_in_place_velocity_and_acceleration(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=30)
 def test_velocities_and_accelerations_are_derivatives_of_places(seed, kinds):
     it = linkage(seed, kinds)
     step = 1e-4
@@ -114,7 +114,7 @@ def test_velocities_and_accelerations_are_derivatives_of_places(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_every_link_is_in_equilibrium_under_loads_and_reactions(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, loads, reactions = generic(it)
@@ -137,7 +137,7 @@ def test_every_link_is_in_equilibrium_under_loads_and_reactions(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30)
 def test_the_lever_agrees_with_the_force_plan(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, loads, reactions = generic(it)
@@ -147,7 +147,7 @@ def test_the_lever_agrees_with_the_force_plan(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_power_of_the_loads_is_the_rate_of_kinetic_energy(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, loads, reactions = generic(it)
@@ -167,7 +167,7 @@ def test_power_of_the_loads_is_the_rate_of_kinetic_energy(seed, kinds):
 
 
 @given(SEEDS, CHAINS, st.sampled_from([1e-6, 1e6]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_size_changes_lengths_only(seed, kinds, size):
     it = linkage(seed, kinds)
     _, motion, _, _ = generic(it)
@@ -188,7 +188,7 @@ def test_size_changes_lengths_only(seed, kinds, size):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_time_reversed_velocities_turn_round_and_forces_stay(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, _, reactions = generic(it)
@@ -209,7 +209,7 @@ def test_time_reversed_velocities_turn_round_and_forces_stay(seed, kinds):
 
 
 @given(SEEDS, CHAINS)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_mirror_image(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, _, reactions = generic(it)

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from test_commands import process, tmm
+from test_commands import tmm
 
 from tmm_cli import load, solve
 
@@ -28,7 +28,7 @@ def file(folder, cd=490, oa=150, guide="along: CD", positions=""):
 
 
 def test_a_stone_beyond_the_end_of_its_slot_is_warned_of_with_lengths_and_places(tmp_path):
-    ended = process("kinematics", file(tmp_path))
+    ended = tmm("kinematics", file(tmp_path))
     assert ended.returncode == 0
     # OC + OA = 500; CA = CD where sin(phi) = (CD^2 - OA^2 - OC^2)/(2 OA OC)
     start = math.degrees(math.asin((490**2 - 150**2 - 350**2) / (2 * 150 * 350)))

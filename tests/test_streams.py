@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-from test_commands import ROOT, after_the_echo, process, tmm
+from test_commands import ROOT, after_the_echo, tmm
 
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import NUMBER
@@ -156,7 +156,7 @@ def test_what_is_no_number_has_an_empty_cell():
 def test_characters_that_the_font_lacks_are_one_note(tmp_path):
     file = tmp_path / "sine.yaml"
     file.write_text(SINE.read_text(encoding="utf-8").replace("title: ", "title: 摇杆 ", 1), encoding="utf-8")
-    done = process("structure", file, "--drawings", "-o", tmp_path)
+    done = tmm("structure", file, "--drawings", "-o", tmp_path)
     note = "note: the font of the drawings lacks these characters, boxes stand for them: 摇 杆\n"
     assert done.returncode == 0
     assert after_the_echo(done.stderr) == f"{note}written: {tmp_path / 'sine'}\n"

@@ -3,12 +3,11 @@
 import csv
 import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from test_commands import tmm
 
 from tmm_cli.draw.paper.contours import contour, hatching, region
 from tmm_cli.draw.sheets.sweep import sheets
@@ -203,9 +202,8 @@ def test_hatching_stays_in_its_region_and_goes_on_from_piece_to_piece():
 
 
 def test_the_command_writes_what_it_shows(tmp_path):
-    call = [sys.executable, "-m", "tmm_cli", "sweep", "problems/crank-rocker.yaml", "--over", "l1=100..220:7",
-            "--show", "psi,M_b", "--set", "w1=20 rad/s", "-o", str(tmp_path)]  # fmt: skip
-    done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True)
+    done = tmm("sweep", "problems/crank-rocker.yaml", "--over", "l1=100..220:7", "--show", "psi,M_b",
+               "--set", "w1=20 rad/s", "-o", tmp_path)  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "7 mechanisms of 12 positions, all at once" in done.stderr
     folder = tmp_path / "crank-rocker-sweep"

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from test_commands import process, tmm
+from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.problem.build import build
@@ -27,7 +27,7 @@ def told(*changes, say=doubts):
 
 
 def test_units_driver_sizes_and_gravity_are_said_before_the_tables():
-    done = process("structure", SHAPER)
+    done = tmm("structure", SHAPER)
     assert done.returncode == 0
     assert done.stderr.splitlines() == [
         "shaper: bare numbers: mm, deg, kg, N, N*m, kg*m^2; a bare speed: rad/s or m/s",

@@ -13,7 +13,7 @@ from tmm_cli.grading.choices import NUMBER
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.task import Task
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote, under
+from tmm_cli.problem.errors import ProblemError, quote, under, unknown_name
 from tmm_cli.problem.units import parse_unit
 from tmm_cli.results.text import csv_cell
 from tmm_cli.results.workbook import empty_workbook
@@ -54,10 +54,8 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
     if asked not in table.rows and asked.isascii() and asked.isdigit() and 1 <= int(asked[:9]) <= len(students):
         asked = students[int(asked) - 1]
     if asked not in table.rows:
-        raise ProblemError(
-            _("there is no such variant"), found=quote(asked), near=nearest(asked, students),
-            allowed=_("1 to {last}, or a student of the table").format(last=len(students)),
-        )  # fmt: skip
+        allowed = _("1 to {last}, or a student of the table").format(last=len(students))
+        raise unknown_name(asked, students, _("there is no such variant"), allowed)
     return dict(zip(table.names, table.rows[asked], strict=True))
 
 

@@ -14,7 +14,7 @@ from tmm_cli.grading.block import AnswerRule, Blocks, Grading
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, validated
-from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote
+from tmm_cli.problem.errors import ProblemError, placed_in, quote, unknown_name
 from tmm_cli.problem.expressions import evaluate_quantity
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.record import Problem, TaskProblem
@@ -126,11 +126,8 @@ class Task:
         quantity = self.quantities.get(rule.of)
         if quantity is None:
             one_of_each = {_kind(name): name for name in reversed(self.quantities)}.values()
-            raise ProblemError(
-                _("there is no such quantity"), path=(*path, "of"), found=quote(rule.of),
-                allowed=_("e.g. {names}").format(names=", ".join(reversed(one_of_each))),
-                near=nearest(rule.of, self.quantities),
-            )  # fmt: skip
+            some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
+            raise unknown_name(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
         usual = FORCES if quantity.order >= 4 else KINEMATICS
@@ -173,10 +170,8 @@ class Task:
         found = self._parameters({})
         for name in names:
             if name not in found:
-                raise ProblemError(
-                    _("there is no parameter of that name"), found=quote(name),
-                    allowed=", ".join(found) or _("none: the file has no parameters"), near=nearest(name, found),
-                )  # fmt: skip
+                none = None if found else _("none: the file has no parameters")
+                raise unknown_name(name, found, _("there is no parameter of that name"), none)
         return tuple(found[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.grading.task import Task
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
+from tmm_cli.problem.errors import ProblemError, unknown_name
 from tmm_cli.quantities import ANGLE, Dimension
 from tmm_cli.vectors import Real
 
@@ -90,11 +90,8 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
     for text in given:
         for name in _split(text, names):
             if name not in names:
-                near = nearest(name, names)
-                raise ProblemError(
-                    _("there is no such quantity"), found=quote(name), file=f"--show {text}", near=near,
-                    allowed=_("e.g. {names}").format(names=", ".join(_examples(every))),
-                )  # fmt: skip
+                some = _("e.g. {names}").format(names=", ".join(_examples(every)))
+                raise unknown_name(name, names, _("there is no such quantity"), some, file=f"--show {text}")
             found.append(every[names[name]])
     found = list(dict.fromkeys(found)) or [every[name] for name in USUAL if name in every]
     if len(found) > MOST:

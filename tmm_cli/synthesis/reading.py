@@ -16,7 +16,7 @@ from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser
 from tmm_cli.problem.build import build as build_linkage
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
-from tmm_cli.problem.errors import ProblemError, nearest, placed_in, quote, under
+from tmm_cli.problem.errors import ProblemError, placed_in, quote, under, unknown_name
 from tmm_cli.problem.expressions import check_parameter
 from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
 from tmm_cli.problem.tree import Path, Tree
@@ -102,11 +102,9 @@ class TaskFile:
         for name, other in own.items():
             path = ("synthesis", "names", name)
             if name not in self.kinds:
-                raise ProblemError(
-                    _("the synthesis {task} finds nothing of that name").format(task=task), path=path,
-                    found=quote(name), allowed=", ".join(self.kinds) or _("it finds no parameters"),
-                    near=nearest(name, self.kinds), key=True,
-                )  # fmt: skip
+                nothing = _("the synthesis {task} finds nothing of that name").format(task=task)
+                none = None if self.kinds else _("it finds no parameters")
+                raise unknown_name(name, self.kinds, nothing, none, path=path, key=True)
             check_parameter(other, path, key=False)
         names = {name: own.get(name, name) for name in self.kinds}
         for name, other in names.items():

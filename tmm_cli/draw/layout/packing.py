@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, islice
 from random import Random
 
 Size = tuple[float, float]
+Step = tuple[float, float, float]  # of a skyline: from, to, down to
 MIXED = 30  # orders by chance that are tried too, always the same ones
 NEAR = 3.0  # places by which boxes that are to stay about in their order change it, at most
 MANY = 300  # where the best of all arrangements is looked for
@@ -107,37 +109,49 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
 
 def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:
     """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
-    skyline = [(0.0, field.width, 0.0)]  # from, to, down to
+    skyline: list[Step] = [(0.0, field.width, 0.0)]
     places = [(0.0, 0.0)] * len(sizes)
     for k in order:
         width, height = sizes[k]
-        best: tuple[float, float] | None = None
-        for start, __, ___ in skyline:
+        highest, place = math.inf, 0.0
+        for number, (start, __, ___) in enumerate(skyline):
             end = start + width
             if end > field.width + 1e-9:
                 break
-            top = max(down for left, right, down in skyline if right > start + 1e-9 and left < end - 1e-9)
-            if top + height <= field.depth(start, end) + 1e-9 and (best is None or (top, start) < best):
-                best = top, start
-        if best is None:
+            top = _top(skyline, number, end, highest)
+            if top < highest and top + height <= field.depth(start, end) + 1e-9:
+                highest, place = top, start
+        if highest == math.inf:
             return None
-        top, start = best
-        places[k] = (start, top)
-        skyline = list(_lowered(skyline, start, start + width, top + height))
+        places[k] = (place, highest)
+        skyline = _lowered(skyline, place, place + width, highest + height)
     return places
 
 
-def _lowered(
-    skyline: Sequence[tuple[float, float, float]], start: float, end: float, down: float
-) -> Iterator[tuple[float, float, float]]:
+def _top(skyline: Sequence[Step], number: int, end: float, most: float) -> float:
+    """How far down a box begins that stands from the left end of a step to here; what is not less than most is most."""
+    begin, top = skyline[number][0] + 1e-9, 0.0
+    for left, right, down in islice(skyline, number, None):
+        if left >= end - 1e-9:
+            break
+        if down > top and right > begin:
+            if down >= most:
+                return most
+            top = down
+    return top
+
+
+def _lowered(skyline: Sequence[Step], start: float, end: float, down: float) -> list[Step]:
     """The skyline with a box under which it goes down to here."""
+    found: list[Step] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
-            yield left, min(right, start), depth
+            found.append((left, min(right, start), depth))
         if left <= start + 1e-9 < right:
-            yield start, end, down
+            found.append((start, end, down))
         if right > end + 1e-9:
-            yield max(left, end), right, depth
+            found.append((max(left, end), right, depth))
+    return found
 
 
 def spread(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> list[Size]:

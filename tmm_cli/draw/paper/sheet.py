@@ -237,8 +237,8 @@ class Sheet:
 def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
     """Stretches of a polyline between places that are not finite."""
     array = np.asarray(places, complex)
-    gaps = np.flatnonzero(~np.isfinite(array))
-    for stretch in np.split(array, gaps):
+    finite = np.isfinite(array)
+    for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
         found = stretch[np.isfinite(stretch)]
         if len(found) > 1:
             yield tuple(found.tolist())
