@@ -176,7 +176,7 @@ REFUSED = {
         "synthesis.driver: the driver is hinged to the frame\n  found:   'l3' opposite the frame l1\n"
         "  allowed: l2, l4",
     "{task: grashof, l1: 1, l2: 2, l3: 3}":
-        "synthesis: these keys do not make a mechanism\n  found:   l1, l2, l3\n"
+        "synthesis: these keys do not determine a mechanism\n  found:   l1, l2, l3\n"
         "  allowed: l1, l2, l3, l4 (+ frame, driver); r, l (+ e); OA, OC (+ e)",
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l5}":
         "synthesis.frame: this word is not known here\n  found:   'l5'\n  allowed: l1, l2, l3, l4",

@@ -59,7 +59,6 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "analysis.on_request": "the law of motion, balancing and intermittent motion, for files that ask for it",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
-    "grading.exports.group": "drawing",
     "note.formats": "an extra: python-docx",
     "draw.formats.dxf": "an extra: ezdxf",
     "grading.cells": "an extra: python-calamine",

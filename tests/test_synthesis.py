@@ -55,7 +55,7 @@ REFUSED = {
     "{task: crank-slider, stroke: 50, e: 0, k: 1}":
         "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n",
     "{task: crank-slider, stroke: 20, k: 1.1}":
-        "synthesis: these keys do not determine a crank-slider\n  found:   k\n"
+        "synthesis: these keys do not determine a mechanism\n  found:   k\n"
         "  allowed: ratio and nu; or ratio and k; or pressure and nu; or pressure and k; or e and k",
     "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}":
         "synthesis.strok: unknown key\n  found:   'strok'\n"

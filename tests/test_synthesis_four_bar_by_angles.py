@@ -381,7 +381,7 @@ REFUSED = {
     "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100":
         "synthesis.x: the function has no values there, or the same at both ends\n"
         "  allowed: two ends at which the function differs",
-    "l4: 100": "synthesis: these keys do not determine a four-bar\n  found:   none\n"
+    "l4: 100": "synthesis: these keys do not determine a mechanism\n  found:   none\n"
         "  allowed: pairs; or function (or table), x, input, output",
 }  # fmt: skip
 

@@ -278,29 +278,29 @@ REFUSED = [
      "1", "the nearest is "),
     ("", {"psi2": "50 deg"}, ".psi2: a rocker swings by more than zero and less than 180 deg",
      "'psi2'", "the nearest is "),
-    (", l4: 900", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+    (", l4: 900", {}, ".l4: no pivot of the admissible arcs meets this",
      "900", "the nearest is "),
-    (", l4: 100", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+    (", l4: 100", {}, ".l4: no pivot of the admissible arcs meets this",
      "100", "the nearest is "),
     (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
-    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs is at this distance from D",
+    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs meets this",
      "900", "the nearest is "),
     (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
      "'cw'", "ccw"),
     (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
-     ".choose: no pivot of the admissible arcs is as high as D",
+     ".choose: no pivot of the admissible arcs meets this",
      "'supports level'", "best transmission"),
-    (", yA: 500", {}, ".yA: no pivot of the admissible arcs is at this height", "500", "the nearest is yA: 495.295 mm"),
-    (", xA: -90", {}, ".xA: no pivot of the admissible arcs has this x", "-90", "the nearest is xA: 144.727 mm"),
+    (", yA: 500", {}, ".yA: no pivot of the admissible arcs meets this", "500", "the nearest is yA: 495.295 mm"),
+    (", xA: -90", {}, ".xA: no pivot of the admissible arcs meets this", "-90", "the nearest is xA: 144.727 mm"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
      "choose and l4", "one of choose, l1, l2, l4, near, xA, yA"),
-    (", l1: 95", {}, ".l1: no pivot of the admissible arcs gives such a crank",
+    (", l1: 95", {}, ".l1: no pivot of the admissible arcs meets this",
      "95", "the nearest is "),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
      "70", "another task: no other value of it was found to help"),
-    (", l2: 60", {}, ".l2: no pivot of the admissible arcs gives such a coupler",
+    (", l2: 60", {}, ".l2: no pivot of the admissible arcs meets this",
      "60", "the nearest is "),
-    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs gives such a coupler",
+    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs meets this",
      "60", "the nearest is "),
 ]  # fmt: skip
 
@@ -372,7 +372,7 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
         assert m.difference <= MET, m
     at_height = problem(", yA: 130", k=1).synthesis.outcome.parameters
     assert at_height["yA"].value == pytest.approx(0.13, rel=1e-14)
-    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot of the admissible arcs is at this distance from D")
+    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot of the admissible arcs meets this")
 
 
 def test_the_family_is_drawn_with_the_choice_on_it():

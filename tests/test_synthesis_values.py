@@ -105,8 +105,8 @@ MESSAGES = {
     "some ratios": (  # over two turns, three and one
         "n2: {among: [90 rpm, 80 rpm, 120 rpm]}", "after how many turns all comes round again rests on this",
     ),
-    "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: from, to and step are wanted, or among alone"),
-    "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "from, to and step are wanted, or among alone"),
+    "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: [low, high], {from, to, step} or {among: [...]} is wanted"),
+    "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "[low, high], {from, to, step} or {among: [...]} is wanted"),
     "one value": ("n2: {among: [60 rpm]}", "with one value nothing varies", "found:   '60 rpm'"),
     "no value": ("n2: {among: []}", "vary.n2.among: there is nothing here", "the values themselves"),
     "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),

@@ -9,6 +9,7 @@ translated where it is shown. Files for machines are written in English: `with s
 from __future__ import annotations
 
 import re
+import string
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -74,6 +75,16 @@ def numeral(value: float, form: str) -> str:
 def half_up(value: float) -> float:
     """The same, so little larger that what ends in a five is rounded away from zero, whatever its last bits are."""
     return value * (1 + TIE)
+
+
+def filled(sentence: str, **parts: Any) -> tuple[Any, ...]:
+    """A sentence in pieces: with a part, such as a symbol, or several ones (a tuple) in the places of its {names}."""
+    found: list[Any] = []
+    for before, name, *__ in string.Formatter().parse(sentence):
+        found += [before] if before else []
+        if name:
+            found += parts[name] if isinstance(parts[name], tuple) else [parts[name]]
+    return tuple(found)
 
 
 def signed(text: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.animate.bodies import Body, Picture
-from tmm_cli.animate.courses import chart_data, charts, plan_data, position_marks, rounded
+from tmm_cli.animate.courses import chart_data, charts, plan_data, position_marks, rounded, sides
 from tmm_cli.animate.labels import labels, pair
 from tmm_cli.draw.paper.picture import reach
 from tmm_cli.draw.paper.sheet import Sheet
@@ -74,14 +74,9 @@ def picture_of(whole: Results, motion: Motion) -> Picture:
 
 def view(picture: Picture) -> tuple[float, float, float, float]:
     """What of the sheet is ever drawn on: left, top (y down), width and height, mm."""
-    every: list[complex] = []
-    step = max(1, len(picture.motion.q) // 24)
-    for own in picture.bodies.values():
-        local = [z for mark in own.marks for z in reach(mark)]
-        for k in range(0, len(picture.motion.q), step):
-            every += np.atleast_1d(own.at(np.array(local, complex), k)).tolist()
-    xs, ys = [z.real for z in every], [-z.imag for z in every]
-    return min(xs) - EDGE, min(ys) - EDGE, np.ptp(xs) + 2 * EDGE, np.ptp(ys) + 2 * EDGE
+    local = [(own, np.array([z for mark in own.marks for z in reach(mark)])) for own in picture.bodies.values()]
+    times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
+    return sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
 
 
 def body_data(own: Body) -> dict[str, Any]:

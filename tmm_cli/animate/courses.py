@@ -64,16 +64,14 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
         "vectors": below,
         "letters": [{"point": n, "text": _together(text)} for n, text in letters.items()],
         "scale": float(f"{scale:.5g}"),
-        "view": [
-            round(float(value), 1)
-            for value in (
-                every.real.min() * scale - ROOM,
-                -every.imag.max() * scale - ROOM,
-                np.ptp(every.real) * scale + 2 * ROOM,
-                np.ptp(every.imag) * scale + 2 * ROOM,
-            )
-        ],
+        "view": [round(side, 1) for side in sides(every * scale, ROOM)],
     }
+
+
+def sides(places: Vector, room: float) -> tuple[float, float, float, float]:
+    """Of a field with room about places, as a page has it: left, top (y down), width and height."""
+    x, y = places.real, -places.imag
+    return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
 def _together(letters: list[str]) -> str:

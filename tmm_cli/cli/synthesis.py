@@ -2,8 +2,25 @@
 
 from __future__ import annotations
 
-from tmm_cli.cli.common import Files, Json, Out, Settings, each
-from tmm_cli.cli.synthesis_report import report_synthesis
+from collections.abc import Sequence
+from pathlib import Path
+
+from tmm_cli.analysis.pipeline import Results
+from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each, emit_json
+from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.cli.talk import CHECK_FAILED, OK, say, warn
+from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.library import solve
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.results.files import Staged, folder_name, held
+from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
+from tmm_cli.results.terminal import show
+from tmm_cli.results.text import csv_text, json_bytes
+from tmm_cli.results.understood import bare_units
+from tmm_cli.synthesis.check import measured_on
+from tmm_cli.synthesis.reading import alone, build
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
@@ -14,6 +31,51 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
     """
 
     def work(file: str) -> int:
-        return report_synthesis(file, as_json, out, settings)
+        return _report(file, as_json, out, settings)
 
     each(files, work, as_json=as_json, out=out)
+
+
+def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
+    """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
+    name, title, found, units, results = _solved(file, settings)
+    measured = None if results is None else measured_on(results)
+    whole = {"problem": name, **to_json(found, measured)}
+    if as_json:
+        emit_json(whole)
+    else:
+        screen = console()
+        for table in tables_of(found, measured, units):
+            if not table.long:
+                show(table, units, screen, most=None)
+        if measured is None:
+            say(_("the file has no linkage: nothing was measured"))
+    if out is not None:
+        folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
+        with Staged(folder) as staged:
+            with spoken(ENGLISH):
+                for table in tables_of(found, measured, units, 15):
+                    staged.write(f"{table.name}.csv", csv_text(table, units))
+            for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):
+                staged.write(drawing, (picture,))
+            staged.write("synthesis.json", (json_bytes(whole),))
+        say(_("written: {folder}").format(folder=folder))
+    for fault in missed(measured or (), units):
+        warn(fault)
+    return OK if all(m.met for m in measured or ()) else CHECK_FAILED
+
+
+def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+    """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
+    tree = tree_of(file, settings)
+    if "synthesis" not in tree.data:
+        build(tree)  # refuses a misspelt key
+        raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
+    if "links" not in tree.data:
+        found = alone(tree)
+        say(f"{found[0]}: {bare_units(found[3])}")
+        return (*found, None)
+    problem = build(tree)
+    introduce(problem)
+    assert problem.synthesis is not None
+    return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import string
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from tmm_cli.draw.paper.drawing import Drawing
+from tmm_cli.language import filled
 from tmm_cli.note.expression import Substitution
 from tmm_cli.note.math import Node
 from tmm_cli.plans.record import Symbol
@@ -192,17 +192,6 @@ def listed_below(lines: Sequence[Line]) -> Items:
 def several(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
     """A sentence that refers to one table or figure by {first}, to two by {first} and {last}, or to all from..to."""
     return said((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
-
-
-def filled(sentence: str, **parts: Inline | Line) -> Line:
-    """A sentence with texts, symbols, formulas or numbers of figures in the places of its {names}."""
-    found: list[Inline] = []
-    for before, name, *_ in string.Formatter().parse(sentence):
-        found += [before] if before else []
-        if name:
-            part = parts[name]
-            found += part if isinstance(part, tuple) else (part,)
-    return tuple(found)
 
 
 def said(sentence: str, **parts: Inline | Line) -> Paragraph:

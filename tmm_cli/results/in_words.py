@@ -9,7 +9,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.reports.structure import ROLES
 from tmm_cli.results.understood import motion
-from tmm_cli.structure.assur import ROMAN, Group, Structure
+from tmm_cli.structure.assur import Group, Structure
 
 
 def in_words(results: Results) -> Iterable[str]:
@@ -25,12 +25,12 @@ def in_words(results: Results) -> Iterable[str]:
             link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=motion(driver)
         )
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
-        formula=structure.formula, number=ROMAN[min(structure.mechanism_class, 10)]
+        formula=structure.formula, number=structure.roman
     )
     for group in structure.groups:
         text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
         yield text.format(
-            group=group.title, number=ROMAN[min(group.group_class, 10)], order=group.order, type=group.type,
+            group=group.title, number=group.roman, order=group.order, type=group.type,
             outer=_outer(group),
         )  # fmt: skip
     if structure.groups:

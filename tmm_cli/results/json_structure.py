@@ -19,7 +19,6 @@ from tmm_cli.results.shapes import (
     optional,
     record,
 )  # fmt: skip
-from tmm_cli.structure.assur import ROMAN
 from tmm_cli.structure.contours import classification, contours
 
 PROBLEM = record(
@@ -60,7 +59,7 @@ PASSIVE = record(
 GROUP = record(
     "an Assur group",
     Field("links", NAMES, "links"),
-    Field("class", TEXT, "roman", lambda group: ROMAN[group.group_class]),
+    Field("class", TEXT, "roman", lambda group: group.roman),
     Field("order", NUMBER, "number of outer pairs"),
     Field("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
     Field("name", TEXT, "II(2,3)", "title"),
@@ -85,7 +84,7 @@ STRUCTURE = record(
     Field("classification", NAMES, "closed or open; elementary, simple, complex; of one type or several",
           lambda results: classification(results.structure)),
     Field("formula", TEXT, "formula of structure", "structure.formula"),
-    Field("class", TEXT, "class of the mechanism", lambda results: ROMAN[results.structure.mechanism_class]),
+    Field("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
     Field("groups", list_of(GROUP), "in solving order", "structure.groups"),
 )  # fmt: skip
 

@@ -87,9 +87,14 @@ class Group:
         return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property
+    def roman(self) -> str:
+        """Its class as it is written; those above the tenth, which nobody has met, as the tenth."""
+        return ROMAN[min(self.group_class, 10)]
+
+    @property
     def title(self) -> str:
         """II(2,3): class and links, as the formula of structure writes it."""
-        return f"{ROMAN[min(self.group_class, 10)]}({','.join(self.links)})"
+        return f"{self.roman}({','.join(self.links)})"
 
 
 @dataclass(frozen=True)
@@ -171,6 +176,11 @@ class Structure:
     def mechanism_class(self) -> int:
         """The class of its highest group."""
         return max((g.group_class for g in self.groups), default=1)
+
+    @property
+    def roman(self) -> str:
+        """This class as it is written."""
+        return ROMAN[min(self.mechanism_class, 10)]
 
     @property
     def solved(self) -> tuple[Group, ...]:

@@ -5,12 +5,12 @@ tmm_cli.synthesis).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, ValidationError, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from tmm_cli.language import _
+from tmm_cli.language import N_, _, translated
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import VALUE, FileHead, Name, Strict, Value, checked_value
 from tmm_cli.problem.shape_errors import shape_error
@@ -41,8 +41,11 @@ class Block(Strict):
     )
 
 
+UNDETERMINED: Final = N_("these keys do not determine a mechanism")
+
+
 def one_of(
-    shape: Block, sets: Sequence[tuple[str, ...]], refusal: str, others: Sequence[str] = ()
+    shape: Block, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:  # fmt: skip
     """Which of these sets of keys is given, and none else of them, nor of others. Raises ProblemError: the refusal."""
     keys = dict.fromkeys([*(key for one in sets for key in one), *others])
@@ -51,7 +54,7 @@ def one_of(
         if set(one) == set(here):
             return one
     raise ProblemError(
-        refusal, found=", ".join(here) or _("none of them"),
+        translated(refusal), found=", ".join(here) or _("none of them"),
         allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets), key=True,
     )  # fmt: skip
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
+from tmm_cli.analysis.pipeline import Results
 from tmm_cli.linkage import FRAME, Output
 from tmm_cli.synthesis.record import Demand, Outcome
 from tmm_cli.tolerances import MET, NO_DEMAND
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.pipeline import Results
 
 
 @dataclass(frozen=True)

@@ -11,17 +11,15 @@ longest), or the same (change points).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
+from tmm_cli.analysis.pipeline import Results
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.tolerances import SAME_RATIO
-
-if TYPE_CHECKING:
-    from tmm_cli.analysis.pipeline import Results
 
 TYPES: Final = (  # in the order frame, input, coupler, output: by the shortest link, the longest, the shortest again
     "GCCC", "GCRR", "GRCR", "GRRC", "RRR1", "RRR2", "RRR3", "RRR4", "SCCC", "SCRR", "SRCR", "SRRC", "S2X", "S3X",

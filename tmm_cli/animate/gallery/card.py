@@ -24,7 +24,6 @@ from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.results.properties import MET, properties_shown
 from tmm_cli.results.table import with_unit
-from tmm_cli.structure.assur import ROMAN
 
 LONGEST = 1500  # letters of what a file says of itself
 DIGITS = 4
@@ -70,10 +69,10 @@ def card(file: str) -> Card:
     problem = problem_of(tree).whole
     results = solve(problem, "forces" if problem.shows else "kinematics")
     structure = results.structure
-    groups = dict.fromkeys(f"{ROMAN[min(group.group_class, 10)]} {group.type}" for group in structure.groups)
+    groups = dict.fromkeys(f"{group.roman} {group.type}" for group in structure.groups)
     return Card(
         file, _language(tree), problem.title, problem.reference, problem.description or remark(file),
-        ROMAN[min(structure.mechanism_class, 10)], structure.formula.replace("->", "→"), tuple(groups),
+        structure.roman, structure.formula.replace("->", "→"), tuple(groups),
         purposes(results), tuple(_told(_facts(results), problem.units)), turning(results),
     )  # fmt: skip
 

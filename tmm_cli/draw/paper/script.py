@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import string
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
@@ -55,15 +54,6 @@ def width(words: Words, size: float) -> float:
         else fonts.width(part.letter, size) + SMALL * max(fonts.width(part.below, size), fonts.width(part.above, size))
         for part in parts(words)
     )
-
-
-def filled(sentence: str, **words: Words) -> Words:
-    """A sentence with texts in the places of its {names}."""
-    found: list[str | Symbol] = []
-    for before, name, *__ in string.Formatter().parse(sentence):
-        found += [before] if before else []
-        found += parts(words[name]) if name else ()
-    return tuple(found)
 
 
 @lru_cache(1000)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli import quantities
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.draw.paper.axes import Axis, across
 from tmm_cli.draw.paper.chart import Across, Curve, Jump, Plot, chart, room
@@ -30,20 +31,6 @@ from tmm_cli.draw.sheets.over_cycle import Quantities
 from tmm_cli.language import _, numeral
 from tmm_cli.plans.record import LANDSCAPE, PORTRAIT
 from tmm_cli.problem.units import UnitSystem, on_paper
-from tmm_cli.quantities import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_SPEED,
-    FORCE,
-    LENGTH,
-    MASS,
-    MOMENT,
-    SPEED,
-)
-from tmm_cli.quantities import (
-    INERTIA as MOMENT_OF_INERTIA,
-)
 from tmm_cli.structure.cycle import DENSE
 from tmm_cli.vectors import Real
 
@@ -58,8 +45,9 @@ WRITTEN = 2  # curves in a panel up to which the values of jumps are written
 LINES = (DARK, LOAD, INERTIA, REACTION, NAMES, "#c77700", "#00757d", THIN)
 STYLES: tuple[Style, ...] = ("-", "--", "-.", ":")
 SYMBOLS = {
-    LENGTH: "s", SPEED: "v", ACCELERATION: "a", ANGLE: "φ", ANGULAR_SPEED: "ω", ANGULAR_ACCELERATION: "ε",
-    FORCE: "F", MOMENT: "M", MOMENT_OF_INERTIA: "J", MASS: "m",
+    quantities.LENGTH: "s", quantities.SPEED: "v", quantities.ACCELERATION: "a",
+    quantities.ANGLE: "φ", quantities.ANGULAR_SPEED: "ω", quantities.ANGULAR_ACCELERATION: "ε",
+    quantities.FORCE: "F", quantities.MOMENT: "M", quantities.INERTIA: "J", quantities.MASS: "m",
 }  # fmt: skip
 UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the file
 
@@ -137,7 +125,7 @@ def _named(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> li
 def _turned(results: Results, q: Real) -> Any:
     """The driver's turn from position 0, deg; a slider's run in the file's unit."""
     if results.linkage.driver.kind == "slide":
-        return np.asarray(q) / results.problem.units.factor(LENGTH)
+        return np.asarray(q) / results.problem.units.factor(quantities.LENGTH)
     return np.degrees(results.linkage.driver.sense * (q - results.start))
 
 
@@ -169,8 +157,8 @@ def _across(results: Results, ends: tuple[float, float], start: float, most: flo
         axis = across(*ends, start, most, degrees=True)
         return axis, (f"{_('turn of the crank from position 0, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
     axis, units = across(*ends, start, most), results.problem.units
-    scale = scale_words("s", axis.mu * units.factor(LENGTH), "m/mm")
-    return axis, (f"{with_unit(_('driver'), LENGTH, units)};  ", *scale)
+    scale = scale_words("s", axis.mu * units.factor(quantities.LENGTH), "m/mm")
+    return axis, (f"{with_unit(_('driver'), quantities.LENGTH, units)};  ", *scale)
 
 
 def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> Plot:
@@ -195,7 +183,7 @@ def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: 
             jumps.append(Jump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
     return Plot(
         with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),
-        degrees=found.dimension == ANGLE and units.symbol(ANGLE) == "deg",
+        degrees=found.dimension == quantities.ANGLE and units.symbol(quantities.ANGLE) == "deg",
     )  # fmt: skip
 
 
@@ -217,8 +205,8 @@ def _leaps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
 def _scale(found: Quantities, units: UnitSystem, unit: str) -> Any:
     """How the scale of the axis is written: that of lengths in metres, as on the other sheets."""
     symbol, factor = found.symbol or SYMBOLS.get(found.dimension, ""), 1.0
-    if found.dimension == LENGTH:
-        unit, factor = "m", units.factor(LENGTH)
+    if found.dimension == quantities.LENGTH:
+        unit, factor = "m", units.factor(quantities.LENGTH)
     elif not unit:
         unit = UNITS.get(found.symbol, "1")
     per = f"({unit})/mm" if "/" in unit else f"{unit}/mm"

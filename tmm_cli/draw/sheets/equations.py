@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.draw.paper.script import Words, filled
+from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.sheets.beneath import Table
-from tmm_cli.language import _, half_up, numeral, spelt
+from tmm_cli.language import _, filled, half_up, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part

@@ -24,7 +24,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.results.reports.structure import ROLES
-from tmm_cli.structure.assur import ROMAN, Pair
+from tmm_cli.structure.assur import Pair
 
 LEAST, A_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
 A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
@@ -97,7 +97,7 @@ def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: 
         group = part.group
         words = [
             _("class {roman}, order {order}, type {type}").format(
-                roman=ROMAN[min(group.group_class, 10)], order=group.order, type=counted(group.type)
+                roman=group.roman, order=group.order, type=counted(group.type)
             ),
             _("links: {links}").format(links=links),
         ]

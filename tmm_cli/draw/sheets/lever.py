@@ -10,13 +10,13 @@ import numpy as np
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.labels import gathered
 from tmm_cli.draw.paper.picture import written_here
-from tmm_cli.draw.paper.script import Words, filled
+from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet, scale_words
 from tmm_cli.draw.sheets.acting import Forces, arms, extent
 from tmm_cli.draw.sheets.beneath import Beneath, above
 from tmm_cli.draw.sheets.equations import figure, table_of_arms, table_of_forces, written
 from tmm_cli.draw.sheets.mechanism import Position
-from tmm_cli.language import _, numeral, spelt
+from tmm_cli.language import _, filled, numeral, spelt
 from tmm_cli.plans.bodies import Acting
 from tmm_cli.plans.lever import POLE, LeverPlan, Pair, lever_plan
 from tmm_cli.plans.record import Symbol, balance_symbol, in_letters

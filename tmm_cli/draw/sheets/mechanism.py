@@ -148,15 +148,6 @@ def once(path: Vector) -> list[complex]:
     return [path[0], *np.where(back.any(axis=1), np.nan, path[1:]).tolist()]
 
 
-def trajectories(results: Results, scene: Scene, caption: str) -> Sheet:
-    """A sheet with these paths."""
-    found = paths(results)
-    used = [*fixed_pivots(results.linkage), *(place for path in found for place in path)]
-    sheet = Sheet(results.problem.title, caption, to_scale(scene, used))
-    trace(sheet, found)
-    return sheet
-
-
 def detailed(results: Results) -> list[Position]:
     """The positions in detail that could be computed."""
     motion = results.motion

@@ -23,7 +23,7 @@ from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
-from tmm_cli.structure.assur import ROMAN, Group, Structure
+from tmm_cli.structure.assur import Group, Structure
 from tmm_cli.vectors import Real, dot
 
 PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
@@ -149,7 +149,7 @@ class Legend:
                 n=n, p1=lower, r=sum(p.kind == "R" for p in structure.pairs),
                 p=sum(p.kind == "P" for p in structure.pairs), p2=higher),
             _("W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}").format(n=n, p1=lower, p2=higher, w=structure.mobility),
-            _("Mechanism of class {roman}").format(roman=ROMAN[min(structure.mechanism_class, 10)]),
+            _("Mechanism of class {roman}").format(roman=structure.roman),
         ]  # fmt: skip
         points = [p.point for p in structure.pairs if p.kind == "R"]
         inner = [d for d in structure.drivers if d.base != FRAME]
@@ -174,7 +174,7 @@ class Legend:
             return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
         group = part.group
         return _("{title}: class {roman}, order {order}, {type}").format(
-            title=part.title, roman=ROMAN[min(group.group_class, 10)], order=group.order, type=counted(group.type)
+            title=part.title, roman=group.roman, order=group.order, type=counted(group.type)
         )
 
     def height(self, paper: float) -> float:

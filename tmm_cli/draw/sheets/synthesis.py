@@ -14,12 +14,12 @@ from tmm_cli.draw.paper.chart import Across, Curve, Plot, chart, room
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
 from tmm_cli.draw.sheets.construction import construction
-from tmm_cli.draw.sheets.mechanism import measured, skeleton, trajectories
+from tmm_cli.draw.sheets.mechanism import measured, paths, skeleton, trace
 from tmm_cli.draw.symbols.actuators import cylinders
 from tmm_cli.draw.symbols.forms import by_points
 from tmm_cli.draw.symbols.parts import MEASURED
 from tmm_cli.draw.symbols.render import slider
-from tmm_cli.draw.symbols.scene import Scene
+from tmm_cli.draw.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.language import _, translated
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.problem.units import UnitSystem
@@ -95,7 +95,10 @@ def extremes(results: Results) -> Sheet:
         ends.append(ends[0] + linkage.driver.sense * strokes.strokes[0].length)
     motion = at_positions(results, np.array(ends), 2)
     scene = Scene(linkage, results.structure, motion.poses)
-    sheet = trajectories(results, scene, _("Extreme positions of the output"))
+    ways = paths(results)
+    used = [*fixed_pivots(linkage), *(place for way in ways for place in way)]
+    sheet = Sheet(results.problem.title, _("Extreme positions of the output"), to_scale(scene, used))
+    trace(sheet, ways)
     others = [replace(scene, k=k) for k in range(1, len(ends))]
     for other in others:
         skeleton(sheet, other, INERTIA, 1.6, 2.9)

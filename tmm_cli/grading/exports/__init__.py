@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 from typing import Final
 
 from tmm_cli.grading.exports import (
     feedback,
     gradescope,
-    group,
     junit,
     moodle,
     tables_csv,
@@ -27,7 +27,7 @@ EXPORTS: Final[Mapping[str, Export]] = {
     "gradescope": gradescope.files,
     "moodle": moodle.files,
     "junit": junit.files,
-    "drawing": group.files,
+    "drawing": lambda book: import_module(f"{__name__}.group").files(book),
 }
 
 

@@ -15,7 +15,7 @@ from tmm_cli.note.tables import NONE, unbroken
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.structure import PAIRS, ROLES
 from tmm_cli.results.stages import link_name
-from tmm_cli.structure.assur import ROMAN, Group, Structure
+from tmm_cli.structure.assur import Group, Structure
 
 W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2")
 
@@ -110,7 +110,7 @@ def _groups(subject: Subject) -> Iterable[Block]:
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
-    yield said(text, source=Link("frolov"), number=ROMAN[min(structure.mechanism_class, 10)])
+    yield said(text, source=Link("frolov"), number=structure.roman)
     yield from _apart(subject)
 
 
@@ -138,5 +138,5 @@ def _group(group: Group) -> tuple[Line, ...]:
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
     outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
     inner = ", ".join(pair.name for pair in group.inner) or NONE
-    roman, order = ROMAN[min(group.group_class, 10)], str(group.order)
+    roman, order = group.roman, str(group.order)
     return cells(group.title, roman, order, counted(group.type), inner, outer, own)

@@ -28,7 +28,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     turns = turns_of(subject)
     unit = _("N·m") if turns else _("N")
     if explained:
-        yield said(_of_turning() if turns else _of_sliding(), p=Symbol("p"))
+        yield _explained(turns=turns)
     yield from _couples(subject, plan, k)
     yield from subject.figures(
         "lever", _("The lever is shown in figure {figure}."),
@@ -47,20 +47,19 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     yield from _compared(subject, k)
 
 
-def _of_turning() -> str:
-    return _(
+def _explained(*, turns: bool) -> Block:
+    """What the lever is, for a driver that turns or slides."""
+    turning = _(
         "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for 1 rad/s of the "
         "driving link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. "
         "All forces act on it at the ends of the velocities of their points, and it is in equilibrium."
     )
-
-
-def _of_sliding() -> str:
-    return _(
+    sliding = _(
         "The balancing force is checked by the Zhukovsky lever: the velocity plan, drawn for 1 m/s of the driving "
         "link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. All forces "
         "act on it at the ends of the velocities of their points, and it is in equilibrium."
     )
+    return said(turning if turns else sliding, p=Symbol("p"))
 
 
 def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
-from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, filled, listed, listed_below, said
+from tmm_cli.language import _, filled
+from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, listed, listed_below, said
 from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, filled, line, said, several
+from tmm_cli.language import _, filled
+from tmm_cli.note.blocks import Block, Line, Ref, Rows, line, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown

@@ -9,7 +9,7 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME
 from tmm_cli.results.table import Table, table_of_words
-from tmm_cli.structure.assur import ROMAN, Structure
+from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.contours import classification
 
 ROLES = {
@@ -81,7 +81,7 @@ def tables(results: Results) -> Iterable[Table]:
     yield table_of_words(
         "groups", _("Assur groups, in solving order"),
         (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs")),
-        [(", ".join(g.links), ROMAN[min(g.group_class, 10)], str(g.order), g.type, ", ".join(p.name for p in g.inner),
+        [(", ".join(g.links), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
           ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer)) for g in structure.groups],
     )  # fmt: skip
 
@@ -118,4 +118,4 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
     yield _("independent contours K = p - n"), str(structure.contours)
     yield _("formula of structure"), structure.formula
     yield _("chain, and kind of structure"), ", ".join(_(CLASSES[word]) for word in classification(structure))
-    yield _("class of the mechanism"), ROMAN[min(structure.mechanism_class, 10)]
+    yield _("class of the mechanism"), structure.roman

@@ -100,7 +100,7 @@ def _side(shape: Shape, values: ValueReader, name: str, count: int) -> Side | No
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
     refusal = _("these keys do not determine {link} with {count} positions").format(link=name, count=count)
-    given = one_of(shape, sets, refusal, (pivot, pin, name, turn, near))
+    given = one_of(shape, sets, (pivot, pin, name, turn, near), refusal)
     if not given:
         return None
     found: dict[str, Any] = {

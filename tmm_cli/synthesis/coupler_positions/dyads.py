@@ -21,11 +21,12 @@ SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the t
 FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
-DEFECTS: Final = {  # by their numbers in Marks
-    1: N_("branch defect: some positions are on the other assembly of the four-bar"),
-    2: N_("order defect: AB does not reach the positions in order by turning one way"),
-    3: N_("circuit defect: AB locks on the way between the positions"),
-}
+DEFECTS: Final = (  # by their numbers in Marks
+    N_("none: all positions on one assembly, reached in order"),
+    N_("branch defect: some positions are on the other assembly of the four-bar"),
+    N_("order defect: AB does not reach the positions in order by turning one way"),
+    N_("circuit defect: AB locks on the way between the positions"),
+)
 POLE: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
 NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 

@@ -17,7 +17,7 @@ from tmm_cli.language import N_, Phrase
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, by_turn
 from tmm_cli.synthesis.coupler_positions.drawing import construction
-from tmm_cli.synthesis.coupler_positions.dyads import exists, guiding
+from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, exists, guiding
 from tmm_cli.synthesis.coupler_positions.task import Side, Task
 from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
 from tmm_cli.vectors import settled
@@ -40,12 +40,6 @@ GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by t
 }  # fmt: skip
 BRANCH: Final = {"AB": N_("branch of AB"), "DC": N_("branch of DC")}
 AWAY: Final = {"AB": N_("distance of A from the wanted place"), "DC": N_("distance of D from the wanted place")}
-DEFECTS: Final = (  # by their numbers in Marks
-    N_("none: all positions on one assembly, reached in order"),
-    N_("branch: some positions are on the other assembly"),
-    N_("order: the driver must turn back between positions"),
-    N_("circuit: the driver locks on the way"),
-)
 SOURCES: Final = {  # by the count of positions; 1: four of one angle
     1: N_("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
     2: N_("pivots on the bisector of the two places of a pin, at the link's length"),

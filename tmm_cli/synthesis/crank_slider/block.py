@@ -6,7 +6,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
@@ -35,5 +34,5 @@ class Shape(Block):
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
     for sets in (STROKES, PAIRS):
-        one_of(shape, sets, _("these keys do not determine a crank-slider"))
+        one_of(shape, sets)
     return Task(**numbers(shape, values, QUANTITIES))

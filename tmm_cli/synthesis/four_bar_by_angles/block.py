@@ -8,12 +8,12 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from tmm_cli.language import _
+from tmm_cli.language import _, translated
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.quantities import ANGLE, NUMBER
-from tmm_cli.synthesis.blocks import Block, Range, numbers
+from tmm_cli.synthesis.blocks import UNDETERMINED, Block, Range, numbers
 from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES, FUNCTIONS, Function
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task
 from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS
@@ -121,7 +121,7 @@ def _function(shape: Shape, values: ValueReader) -> Function:
     if (shape.function is None) == (shape.table is None) or missing:
         given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
         raise ProblemError(
-            _("these keys do not determine a four-bar"), found=", ".join(given) or _("none"),
+            translated(UNDETERMINED), found=", ".join(given) or _("none"),
             allowed=_("pairs; or function (or table), x, input, output"), key=True,
         )  # fmt: skip
     name = (shape.function or "").replace(" ", "")

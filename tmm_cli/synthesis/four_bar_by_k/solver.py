@@ -38,15 +38,6 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "l1": ("length", N_("crank l1")), "l2": ("length", N_("coupler l2")), "l4": ("length", N_("frame l4")),
     "xA": ("length", N_("pivot A of the crank, x")), "yA": ("length", N_("pivot A of the crank, y")),
 }  # fmt: skip
-NOT_THERE: Final = {  # by the choice
-    "level": N_("no pivot of the admissible arcs is as high as D"),
-    "xA": N_("no pivot of the admissible arcs has this x"),
-    "yA": N_("no pivot of the admissible arcs is at this height"),
-    "l1": N_("no pivot of the admissible arcs gives such a crank"),
-    "l2": N_("no pivot of the admissible arcs gives such a coupler"),
-    "l4": N_("no pivot of the admissible arcs is at this distance from D"),
-    "near": N_("the nearest place of the admissible arcs is an end of them, where the rocker is dead"),
-}
 ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 
@@ -128,13 +119,14 @@ def choose(task: Task) -> Found:
     else:
         found = [(w, side) for side in arcs(centred) for w in _crossings(centred, side, EQUATIONS[task.choose])]
     if not found:
-        if task.choose == "level":
-            raise Infeasible("choose", NOT_THERE["level"], "best transmission")
-        raise Infeasible(task.choose, NOT_THERE[task.choose])
+        level = task.choose == "level"
+        reason = _("no pivot of the admissible arcs meets this")
+        raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
     goal = LEAST.get(task.choose, _pressure)
     w, side = min(found, key=lambda one: float(goal(at(centred, *one), centred)))
     if task.choose == "near" and w in places(centred, side)[[0, -1]]:
-        raise Infeasible("near", NOT_THERE["near"])
+        reason = _("the nearest place of the admissible arcs is an end of them, where the rocker is dead")
+        raise Infeasible("near", reason)
     f = at(centred, w, side)
     return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
 

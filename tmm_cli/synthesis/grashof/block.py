@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from tmm_cli.language import _
+from tmm_cli.language import _, translated
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.synthesis.blocks import Block, numbers
+from tmm_cli.synthesis.blocks import UNDETERMINED, Block, numbers
 from tmm_cli.synthesis.four_bar import FourBar
 from tmm_cli.synthesis.grashof.solver import LINKS, CrankSlider, SlottedLever, Task
 
@@ -46,7 +46,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
     fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
-            _("these keys do not make a mechanism"), found=", ".join(sorted(given)) or _("none"),
+            translated(UNDETERMINED), found=", ".join(sorted(given)) or _("none"),
             allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS), key=True,
         )  # fmt: skip
     record = fitting[0]

@@ -41,13 +41,17 @@ class Chosen(Strict):
     def _steps_or_values(self) -> Self:
         missing = [value is None for value in (self.from_, self.to, self.step)]
         if any(missing) if self.among is None else not all(missing):
-            raise PydanticCustomError("range", _("from, to and step are wanted, or among alone"))
+            raise _unreadable()
         return self
+
+
+def _unreadable() -> PydanticCustomError:
+    return PydanticCustomError("range", _("[low, high], {from, to, step} or {among: [...]} is wanted"))
 
 
 def _listed(found: Any) -> Any:
     if not isinstance(found, list | dict):
-        raise PydanticCustomError("range", _("[low, high], {from, to, step} or {among: [...]} is wanted"))
+        raise _unreadable()
     if isinstance(found, list) and len(found) > 2:
         raise PydanticCustomError("range", _("these are not two bounds; values to choose from: {among: [...]}"))
     return found

@@ -6,7 +6,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from tmm_cli.language import _
 from tmm_cli.problem.schema_parts import Value
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
@@ -32,5 +31,5 @@ class Shape(Block):
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
     for ways in (FRAMES, RODS):
-        one_of(shape, [(key,) for key in ways], _("these keys do not determine a shaper"))
+        one_of(shape, [(key,) for key in ways])
     return Task(**numbers(shape, values, QUANTITIES))

@@ -44,9 +44,7 @@ class Shape(Block):
 
 def read(shape: Shape, values: ValueReader) -> Task:
     """The task in SI. Raises ProblemError."""
-    ends, *__ = (
-        one_of(shape, sets, _("these keys do not determine a slotted lever")) for sets in (ENDS, SWINGS, FRAMES)
-    )
+    ends, *__ = (one_of(shape, sets) for sets in (ENDS, SWINGS, FRAMES))
     _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
     found = numbers(shape, values, QUANTITIES)
     if ends == ("CB",):
