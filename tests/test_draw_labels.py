@@ -1,7 +1,7 @@
 """What is written on the sheets of all problems covers nothing that is drawn, and nothing else that is written."""
 
 import pytest
-from bank import NAMES, drawn
+from bank import EVERY, drawn
 from covering import covered
 
 from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
@@ -14,7 +14,7 @@ def found(*marks):
     return [(one.text, one.kind, round(one.depth, 1)) for one in covered(Drawing.of((100.0, 100.0), [*marks, A]))]
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", EVERY)
 def test_no_text_covers_another_one_a_head_of_an_arrow_or_a_line(name):
     assert not [f"{stem}: {pair}" for stem, drawing in drawn(name).items() for pair in covered(drawing)]
 
