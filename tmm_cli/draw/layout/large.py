@@ -98,7 +98,7 @@ def _fullest(number: int, choice: Choice, paper: Size, field: Field) -> tuple[li
     lower.
     """
     found = _sheet(number, choice, paper, field, field.height - GAP)
-    for high in (field.height - field.taken[1] - GAP, FLAT * field.height):
+    for high in (field.height - field.taken[1] - GAP, *(share * field.height for share in FLAT)):
         if _thinnest(found) > THIN * field.area:
             break
         if any(one.paper[1] > high for one in found[0]):

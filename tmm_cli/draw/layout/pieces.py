@@ -22,7 +22,7 @@ STEP = 1.04  # by which a drawing without a scale is made larger
 ROUGHLY = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
 POINT = 1e-6  # mm: a figure of this size has none
 ENOUGH = 0.74  # of a page: then nothing more is made larger
-FLAT = 0.62  # of the height of a page: drawings that find room beside one another
+FLAT = (0.62, 0.5)  # of the height of a page: drawings that find room beside one another
 FULL = 0.6  # of a page: what a teacher takes
 THIN = 0.63  # of a page: with less something else is tried
 # whether the first one is in the corner and all are in their order, and of how much of a page it is given up
