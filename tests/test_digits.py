@@ -37,6 +37,7 @@ from tmm_cli.double_double import exactly
 from tmm_cli.kinematics.driver_range import find_range
 from tmm_cli.library import problem_of
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
+from tmm_cli.pairs.cam_law import SHAPES
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.quantities import (
@@ -265,6 +266,12 @@ def test_a_force_next_to_nothing_acts_far_away_and_that_is_known_no_better_than_
     text = re.sub(r"positions:.*", "positions: {count: 24, from: 9.000000000000001e-08}", text)
     results = solve(problem_of(read_text(text, "press.yaml")))
     assert "9.0000" in text and beyond(results) is None
+
+
+@pytest.mark.parametrize("law", SHAPES)
+def test_every_law_of_a_cam_is_known_to_its_bounds(law):
+    text = (PROBLEMS / "cam-lever.yaml").read_text(encoding="utf-8").replace("law: sine", f"law: {law}")
+    assert beyond(solve(problem_of(read_text(text, "cam.yaml")))) is None
 
 
 def test_a_further_driver_many_turns_from_its_place_in_the_sketch_is_known_to_the_rounding_of_its_turns():

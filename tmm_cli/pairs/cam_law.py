@@ -22,7 +22,7 @@ TAU = 2 * np.pi
 
 
 def _linear(x: Any) -> tuple[Any, Any, Any]:
-    return x, np.ones_like(x), np.zeros_like(x)
+    return x, 1 + np.zeros_like(x), np.zeros_like(x)
 
 
 def _parabolic(x: Any) -> tuple[Any, Any, Any]:
@@ -31,7 +31,7 @@ def _parabolic(x: Any) -> tuple[Any, Any, Any]:
     return (
         np.where(early, 2 * x * x, 1 - 2 * rest * rest),
         np.where(early, 4 * x, 4 * rest),
-        np.where(early, 4.0, -4.0) * np.ones_like(x),
+        np.where(early, 4.0, -4.0) + np.zeros_like(x),
     )
 
 
