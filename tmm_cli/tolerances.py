@@ -74,6 +74,7 @@ WHOLE_TURNS = 1e-9  # turns: a wheel that has made whole ones but for less has m
 SHOCKLESS = 1e-9  # of the largest angular speed: what jumps by less at the ends of a stroke does not jump
 NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
 NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign changes jumps there
+AT_EDGE_OF_CAM = 1e-12  # rad, share of a piece: so near to a jump of its acceleration a place is behind it
 NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly
 SMOOTH = 1e-13  # of the largest value: what a polynomial leaves of a smooth function
 ALIKE_ANGLES = 1e-12  # rad: largest pressure angles that differ by less are one, found at several places

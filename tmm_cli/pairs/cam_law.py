@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.tolerances import NO_JUMP_OF_CAM
+from tmm_cli.tolerances import AT_EDGE_OF_CAM, NO_JUMP_OF_CAM
 from tmm_cli.vectors import Real, pi
 
 Rise = Callable[[Any], tuple[Any, Any, Any]]
@@ -26,7 +26,7 @@ def _linear(x: Any) -> tuple[Any, Any, Any]:
 
 
 def _parabolic(x: Any) -> tuple[Any, Any, Any]:
-    early = x < 0.5
+    early = x < 0.5 - AT_EDGE_OF_CAM
     rest = 1 - x
     return (
         np.where(early, 2 * x * x, 1 - 2 * rest * rest),
@@ -108,9 +108,11 @@ class CamLaw:
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
-        turned = np.mod(angle - self.start, 2 * pi(angle))
+        turn = 2 * pi(angle)
+        turned, ahead = np.mod(angle - self.start, turn), np.mod(angle - self.start + AT_EDGE_OF_CAM, turn)
+        turned = np.where(ahead < turned, 0.0, turned)  # a turn is over but for rounding
         starts, overs, lows, rises = self._table
-        passed = np.searchsorted(starts, turned, side="right") if starts.ndim == 1 else np.sum(starts <= turned, axis=0)
+        passed = np.searchsorted(starts, ahead, side="right") if starts.ndim == 1 else np.sum(starts <= ahead, axis=0)
         number = np.clip(passed - 1, 0, len(self.pieces) - 1)
         over, rise, start, low = (_of(part, number) for part in (overs, rises, starts, lows))
         x = np.clip((turned - start) / over, 0.0, 1.0)
