@@ -96,6 +96,18 @@ def test_a_dwell_within_the_rise_makes_one_stroke_of_it_and_one_at_the_top_is_to
     assert "dwell after the working stroke" not in told
 
 
+@pytest.mark.parametrize("dwell", [0, 20])
+def test_the_strokes_of_a_cam_of_constant_velocities_end_at_its_hard_impacts(dwell):
+    law = f"[{{over: 160, rise: 20, law: linear}}, {{over: {dwell}}}, {{over: {200 - dwell}, rise: -20, law: linear}}]"
+    text = PROBLEMS["flat follower"]
+    old = text[text.index("[{over: 120") : text.index("\ndriver")]
+    text = text.replace(old, law.replace("{over: 0}, ", "")).replace("output: 4", "output: 2")
+    back, forth = solve(build(read_text(text, "cam.yaml")), "kinematics").strokes.strokes
+    assert [math.degrees(s.length) for s in (back, forth)] == pytest.approx([200 - dwell, 160], abs=1e-9)
+    assert math.degrees(forth.rest) == pytest.approx(dwell, abs=1e-9)
+    assert (back.run, forth.run) == pytest.approx((-0.02, 0.02), abs=1e-15)
+
+
 def test_the_useful_resistance_of_a_working_stroke_does_not_act_in_its_dwell():
     strokes = solve(build(read_text(PROBLEMS["flat follower"], "cam.yaml")), "kinematics").strokes
     assert strokes.share(np.radians([10, 110, 130, 170, 190, 300, 350]), 1).tolist() == [True] * 2 + [False] * 5

@@ -73,6 +73,7 @@ SETS_OFF = 1e-9  # sizes of the linkage a radian, or one: what moves by less is 
 WHOLE_TURNS = 1e-9  # turns: a wheel that has made whole ones but for less has made them but for rounding
 SHOCKLESS = 1e-9  # of the largest angular speed: what jumps by less at the ends of a stroke does not jump
 NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that
+BESIDE_END = 1e-9  # rad: so far from a place a slope is taken on one side of it
 NO_JUMP = 1e-6  # of the largest slope: a slope that is larger where its sign changes jumps there
 AT_EDGE_OF_CAM = 2e-14  # rad, share of a piece: so near to a jump of its acceleration a place is behind it
 NO_JUMP_OF_CAM = 1e-9  # of the largest rise, a radian: pieces of a cam's law whose slopes differ by less join smoothly

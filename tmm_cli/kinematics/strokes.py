@@ -14,7 +14,7 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.roots import roots
 from tmm_cli.structure.naming import output_link
-from tmm_cli.tolerances import NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
+from tmm_cli.tolerances import BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
 from tmm_cli.vectors import Real, Vector
 
 PARTS = 64  # of a stroke, through which an angle is followed
@@ -258,7 +258,8 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
     """Where the output turns back: the driver's places from which it goes the other way, and the dwells before them.
 
     slope: the output's first transfer function at the places q, which rise; it is exactly zero in a dwell, and jumps
-    from one sign to the other, without passing zero, at a change point, which is no end of a stroke.
+    from one sign to the other, large on both sides, at a change point, which is no end of a stroke, or at a hard impact
+    of a cam, which is one.
     """
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
@@ -273,7 +274,9 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
     rests = goes_on - stops
     rests[rests < NO_DWELL] = 0.0
     ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
-    true = (rests > 0) | (np.abs(curve.slope(ends)) < NO_JUMP * np.nanmax(np.abs(slope)))
+    sides = np.abs(curve.slope(ends + BESIDE_END * np.array([[-1], [0], [1]]))).min(axis=0)
+    impacts = any(mesh.law is not None and mesh.law.jumps() for mesh in curve.linkage.meshes)
+    true = impacts | (rests > 0) | (sides < NO_JUMP * np.nanmax(np.abs(slope)))
     return ends[true], rests[true]
 
 
