@@ -58,6 +58,8 @@ def dxf(drawing: Drawing) -> bytes:
         else:
             _add(space, mark)
     document.set_modelspace_vport(height=drawing.paper[1], center=(drawing.paper[0] / 2, drawing.paper[1] / 2))
+    for kind in sorted(document.entitydb.dxf_types_in_use()):  # ezdxf itself takes them in the order of a set
+        document.classes.add_class(kind)
     stream = io.StringIO()
     document.write(stream)
     return stream.getvalue().encode("utf-8", "replace")
