@@ -28,7 +28,8 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.driver_range import DriverRange
 from tmm_cli.kinematics.motion import move
-from tmm_cli.kinematics.strokes import Strokes, output_place
+from tmm_cli.kinematics.output import output_place
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.tolerances import KNOWN_LAW, ROUNDOFF

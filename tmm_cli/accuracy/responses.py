@@ -16,8 +16,9 @@ from tmm_cli.accuracy.data import Length, all_changed, largest_beside
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.kinematics.output import output_place
 from tmm_cli.kinematics.pressure import Pressure, pressure_at
-from tmm_cli.kinematics.strokes import Strokes, output_place
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 

@@ -16,8 +16,9 @@ from tmm_cli.analysis.pipeline import Results
 from tmm_cli.double_double import EPS, DoubleDouble, rounded
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.kinematics.output import Travel, output_place, output_slope
 from tmm_cli.kinematics.pressure import pressure_at
-from tmm_cli.kinematics.strokes import Strokes, Travel, output_place, output_slope
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.tolerances import NO_PRESSURE, ROUNDOFF
 from tmm_cli.vectors import Real
 

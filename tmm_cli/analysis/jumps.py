@@ -11,7 +11,7 @@ from tmm_cli.forces.given import motion_on_base, setting_off
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.motion import Motion, move
-from tmm_cli.kinematics.strokes import OutputCurve
+from tmm_cli.kinematics.output import OutputCurve
 from tmm_cli.linkage import Load
 from tmm_cli.roots import roots
 from tmm_cli.tolerances import SAME_PLACE

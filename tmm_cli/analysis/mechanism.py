@@ -19,9 +19,10 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange, find_dead, find_range
 from tmm_cli.kinematics.motion import move
+from tmm_cli.kinematics.output import Travel, find_travel
 from tmm_cli.kinematics.pressure import Pressure, find_pressure
 from tmm_cli.kinematics.slots import Excess, find_slots
-from tmm_cli.kinematics.strokes import Strokes, Travel, find_strokes, find_travel, places, resisted
+from tmm_cli.kinematics.strokes import Strokes, find_strokes, places, resisted
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.naming import output_link, roles

@@ -30,9 +30,10 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
 from tmm_cli.kinematics.motion import Motion, move, spliced
+from tmm_cli.kinematics.output import Travel
 from tmm_cli.kinematics.pressure import Pressure, pressure_at
 from tmm_cli.kinematics.slots import Excess
-from tmm_cli.kinematics.strokes import Strokes, Travel
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Structure
 from tmm_cli.vectors import Real

@@ -9,7 +9,8 @@ import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.strokes import Strokes, output_place
+from tmm_cli.kinematics.output import output_place
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import FRAME, Linkage, Load
 from tmm_cli.tolerances import SAME_PLACE, SEAM, SETS_OFF
 from tmm_cli.vectors import Real, Vector, cross, pi

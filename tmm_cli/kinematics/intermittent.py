@@ -19,7 +19,8 @@ from tmm_cli.groups.sequence import DriverMotion, LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.kinematics.intermittent_task import WheelTask
 from tmm_cli.kinematics.motion import Turning, move
-from tmm_cli.kinematics.strokes import OutputCurve, Strokes, runs_of
+from tmm_cli.kinematics.output import OutputCurve, runs_of
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import Linkage
 from tmm_cli.roots import least, roots
 from tmm_cli.tolerances import SAME_PLACE, SHOCKLESS, WHOLE_TURNS

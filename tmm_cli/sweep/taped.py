@@ -18,8 +18,9 @@ from tmm_cli.forces.plan import Reactions
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import link_states
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.output import output_place, output_slope
 from tmm_cli.kinematics.pressure import angle, followers
-from tmm_cli.kinematics.strokes import Stroke, Strokes, output_place, output_slope
+from tmm_cli.kinematics.strokes import Stroke, Strokes
 from tmm_cli.structure.cycle import turns_of_cycle
 from tmm_cli.structure.naming import output_link
 from tmm_cli.tape import Program, record

@@ -8,8 +8,8 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.kinematics.driver_range import DriverRange
+from tmm_cli.kinematics.output import find_travel, output_slope
 from tmm_cli.kinematics.pressure import find_pressure
-from tmm_cli.kinematics.strokes import find_travel, output_slope
 from tmm_cli.linkage import FRAME
 from tmm_cli.tolerances import SURE_SIGN
 

@@ -21,7 +21,8 @@ from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import link_states, towards
 from tmm_cli.kinematics.driver_range import cycle_of
-from tmm_cli.kinematics.strokes import Curve, OutputCurve, Stroke, Strokes, output_slope, resisted, runs_of
+from tmm_cli.kinematics.output import Curve, OutputCurve, output_slope, runs_of
+from tmm_cli.kinematics.strokes import Stroke, Strokes, resisted
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.roots import roots
 from tmm_cli.structure.assur import Structure

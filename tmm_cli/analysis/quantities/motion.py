@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.analysis.selection import mass_centres, named_points
-from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.kinematics.output import output_run
 from tmm_cli.linkage import Linkage
 from tmm_cli.quantities import (
     ACCELERATION,

@@ -12,7 +12,8 @@ from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.animate.gallery.chains import scheme
 from tmm_cli.animate.gallery.purposes import all_strokes, purposes
 from tmm_cli.animate.gallery.turning import Turning, turning
-from tmm_cli.kinematics.strokes import Strokes, Travel
+from tmm_cli.kinematics.output import Travel
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import _, signed, typeset
 from tmm_cli.library import count, problem_of, solve
 from tmm_cli.linkage import Linkage

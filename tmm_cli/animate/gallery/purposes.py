@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.kinematics.strokes import Strokes, output_run
+from tmm_cli.kinematics.output import output_run
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import N_
 
 QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.draw.paper.picture import Picture
-from tmm_cli.kinematics.strokes import Strokes, Travel
+from tmm_cli.kinematics.output import Travel
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import _, symbol
 from tmm_cli.linkage import FRAME, Driver
 from tmm_cli.note.blocks import Block, Equation, Found, said

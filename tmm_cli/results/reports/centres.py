@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.kinematics.centres import Centre
-from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.kinematics.output import output_run
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.results.reports.cycle import driver_columns

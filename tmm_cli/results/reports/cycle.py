@@ -9,7 +9,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.plan import power
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.strokes import output_run
+from tmm_cli.kinematics.output import output_run
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.linkage import Driver, Linkage
 from tmm_cli.quantities import FORCE, LINK, MOMENT, NUMBER, SLIDE, Dimension, place_dimension

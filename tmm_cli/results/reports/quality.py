@@ -9,7 +9,8 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.kinematics.driver_range import SCAN
-from tmm_cli.kinematics.strokes import OutputCurve, Stroke, Strokes, Travel
+from tmm_cli.kinematics.output import OutputCurve, Travel
+from tmm_cli.kinematics.strokes import Stroke, Strokes
 from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.strokes import output_place, output_slope
+from tmm_cli.kinematics.output import output_place, output_slope
 from tmm_cli.language import N_
 from tmm_cli.linkage import Linkage
 from tmm_cli.synthesis import measures
