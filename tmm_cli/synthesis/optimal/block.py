@@ -17,7 +17,7 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals import mobility
+from tmm_cli.problem.refusals.assembly import mobility
 from tmm_cli.problem.schema_parts import Name, Strict, Value, Vector
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
