@@ -34,15 +34,11 @@ class OwnMotion(Mistake):
     rate: Real
     gain: Real
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(
-            OwnGroup.around(kernel, self, family.linkage) if self._moves(kernel, family) else kernel
-            for kernel in kernels
-        )  # fmt: skip
-
-    def _moves(self, kernel: Kernel, family: Family) -> bool:
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
         links = family.linkage.links
-        return any(name == self.link or self.point in links[name].points for name in kernel.group.links)
+        if any(name == self.link or self.point in links[name].points for name in kernel.group.links):
+            return OwnGroup.around(kernel, self, family.linkage)
+        return kernel
 
 
 @dataclass(frozen=True)
@@ -137,12 +133,11 @@ class OwnInertia(Mistake):
     part: str
     given: Vector
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia" or load.link != self.link:
+            return load
         value = self.given if self.part == "force" else np.real(self.given)
-        return tuple(
-            replace(load, **{self.part: value + 0 * getattr(load, self.part)})
-            if load.kind == "inertia" and load.link == self.link else load for load in loads
-        )  # fmt: skip
+        return replace(load, **{self.part: value + 0 * getattr(load, self.part)})
 
 
 @dataclass(frozen=True)
@@ -153,12 +148,9 @@ class OwnReaction(Mistake):
     on: str
     given: Vector
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(
-            OwnReactions.around(kernel, self)
-            if any(pair.name == self.pair for pair in (*kernel.group.outer, *kernel.group.inner)) else kernel
-            for kernel in kernels
-        )  # fmt: skip
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        pairs = (*kernel.group.outer, *kernel.group.inner)
+        return OwnReactions.around(kernel, self) if any(pair.name == self.pair for pair in pairs) else kernel
 
 
 @dataclass(frozen=True)

@@ -42,14 +42,14 @@ def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
     law = DriverMotion(at, lead.rate, lead.acceleration, lead.sense)
     kernels = family.kernels
     for mistake in mistakes:
-        kernels = mistake.kernels(kernels, family)
+        kernels = tuple(mistake.kernel(kernel, family) for kernel in kernels)
     motion = move(family.linkage, kernels, family.q, law)
     for mistake in mistakes:
         motion = mistake.motion(motion)
     with np.errstate(all="ignore"):
         loads = applied(motion, family.strokes)
         for mistake in mistakes:
-            loads = mistake.loads(loads, motion, family)
+            loads = tuple(mistake.load(load, motion, family) for load in loads)
         reactions = react(motion, family.structure, loads)
         if family.linkage.friction:
             reactions = solve_friction(motion, family.structure, loads, reactions).reactions

@@ -47,17 +47,17 @@ class Mistake:
         """The variants as the student took them."""
         return family
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        """The groups as the student solved them."""
-        return kernels
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        """A group as the student solved it."""
+        return kernel
 
     def motion(self, motion: Motion) -> Motion:
         """The motion as the student found it."""
         return motion
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        """What the student let act on the links."""
-        return loads
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        """What the student let act in the place of a load."""
+        return load
 
     def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
         """What the student wrote down of the values (variants, positions) that the stages gave."""

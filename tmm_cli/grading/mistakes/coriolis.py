@@ -34,15 +34,11 @@ class Coriolis(Mistake):
             if FRAME not in (slide.carrier, slide.runner):
                 yield from (cls(slide.runner, slide.carrier, sense) for sense in (0, -1))
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(
-            OtherTerms.of(kernel, family.linkage, self._terms) if self._has_pair(kernel) else kernel
-            for kernel in kernels
-        )
-
-    def _has_pair(self, kernel: Kernel) -> bool:
-        pairs = (*kernel.group.inner, *kernel.group.outer)
-        return any(pair.slide is not None and pair.slide.runner == self.runner for pair in pairs)
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        slides = [pair.slide for pair in (*kernel.group.inner, *kernel.group.outer) if pair.slide is not None]
+        if all(slide.runner != self.runner for slide in slides):
+            return kernel
+        return OtherTerms.of(kernel, family.linkage, self._terms)
 
     def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
         found = pair.velocity_terms(poses, rates)

@@ -34,10 +34,7 @@ class HingeInertia(Mistake):
         if len(own) > 1:
             yield cls()
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        return tuple(self._one(load, motion, family) for load in loads)
-
-    def _one(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
         if load.kind != "inertia" or self.link not in ("", load.link):
             return load
         extra = family.linkage.links[load.link].mass * np.abs(_arm(family, load.link)) ** 2

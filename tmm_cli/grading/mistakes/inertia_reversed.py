@@ -26,8 +26,7 @@ class InertiaReversed(Mistake):
     def cases(cls, family: Family) -> Iterable[Self]:
         yield from (cls(parts) for parts in (("force",), ("moment",), ("force", "moment")))
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        return tuple(
-            replace(load, **{part: -getattr(load, part) for part in self.parts}) if load.kind == "inertia" else load
-            for load in loads
-        )
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia":
+            return load
+        return replace(load, **{part: -getattr(load, part) for part in self.parts})

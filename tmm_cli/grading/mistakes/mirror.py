@@ -27,9 +27,7 @@ class Mirror(Mistake):
             if isinstance(kernel, Closed) and kernel.assemblies == 2:
                 yield cls(", ".join(kernel.group.links))
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(
-            replace(kernel, sign=-kernel.sign)
-            if isinstance(kernel, Closed) and ", ".join(kernel.group.links) == self.links else kernel
-            for kernel in kernels
-        )  # fmt: skip
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if isinstance(kernel, Closed) and ", ".join(kernel.group.links) == self.links:
+            return replace(kernel, sign=-kernel.sign)
+        return kernel

@@ -33,8 +33,7 @@ class NoInertia(Mistake):
         if len(own) > 1:
             yield cls()
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        return tuple(
-            replace(load, **{self.part: getattr(load, self.part) * 0})
-            if load.kind == "inertia" and self.link in ("", load.link) else load for load in loads
-        )  # fmt: skip
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia" or self.link not in ("", load.link):
+            return load
+        return replace(load, **{self.part: getattr(load, self.part) * 0})

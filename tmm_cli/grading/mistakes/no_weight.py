@@ -34,9 +34,7 @@ class NoWeight(Mistake):
         yield from (cls(name) for name in own)
         yield from (cls("", mass) for mass in (False, True))
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        share = 1 / np.abs(family.linkage.gravity) if self.mass else 0.0
-        return tuple(
-            replace(load, force=load.force * share) if load.kind == "weight" and self.link in ("", load.link) else load
-            for load in loads
-        )
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "weight" or self.link not in ("", load.link):
+            return load
+        return replace(load, force=load.force * (1 / np.abs(family.linkage.gravity) if self.mass else 0.0))

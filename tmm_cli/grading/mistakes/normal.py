@@ -33,11 +33,10 @@ class Normal(Mistake):
         linkage = family.linkage
         yield from (cls(link) for link in linkage.moving if not linkage.slides_on_frame(link))
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(
-            OtherTerms.of(kernel, family.linkage, self._terms) if self.link in kernel.group.links
-            else Unturned.around(kernel, self.link) for kernel in kernels
-        )  # fmt: skip
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if self.link in kernel.group.links:
+            return OtherTerms.of(kernel, family.linkage, self._terms)
+        return Unturned.around(kernel, self.link)
 
     def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
         still = without(rates, self.link)

@@ -30,10 +30,9 @@ class Tangential(Mistake):
                 if pair.kind == "R":
                     yield cls(kernel.group.own(pair))
 
-    def kernels(self, kernels: tuple[Kernel, ...], family: Family) -> tuple[Kernel, ...]:
-        return tuple(self._around(kernel, family) if self.link in kernel.group.links else kernel for kernel in kernels)
-
-    def _around(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if self.link not in kernel.group.links:
+            return kernel
         pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
         linkage, other = family.linkage, pair.other(self.link)
         there, here = linkage.local(other, pair.point), linkage.local(self.link, pair.point)

@@ -29,6 +29,5 @@ class WeightForMass(Mistake):
         if np.any(family.linkage.gravity != 0):
             yield cls()
 
-    def loads(self, loads: tuple[Applied, ...], motion: Motion, family: Family) -> tuple[Applied, ...]:
-        g = np.abs(family.linkage.gravity)
-        return tuple(replace(load, force=load.force * g) if load.kind == "inertia" else load for load in loads)
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        return replace(load, force=load.force * np.abs(family.linkage.gravity)) if load.kind == "inertia" else load
