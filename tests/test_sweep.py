@@ -30,7 +30,7 @@ PROBLEMS = ROOT / "problems"
 def sweep(file, over, show=()):
     tree = read_file(str(PROBLEMS / f"{file}.yaml"))
     mechanisms = Mechanisms(tree, read_axes(Task(tree), over), show)
-    return swept(mechanisms, tree, show)
+    return swept(mechanisms)
 
 
 def one_by_one(file, settings):
@@ -108,7 +108,7 @@ def test_over_two_parameters_each_line_is_a_sweep_over_one():
     for row, l1 in enumerate(both.axes[0].values):
         tree = with_settings(read_file(str(PROBLEMS / "crank-rocker.yaml")), [f"l1={l1:g}"])
         mechanisms = Mechanisms(tree, read_axes(Task(tree), ["l4=300..500:3"]), ["psi,k,M_b"])
-        one = swept(mechanisms, tree, ["psi,k,M_b"])
+        one = swept(mechanisms)
         here = slice(3 * row, 3 * row + 3)
         assert both.state[here].tolist() == one.state.tolist()
         assert np.allclose(both.values[here], one.values, rtol=1e-12, equal_nan=True)

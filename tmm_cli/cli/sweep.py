@@ -69,7 +69,7 @@ def sweep(
         way = cluster(scheduler) if scheduler else processes(cores)
         with bars() as shown:
             work = shown.add_task(_("solved"), total=points)
-            found = swept(mechanisms, tree, show or (), way, lambda count: shown.advance(work, count))
+            found = swept(mechanisms, way, lambda count: shown.advance(work, count))
         if as_json:
             emit_json(plain(dict(sections(found, problem))))
         else:

@@ -65,12 +65,17 @@ class Mechanisms:
     """Of a file over some of its parameters. Raises ProblemError where its own numbers give no mechanism."""
 
     def __init__(self, tree: Tree, axes: Sequence[Axis], show: Sequence[str]) -> None:
+        self.given = tree, tuple(axes), tuple(show)
         self.task, self.axes = Task(tree), tuple(axes)
         self.shown = read_shown(self.task, show)
         self.names = tuple(axis.name for axis in axes)
         self.dimensions = tuple(axis.dimension for axis in axes)
         self.factors = np.array([axis.factor for axis in axes])
         self.allowed = self.task.problem.whole.pressure_limits
+
+    def __reduce__(self) -> tuple[type[Mechanisms], tuple[Any, ...]]:
+        """What it found is found again in another process."""
+        return Mechanisms, self.given
 
     @cached_property
     def turning(self) -> Turning | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from tmm_cli.language import _
 from tmm_cli.problem.budget import BUDGET, parts, refuse_work
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.tree import Tree
 from tmm_cli.roots import bisect
 from tmm_cli.sweep.grid import MOST, Axis, grid
 from tmm_cli.sweep.looking import SCAN
@@ -28,46 +28,29 @@ ROUGHLY = (20, 4)  # one by one: of one parameter, of two
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
-    """Some of the points, for another process."""
-
-    tree: Tree
-    axes: tuple[Axis, ...]
-    show: tuple[str, ...]
-    points: Real
-
-    def __call__(self) -> Found:
-        return Mechanisms(self.tree, self.axes, self.show).at(self.points)
-
-
-@dataclass(frozen=True, eq=False)
 class Borders:
     """Pairs of points (pairs, parameters) between which how the mechanism goes changes from a state.
 
     Gives the last points with that state, the first ones beyond, how the mechanism goes there, and why.
     """
 
-    tree: Tree
-    axes: tuple[Axis, ...]
-    show: tuple[str, ...]
+    mechanisms: Mechanisms
     inside: Real
     outside: Real
     state: Real
     halvings: int
 
     def __call__(self) -> tuple[Real, Real, Real, list[str]]:
-        mechanisms = Mechanisms(self.tree, self.axes, self.show)
-
         def at(share: Real) -> Real:
             found: Real = self.inside + share[:, None] * (self.outside - self.inside)
             return found
 
         def holds(share: Real) -> Real:
-            found: Real = mechanisms.at(at(share), values=False).state == self.state
+            found: Real = self.mechanisms.at(at(share), values=False).state == self.state
             return found
 
         low, high = bisect(holds, np.zeros(len(self.state)), np.ones(len(self.state)), self.halvings)
-        beyond = mechanisms.at(at(high), values=False)
+        beyond = self.mechanisms.at(at(high), values=False)
         return at(low), at(high), beyond.state, beyond.why
 
 
@@ -86,28 +69,21 @@ def refuse_points(problem: Problem, points: int, *, taped: bool, cores: int | No
         )  # fmt: skip
 
 
-def swept(
-    mechanisms: Mechanisms, tree: Tree, show: Sequence[str], way: Way = here,
-    seen: Callable[[int], None] = lambda count: None,
-) -> Swept:  # fmt: skip
+def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] = lambda count: None) -> Swept:
     """All points, and the borders between them. seen: is told of so many more points. Raises ProblemError."""
     axes, points = mechanisms.axes, grid(mechanisms.axes)
     taped = mechanisms.turning is not None
     size = CHUNK if taped else FEW
     chunks = [points[first : first + size] for first in range(0, len(points), size)]
-    found: list[Found | None] = [None] * len(chunks)
-    if len(chunks) == 1:  # no tape is written twice
-        found[0] = mechanisms.at(points)
-        seen(len(points))
-    else:
-        for number, part in way([Points(tree, axes, tuple(show), chunk) for chunk in chunks], lambda: False):
-            found[number] = part
-            seen(len(part.state))
-    whole = [part for part in found if part is not None]
+    found: dict[int, Found] = {}
+    for number, part in way([partial(mechanisms.at, chunk) for chunk in chunks], lambda: False):
+        found[number] = part
+        seen(len(part.state))
+    whole = [found[number] for number in range(len(chunks))]
     state = np.concatenate([part.state for part in whole])
     why = [text for part in whole for text in part.why]
     values = np.concatenate([part.values for part in whole])
-    marks = _marks(mechanisms, tree, tuple(show), _edges(axes, points, state, why), way)
+    marks = _marks(mechanisms, _edges(axes, points, state, why), way)
     return Swept(axes, mechanisms.shown, points, state, why, values, marks, taped)
 
 
@@ -134,9 +110,7 @@ def _edges(axes: Sequence[Axis], points: Real, state: Real, why: Sequence[str]) 
     return found
 
 
-def _marks(
-    mechanisms: Mechanisms, tree: Tree, show: tuple[str, ...], edges: Sequence[Edge], way: Way
-) -> tuple[Mark, ...]:  # fmt: skip
+def _marks(mechanisms: Mechanisms, edges: Sequence[Edge], way: Way) -> tuple[Mark, ...]:
     """Borders between neighbours of the grid; between two of them there may be several."""
     taped = mechanisms.turning is not None
     halvings = HALVINGS if taped else ROUGHLY[len(mechanisms.axes) - 1]
@@ -148,7 +122,7 @@ def _marks(
         for part in parts:
             inside, outside = (np.array([edge.points[side] for edge in part]) for side in (0, 1))
             state = np.array([edge.states[0] for edge in part])
-            jobs.append(Borders(tree, mechanisms.axes, show, inside, outside, state, halvings))
+            jobs.append(Borders(mechanisms, inside, outside, state, halvings))
         left: list[Edge] = []
         for k, (last, first, state, why) in way(jobs, lambda: False):
             for n, edge in enumerate(parts[k]):
