@@ -45,8 +45,7 @@ def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
             inner = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
             share = np.where(safe & np.isfinite(inner), inner, 0.5)
             share = np.clip(share, np.minimum(least_step, 0.5), 1 - np.minimum(least_step, 0.5))
-    found: Real = np.where(np.abs(fa) <= np.abs(fb), a, b)
-    return found
+    return np.where(np.abs(fa) <= np.abs(fb), a, b)
 
 
 def bisect(

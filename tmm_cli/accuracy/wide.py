@@ -165,5 +165,4 @@ def coarsely(results: Results) -> Wide:
 
 def _first(sure: Real, steps: Real) -> Real:
     """The first of its steps at which each place is sure, or inf."""
-    found: Real = np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
-    return found
+    return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)

@@ -43,5 +43,4 @@ def balancing(results: Results) -> Real:
 def _computed(results: Results) -> Real:
     motion = results.motion
     assert motion is not None
-    computed: Real = motion.moving & ~results.locked
-    return computed
+    return motion.moving & ~results.locked

@@ -64,8 +64,7 @@ def _missed(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real]
         place = curve.place(q)
         if curve.swings:
             place = middle + np.angle(np.exp(1j * (place - middle)))
-        found: Real = place - wanted
-        return found
+        return place - wanted
 
     return missed
 

@@ -75,13 +75,11 @@ class Running:
 
     def speed(self, q: Real) -> Real:
         """rad/s, with its sign."""
-        found: Real = self.sense * self.steady.law.speed(self.way(q))
-        return found
+        return self.sense * self.steady.law.speed(self.way(q))
 
     def accelerated(self, q: Real) -> Real:
         """rad/s2, with its sign."""
-        found: Real = self.sense * self.steady.law.acceleration(self.way(q))
-        return found
+        return self.sense * self.steady.law.acceleration(self.way(q))
 
     def time(self, q: Real) -> Real:
         """s, since the beginning of the cycle."""

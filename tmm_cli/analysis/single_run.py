@@ -51,8 +51,7 @@ class SingleRun:
 
     def speed(self, q: Real) -> Real:
         """rad/s, or m/s, with its sign; nan where the run does not come."""
-        found: Real = self.sense * self.run.at(self.way(q))[1]
-        return found
+        return self.sense * self.run.at(self.way(q))[1]
 
     def time(self, q: Real) -> Real:
         """s, since the beginning; nan where the run does not come."""
@@ -75,8 +74,7 @@ class SingleRun:
         """rad/s2, or m/s2, with its sign; nan where the run does not come."""
         way = self.way(q)
         time, speed = self.run.at(way)
-        found: Real = self.sense * self.acceleration(time, way, speed)
-        return found
+        return self.sense * self.acceleration(time, way, speed)
 
 
 def single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:

@@ -100,8 +100,7 @@ def _plain(value: float) -> float | str | None:
 
 def places(case: Case, count: int) -> Real:
     """Places of the driver over a turn, close together, none of them a special one."""
-    found: Real = case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
-    return found
+    return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
 
 def measure(

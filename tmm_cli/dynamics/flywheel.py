@@ -115,15 +115,13 @@ def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tange
     sign = -1.0 if top else 1.0
 
     def height(x: Real) -> Real:
-        found: Real = sign * (work(x) - slope * machine.inertia(x))
-        return found
+        return sign * (work(x) - slope * machine.inertia(x))
 
     x, __ = lowest(height, work.places())
     rate = work.slope()
 
     def steepness(x: Real) -> Real:
-        found: Real = sign * (rate(x) - slope * machine.slope(x))
-        return found
+        return sign * (rate(x) - slope * machine.slope(x))
 
     x = sharper(steepness, x, work.length)
     at = np.array([x])
@@ -132,8 +130,7 @@ def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tange
 
 def _square(machine: Reduced, work: Curve, inertia: float, energy: float, x: Real) -> Real:
     """Of the speed."""
-    found: Real = 2 * (energy + work(x)) / (inertia + machine.inertia(x))
-    return found
+    return 2 * (energy + work(x)) / (inertia + machine.inertia(x))
 
 
 def _minus(function: Callable[[Real], Real], x: Real) -> Real:

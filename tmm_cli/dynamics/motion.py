@@ -32,8 +32,7 @@ class Law:
 
     def speed(self, x: Real) -> Real:
         """rad/s, or m/s."""
-        found: Real = np.sqrt(2 * self.energy(x) / (self.flywheel + self.machine.inertia(x)))
-        return found
+        return np.sqrt(2 * self.energy(x) / (self.flywheel + self.machine.inertia(x)))
 
     def acceleration(self, x: Real) -> Real:
         """rad/s2, or m/s2; where a load jumps, that after it."""

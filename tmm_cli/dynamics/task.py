@@ -42,8 +42,7 @@ class Profile:
 
     def __call__(self, time: Real, way: Real) -> Real:
         """Before the first row as there, after the last as there."""
-        found: Real = np.interp(time if self.against == "time" else way, self.arguments, self.values)
-        return found
+        return np.interp(time if self.against == "time" else way, self.arguments, self.values)
 
 
 @dataclass(frozen=True)

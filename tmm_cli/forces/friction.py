@@ -186,5 +186,4 @@ def _work(friction: Friction, motion: Motion, reactions: Reactions) -> Real:
     pair = reactions.of(friction.pair)
     _, slip = _slip(pair, motion)
     arm = friction.radius if pair.pair.slide is None else 1.0
-    work: Real = -friction.coefficient * np.abs(pair.force) * arm * slip
-    return work
+    return -friction.coefficient * np.abs(pair.force) * arm * slip

@@ -114,5 +114,4 @@ def _turned(angle: Real, cycle: Real | float) -> Real:
     """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
     to the other side."""
     seam = SEAM * (1 + np.abs(angle))
-    within: Real = np.mod(angle + seam, cycle) - seam
-    return within
+    return np.mod(angle + seam, cycle) - seam

@@ -45,5 +45,4 @@ def twisted(spring: Spring, motion: Motion) -> Real:
 def _twist(spring: Spring, motion: Motion) -> Real:
     """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
     speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
-    moment: Real = spring.preload + spring.rate * twisted(spring, motion) + spring.damping * speed
-    return moment
+    return spring.preload + spring.rate * twisted(spring, motion) + spring.damping * speed

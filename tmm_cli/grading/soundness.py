@@ -109,5 +109,4 @@ def _top(values: Real) -> Real:
     before, top, after = (np.take_along_axis(values, np.clip(k + n, 0, last), 1)[:, 0] for n in (-1, 0, 1))
     bend = 2 * top - before - after
     inside = (k[:, 0] > 0) & (k[:, 0] < last) & (bend > 0)
-    found: Real = top + np.where(inside, (before - after) ** 2 / (8 * np.where(inside, bend, 1.0)), 0.0)
-    return found
+    return top + np.where(inside, (before - after) ** 2 / (8 * np.where(inside, bend, 1.0)), 0.0)

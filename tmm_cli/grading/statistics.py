@@ -48,8 +48,7 @@ def percents(marks: Sequence[StudentMarks]) -> Real:
 
 def histogram(marks: Sequence[StudentMarks]) -> Real:
     """How many have 0 to 10 %, 10 to 20 %, ...; full marks stand in the last."""
-    found: Real = np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
-    return found
+    return np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
 
 
 def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:

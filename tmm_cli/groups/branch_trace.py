@@ -44,8 +44,7 @@ class BranchTrace:
     def within(self, q: Real) -> Real:
         """Places q of a closed trace in its own cycle."""
         cycle = self.q[-1] - self.q[0]
-        found: Real = q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
-        return found
+        return q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
 
     def in_dead(self, q: Real, rounding: float) -> Real:
         """Whether places cannot be told from a dead position that is passed, for relative errors of the data.
@@ -62,8 +61,7 @@ class BranchTrace:
     def side(self, q: Real) -> Real:
         """1, or -1 where the determinant has another sign than at the trace's beginning."""
         passed = np.searchsorted(self.dead[self.flips], self.within(q))
-        found: Real = 1.0 - 2.0 * (passed % 2)
-        return found
+        return 1.0 - 2.0 * (passed % 2)
 
     def dead_within(self, low: float, high: float) -> Real:
         """Dead positions that are passed between two places, in growing order."""

@@ -26,8 +26,7 @@ def solve(matrix: Real, right: Real) -> Real:
     if rows != columns:
         return _least_squares(matrix, right)
     try:
-        found: Real = np.linalg.solve(matrix, right[..., None])[..., 0]
-        return found
+        return np.linalg.solve(matrix, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
         singular = np.linalg.det(matrix) == 0
         sound = np.where(singular[..., None, None], np.eye(rows), matrix)

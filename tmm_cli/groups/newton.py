@@ -167,8 +167,7 @@ class Newton(Kernel):
     def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
         """Derivative of each row that the drivers ask for, without dimension."""
         if not self.group.drivers:
-            nothing: Real = np.zeros((*shape, self._scale.shape[-1]))
-            return nothing
+            return np.zeros((*shape, self._scale.shape[-1]))
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
         return _stacked([np.zeros(shape), *rows])[..., 1:] * self._scale
 

@@ -87,8 +87,7 @@ class LinkStates:
     def angle(self, name: str) -> Real:
         """Angle of a link, rad: in -pi..pi, of a crank that is driven as it is."""
         own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
-        angle: Real = self.drives[name].value if own else np.angle(self.poses[name].z)
-        return angle
+        return self.drives[name].value if own else np.angle(self.poses[name].z)
 
     def run(self, slide: Slide) -> Real:
         """Run in a sliding pair, m."""

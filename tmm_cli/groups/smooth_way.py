@@ -23,8 +23,7 @@ class SmoothWay:
 
     def side(self, q: Real) -> Real:
         """1, or -1 where the group has passed an odd number of them from the sketch on."""
-        found: Real = 1.0 - 2.0 * ((self._passed(q) - self._passed(np.array(self.at))) % 2)
-        return found
+        return 1.0 - 2.0 * ((self._passed(q) - self._passed(np.array(self.at))) % 2)
 
     def within(self, low: float, high: float) -> Real:
         """Those from one place to another, in growing order."""

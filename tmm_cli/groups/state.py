@@ -55,8 +55,7 @@ class Rate:
 
     def at(self, arm: Vector) -> Vector:
         """Velocity of the point of the link that lies `arm` (drawing's axes) from its origin, m/s."""
-        velocity: Vector = self.v + 1j * self.w * arm
-        return velocity
+        return self.v + 1j * self.w * arm
 
 
 @dataclass(frozen=True)

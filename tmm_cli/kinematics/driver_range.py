@@ -140,8 +140,7 @@ def _stopped(linkage: Linkage, q: Real) -> Real:
     if not linkage.others:
         return np.zeros(np.shape(q), dtype=bool)
     law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
-    found: Real = ~np.isfinite(law.time(q))
-    return found
+    return ~np.isfinite(law.time(q))
 
 
 def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
@@ -239,8 +238,7 @@ def _lost(motion: LinkStates, side: list[float]) -> Real:
         motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
         for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
     ]
-    found: Real = np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
-    return found
+    return np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
 
 
 def limit_from(

@@ -54,8 +54,7 @@ def output_slope(motion: LinkStates, link: str) -> Real:
 
 def _along(output: str, vector: Vector) -> Real:
     """The coordinate of a vector that an output K.x or K.y is about."""
-    part: Real = vector.real if output.endswith(".x") else vector.imag
-    return part
+    return vector.real if output.endswith(".x") else vector.imag
 
 
 class Curve(Protocol):

@@ -192,5 +192,4 @@ def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real
     """Of the last group; where it is dead the angle is a right one."""
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
-    found: Real = np.where(at.dead, -np.pi / 2, -angle(motion, kernels[-1], at, lead))
-    return found
+    return np.where(at.dead, -np.pi / 2, -angle(motion, kernels[-1], at, lead))

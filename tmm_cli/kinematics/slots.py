@@ -78,8 +78,7 @@ class _Segment:
 
     def beyond(self, run: Real) -> Real:
         """How far beyond the end a run along the guide is, m."""
-        found: Real = run - self.length if self.forward > 0 else -run
-        return found
+        return run - self.length if self.forward > 0 else -run
 
     def at(self, q: Real) -> Real:
         return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))

@@ -127,5 +127,4 @@ class CamLaw:
 
 def _of(part: Real, number: Real) -> Real:
     """Numbers of the pieces with these numbers."""
-    found: Real = part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]
-    return found
+    return part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]

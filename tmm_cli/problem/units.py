@@ -66,8 +66,7 @@ class Unit:
 
 def _pi(number: float) -> float:
     """Pi as exactly as the number."""
-    found: float = DoubleDouble.decimal(PI) if isinstance(number, DoubleDouble) else math.pi
-    return found
+    return DoubleDouble.decimal(PI) if isinstance(number, DoubleDouble) else math.pi
 
 
 @dataclass(frozen=True)

@@ -110,7 +110,4 @@ def _own_unit(task: Task, name: str) -> str:
 
 def grid(axes: Sequence[Axis]) -> Real:
     """All points as they are written, (points, axes): the last parameter changes first."""
-    every: Real = np.stack(
-        [part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1
-    )
-    return every
+    return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)

@@ -79,8 +79,7 @@ class _View:
 
     def at(self, numbers: Real) -> Real:
         """The driver at places."""
-        found: Real = self.turning.linkage.sketch.at + self.step * numbers
-        return found
+        return self.turning.linkage.sketch.at + self.step * numbers
 
     @property
     def looked(self) -> Looked:

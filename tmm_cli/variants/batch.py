@@ -158,8 +158,7 @@ def prepare(
     steps = STEPS_OF_VARIANTS if many else None
 
     def varied(data: Sequence[Any]) -> Linkage:
-        found: Linkage = changed(first, together(*data)) if columns else first
-        return found
+        return changed(first, together(*data)) if columns else first
 
     def stages(*data: Any) -> Mapping[str, Any]:
         linkage = varied(data[:many])

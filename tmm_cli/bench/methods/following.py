@@ -61,8 +61,7 @@ class Nodes:
         within = q if self.cycle is None else self.q[0] + np.mod(q - self.q[0], self.cycle)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
         nearer = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
-        found: Real = self.X[nearer]
-        return found
+        return self.X[nearer]
 
 
 def follow(case: Case, closure: Closure) -> Nodes:

@@ -139,8 +139,7 @@ class Loops:
 
     def matrix(self, X: Real, q: Real) -> Real:
         poses = self.poses(X, q)
-        found: Real = (self.rows.matrix(poses) @ self.transformation(poses))[..., self.free]
-        return found
+        return (self.rows.matrix(poses) @ self.transformation(poses))[..., self.free]
 
     def transformation(self, poses: Poses) -> Real:
         """What a unit of each coordinate, the driver's too, does to x, y and angle of the links that it moves.

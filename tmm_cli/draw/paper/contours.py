@@ -79,8 +79,7 @@ def hatching(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[co
 def _mixed(inside: NDArray[Any]) -> list[list[int]]:
     """Cells through which a border goes."""
     corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
-    found: list[list[int]] = np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
-    return found
+    return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
 
 
 def _crossings(

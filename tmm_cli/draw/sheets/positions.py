@@ -67,8 +67,7 @@ class View:
         for link in self.results.linkage.moving:
             places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
             found += [place + (places[n - 1] - place) * BETWEEN for n, place in enumerate(places)]
-        lines: Vector = np.concatenate(found)
-        return lines
+        return np.concatenate(found)
 
     @property
     def shown(self) -> list[int]:

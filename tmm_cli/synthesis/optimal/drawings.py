@@ -108,8 +108,7 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
     wanted = np.array(quantity.wanted)
 
     def spots(places: Places) -> Vector:
-        found: Vector = read(places, "px") + 1j * read(places, "py")
-        return found
+        return read(places, "px") + 1j * read(places, "py")
 
     path = spots(Places(np.linspace(0, 1, CURVE), NONE))
     if quantity.places:

@@ -51,8 +51,7 @@ def exactly(candidates: Candidates, x: Real) -> list[float]:
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
             def curve(name: str, shares: Real, n: int = n) -> Real:
-                there: Real = candidates.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
-                return there
+                return candidates.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
 
             if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                 values[n] = np.nan

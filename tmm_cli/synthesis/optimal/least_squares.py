@@ -113,5 +113,4 @@ def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
         broken, beyond = slopes.least @ step < -rows.least[..., None], edge != step
         if all(map(np.array_equal, before, (broken, beyond))):
             break
-    found: Real = step[..., 0]
-    return found
+    return step[..., 0]

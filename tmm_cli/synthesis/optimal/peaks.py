@@ -31,8 +31,7 @@ def _near(y: Real, k: Real) -> tuple[Real, Real]:
 
 def value(c: Real, u: Real, order: int = 0) -> Real:
     """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
-    found: Real = _at(_derived(c, order), u)
-    return found
+    return _at(_derived(c, order), u)
 
 
 def _derived(c: Real, order: int) -> list[Real]:
@@ -71,8 +70,7 @@ def zero(y: Real) -> Real:
         for _ in range(NEWTON):
             step = value(c, u) / value(c, u, 1)
             u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
-    found: Real = middle + u
-    return found
+    return middle + u
 
 
 def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:

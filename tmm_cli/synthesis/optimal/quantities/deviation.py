@@ -95,8 +95,7 @@ class Law(Deviation):
     def deviations(self, read: Read, over: Over) -> Real:
         off = read("run") - read(WANTED)
         off = off - off[:, :1] if self.relative else off
-        turned: Real = np.angle(np.exp(1j * off)) if over.swings else off
-        return turned
+        return np.angle(np.exp(1j * off)) if over.swings else off
 
     def residuals(self, read: Read, over: Over, each: int) -> Real:
         return self.deviations(read, over)

@@ -216,5 +216,4 @@ def ratio_of(share: Real) -> Real:
 def mean_rate(read: Read, over: Over) -> Real:
     """The crank's mean speed in the first cycle from position 0 on: half the sum of those at its ends, (variants,)."""
     rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
-    found: Real = (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2
-    return found
+    return (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2
