@@ -158,15 +158,8 @@ HOSTILE = '<script>alert(1)</script><img src=x onerror="alert(1)">&amp;{title}\\
 def hostile() -> Results:
     """The shaper with markup in every text that a file can give."""
     problem = load(str(PROBLEMS / "shaper.yaml"))
-    texts = replace(
-        problem.title_texts,
-        student=HOSTILE,
-        group=HOSTILE,
-        teacher=HOSTILE,
-        institution=HOSTILE,
-        department=HOSTILE,
-        code=HOSTILE,
-    )
+    people = ("student", "group", "teacher", "institution", "department", "code")
+    texts = problem.title_texts.model_copy(update=dict.fromkeys(people, HOSTILE))
     links = {name: replace(link, label=HOSTILE) for name, link in problem.linkage.links.items()}
     loads = tuple(replace(load, name=HOSTILE) for load in problem.linkage.loads)
     return solve(

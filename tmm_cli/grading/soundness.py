@@ -62,11 +62,9 @@ class Faults:
             for lead in followers(kernel.group):
                 limit = self.limits.get((lead[0], named(lead)))
                 if limit is not None:
-                    holds = _top(angle(states, kernel, at, lead)) <= limit
-                    yield (
-                        holds,
-                        _("its pressure angle goes beyond {limit} deg").format(limit=numeral(np.degrees(limit), ".4g")),
-                    )
+                    beyond = _("its pressure angle goes beyond {limit} deg")
+                    told = beyond.format(limit=numeral(np.degrees(limit), ".4g"))
+                    yield _top(angle(states, kernel, at, lead)) <= limit, told
 
 
 def faults_of(task: Task) -> Faults:

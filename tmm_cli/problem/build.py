@@ -22,7 +22,7 @@ from tmm_cli.problem.build_springs import build_friction, build_springs
 from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.extended import ExtendedUnits
-from tmm_cli.problem.record import Problem, TitleTexts
+from tmm_cli.problem.record import Problem
 from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
@@ -75,9 +75,7 @@ def validated(model: type[Model], tree: Tree) -> Model:
 def unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
     """What bare numbers of a file mean; extended: with numbers as double-doubles. Raises ProblemError."""
     with under("units"):
-        if not extended:
-            return UnitSystem(names)
-        return ExtendedUnits(names)
+        return ExtendedUnits(names) if extended else UnitSystem(names)
 
 
 def parameters(
@@ -122,7 +120,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
-        TitleTexts(**shape.sheet.model_dump()), _task("dynamics", shape, linkage, values),
+        shape.sheet, _task("dynamics", shape, linkage, values),
         _task("balancing", shape, linkage, values), shape.reference, shape.shows, values, tree,
         wheels=_wheels(shape, tree, linkage, values),
     )  # fmt: skip
@@ -191,9 +189,6 @@ def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader)
         if given.link in points:
             found += [Output(f"{given.link}.{axis}", given.working) for axis in "xy"]
         else:
-            found.append(
-                Output(
-                    values.known(given.link, dict.fromkeys([*moving, *points]), path, "link or point"), given.working
-                )
-            )
+            link = values.known(given.link, dict.fromkeys([*moving, *points]), path, "link or point")
+            found.append(Output(link, given.working))
     return tuple(found)

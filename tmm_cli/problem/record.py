@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import Linkage, Request
+from tmm_cli.problem.schema_sheet import SheetTexts
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.units import UnitSystem
@@ -29,19 +30,6 @@ class Synthesised:
     task: str
     outcome: Outcome
     names: Mapping[str, str]
-
-
-@dataclass(frozen=True)
-class TitleTexts:
-    """What the title block of a drawn sheet and the title page of the note say; which of the two blocks it is."""
-
-    student: str = ""
-    group: str = ""
-    teacher: str = ""
-    institution: str = ""
-    department: str = ""
-    code: str = ""
-    block: Literal["gost", "plain"] = "gost"
 
 
 @dataclass(frozen=True)
@@ -67,7 +55,7 @@ class Problem:
     pressure_limits: tuple[float, float] = (math.radians(30), math.radians(45))
     limits_set: tuple[bool, bool] = (False, False)
     bare_speed: bool = False
-    title_texts: TitleTexts = TitleTexts()
+    title_texts: SheetTexts = field(default_factory=SheetTexts)
     dynamics: SteadyTask | RunTask | None = None
     balancing: BalancingTask | None = None
     reference: str = ""
@@ -103,18 +91,6 @@ class TaskProblem:
     def whole(self) -> Problem:
         """The problem with what its task found."""
         return self.find()
-
-    @property
-    def linkage(self) -> Linkage:
-        return self.whole.linkage
-
-    @property
-    def request(self) -> Request:
-        return self.whole.request
-
-    @property
-    def synthesis(self) -> Synthesised | None:
-        return self.whole.synthesis
 
 
 @dataclass(frozen=True)

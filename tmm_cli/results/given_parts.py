@@ -34,12 +34,10 @@ def speed(driver: Driver) -> str:
     if driver.law is not None:
         return _("by a table against the crank angle")
     turns = driver.kind == "turn"
-    rate = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
-    return rate + (
-        f", {numeral(driver.acceleration, '.6g')} {spelt('rad/s^2' if turns else 'm/s^2')}"
-        if driver.acceleration
-        else ""
-    )
+    told = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
+    if driver.acceleration:
+        told += f", {numeral(driver.acceleration, '.6g')} {spelt('rad/s^2' if turns else 'm/s^2')}"
+    return told
 
 
 def speeds(problem: Problem, law: SpeedTable) -> Table:

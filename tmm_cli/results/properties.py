@@ -94,7 +94,10 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         results = _with_settings(task, results)
     if task.without is not None:
         results = _broken(task.without, results)
-    quantity = _known(task.of, "of", results)
+    known = {**quantities(results.linkage, results.structure), **of_wheels(results.inputs.wheels)}
+    if task.of not in known:
+        raise unknown_name(task.of, known, _("there is no quantity of that name"), path=("of",))
+    quantity = known[task.of]
     if task.without is not None and quantity.stage != "structure":
         raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
     if not _ran(quantity, results):
@@ -104,30 +107,18 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
     if task.within is not None:
         dimension = place_dimension(results.linkage.driver.kind)
     if task.per is not None:
-        by, of = task.per, _named(results)
-        if isinstance(by, str) and by in of:
-            if of[by].dimension != dimension:
+        by = task.per
+        if isinstance(by, str) and by in known:
+            if known[by].dimension != dimension:
                 raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(by))
-            if not _ran(of[by], results):
+            if not _ran(known[by], results):
                 return None
-            value /= _one(of[by], task, results)
+            value /= _one(known[by], task, results)
         else:
             value /= values.positive(by, dimension, ("per",))
         dimension = NUMBER
     expected = None if task.expected is None else values.number(task.expected, dimension, ("expected",))
     return Property(name, value, dimension, expected)
-
-
-def _named(results: Results) -> dict[str, Quantity]:
-    """All quantities, and those of wheels."""
-    return {**quantities(results.linkage, results.structure), **of_wheels(results.inputs.wheels)}
-
-
-def _known(name: str, key: str, results: Results) -> Quantity:
-    known = _named(results)
-    if name not in known:
-        raise unknown_name(name, known, _("there is no quantity of that name"), path=(key,))
-    return known[name]
 
 
 def _ran(quantity: Quantity, results: Results) -> bool:

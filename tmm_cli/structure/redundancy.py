@@ -95,10 +95,9 @@ class Space:
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
-def space(linkage: Linkage, structure: Structure, wanted: int | None = None) -> Space:
+def space(linkage: Linkage, structure: Structure) -> Space:
     """Count the linkage in space and propose pairs without redundant constraints; wanted: one freedom a driver."""
-    wanted = len(structure.drivers) if wanted is None else wanted
-    chain = spatial_chain(structure, {})
+    chain, wanted = spatial_chain(structure, {}), len(structure.drivers)
     heights = Heights(linkage)
     for pins_first in (True, False):
         kinds = _choose_all(heights, structure, pins_first)

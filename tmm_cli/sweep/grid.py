@@ -19,6 +19,7 @@ from tmm_cli.vectors import Real
 OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
 COUNT = (41, 21)  # values where none is given: of one parameter, of each of two
 MOST = 1_000_000  # values of a parameter
+EXAMPLE = "--over OA=80..120:41"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +48,7 @@ class Axis:
 def read_axes(task: Task, over: Sequence[str]) -> tuple[Axis, ...]:
     """What one or two options `--over` say. Raises ProblemError."""
     if not 1 <= len(over) <= 2:
-        raise ProblemError(
-            _("one or two parameters are swept"), found=", ".join(over) or None, allowed="--over OA=80..120:41"
-        )
+        raise ProblemError(_("one or two parameters are swept"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
     for text in over:
         try:
@@ -64,9 +63,7 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[Axis, ...]:
 def _axis(task: Task, text: str, usual: int) -> Axis:
     found = OVER.fullmatch(text)
     if found is None:
-        raise ProblemError(
-            _("a name, two bounds and perhaps a count are wanted"), found=quote(text), allowed="--over OA=80..120:41"
-        )
+        raise ProblemError(_("a name, two bounds and perhaps a count are wanted"), found=quote(text), allowed=EXAMPLE)
     name, *ends, count = found.groups()
     (own,) = task.dimensions((name,))
     units = [part[2] for part in map(NUMBER.fullmatch, ends[::-1]) if part]
@@ -75,16 +72,14 @@ def _axis(task: Task, text: str, usual: int) -> Axis:
     for end in ends:
         part = NUMBER.fullmatch(end)
         if part is None or (part[2] and part[2] != unit):
-            raise ProblemError(
-                _("two numbers in one unit are wanted"), found=quote(end), allowed="--over OA=80..120:41"
-            )
+            raise ProblemError(_("two numbers in one unit are wanted"), found=quote(end), allowed=EXAMPLE)
         said.append(task.value(f"{part[1]} {unit}".strip()))
     dimension = said[0].dimension
     if own and dimension and not dimension.fits(own):
         raise ProblemError(_("{want} is wanted here").format(want=own), found=quote(text), allowed=own.example)
     low, high = (float(NUMBER.fullmatch(end)[1]) for end in ends)  # type: ignore[index]
     if not low < high:
-        raise ProblemError(_("the lower bound comes first"), found=quote(text), allowed="--over OA=80..120:41")
+        raise ProblemError(_("the lower bound comes first"), found=quote(text), allowed=EXAMPLE)
     steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
     if not 2 <= steps <= MOST:
         raise ProblemError(

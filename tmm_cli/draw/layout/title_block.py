@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tmm_cli.draw.paper.drawing import Line, Mark
 from tmm_cli.draw.paper.writing import DARK, written
 from tmm_cli.language import _
-from tmm_cli.problem.record import TitleTexts
+from tmm_cli.problem.schema_sheet import SheetTexts
 
 LEFT, EDGE = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others
 BOLD, FINE = 0.6, 0.25  # mm: main and thin lines
@@ -20,7 +20,7 @@ SMALL, USUAL, LARGE = 2.8, 3.5, 5.0  # mm: sizes of letters' bodies
 class Titles:
     """What is written into the block of one sheet; number: which of `count` it is."""
 
-    texts: TitleTexts
+    texts: SheetTexts
     title: str
     subject: str
     number: int

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,16 +22,14 @@ from tmm_cli.quantities import (
     MOMENT,
     NUMBER,
     SPEED,
-    Dimension,
 )  # fmt: skip
 from tmm_cli.results.reports.cycle import driver_columns
-from tmm_cli.results.reports.quality import of_rows
+from tmm_cli.results.reports.quality import Row, of_rows
 from tmm_cli.results.table import Column, Table
 
 if TYPE_CHECKING:
     from tmm_cli.analysis.single_run import SingleRun  # it imports scipy
 
-Row = tuple[str, Any, Dimension]
 STEPS = 25  # of a single run, that are shown
 
 
