@@ -56,7 +56,7 @@ def sweeping(name: str, reduced: bool) -> Sweeping:
     points = grid(mechanisms.axes)
 
     def found(least: dict[str, float]) -> Sweeping:
-        positions = mechanisms.task.problem.whole.request.count
+        positions = mechanisms.task.problem.request.count
         return Sweeping(name, count, positions, 60 * count / least[""], preparing)
 
     return timed({"": lambda: mechanisms.at(points)}, found, reduced)

@@ -92,6 +92,18 @@ class TaskProblem:
         """The problem with what its task found."""
         return self.find()
 
+    @property
+    def linkage(self) -> Linkage:
+        return self.whole.linkage
+
+    @property
+    def request(self) -> Request:
+        return self.whole.request
+
+    @property
+    def synthesis(self) -> Synthesised | None:
+        return self.whole.synthesis
+
 
 @dataclass(frozen=True)
 class ChainProblem:
