@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import lru_cache
 from typing import NamedTuple
 
 from tmm_cli.grading.record import Given, Key, Submission
@@ -52,10 +51,24 @@ class Answers:
         self.vectors = {one.quantity.name: one.quantity.vector for one in task.asked}
         self.names = list(self.vectors)
         self.headings = Headings(task.quantities)
-        self.known = lru_cache(maxsize=LIMIT)(self.heading)
+        self.known: dict[Entry, Over | ProblemError] = {}
 
     def heading(self, entry: Entry) -> Over:
         """What is over a cell. Raises ProblemError."""
+        key = entry._replace(cell="")
+        found = self.known.get(key)
+        if found is None:
+            try:
+                found = self._heading(key)
+            except ProblemError as error:
+                found = error
+            if len(self.known) < LIMIT:
+                self.known[key] = found
+        if isinstance(found, ProblemError):
+            raise found.with_traceback(None)
+        return found
+
+    def _heading(self, entry: Entry) -> Over:
         over = self.headings.read(entry.heading)
         position, angle = read_position(entry.position)
         if position is not None or angle is not None:
@@ -76,7 +89,7 @@ class Answers:
             if not entry.cell.strip(" -–—"):
                 continue
             try:
-                over = self.known(entry._replace(cell=""))
+                over = self.heading(entry)
             except ProblemError as error:
                 told.append(error)
                 continue
