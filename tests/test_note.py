@@ -20,8 +20,8 @@ from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import spoken
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Found, Heading, Rows
-from tmm_cli.note.expression import Sum
+from tmm_cli.note.blocks import Heading, Rows
+from tmm_cli.note.expression import Found, Sum
 from tmm_cli.note.formats.html import html
 from tmm_cli.quantities import KINDS
 from tmm_cli.results.as_json import sections
@@ -49,8 +49,8 @@ def test_every_formula_gives_its_printed_result_within_its_last_digit(name):
 
 def test_a_formula_with_a_sign_changed_is_not_written():
     changed = [
-        block.substitution for block in written("shaper").blocks
-        if isinstance(block, Found) and isinstance(block.substitution.expression, Sum)
+        block for block in written("shaper").blocks
+        if isinstance(block, Found) and isinstance(block.expression, Sum)
     ]  # fmt: skip
     assert changed
     for found in changed:

@@ -10,9 +10,10 @@ from models import PROBLEMS
 
 from tmm_cli import solve
 from tmm_cli.note import note
-from tmm_cli.note.blocks import Figure, Found, Heading, Note
+from tmm_cli.note.blocks import Figure, Heading, Note
 from tmm_cli.note.chapters import balancing, centres
 from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Found
 from tmm_cli.note.formats.html import html
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -34,7 +35,7 @@ def found(blocks: Note) -> Iterator[tuple[str, float]]:
     """Quantities that are found, with their results."""
     for block in blocks.blocks:
         if isinstance(block, Found):
-            yield block.substitution.name.plain, block.substitution.result
+            yield block.name.plain, block.result
 
 
 def test_masses_in_the_hinges_of_a_coupler_give_the_counterweights_of_a_four_bar():

@@ -12,7 +12,6 @@ from tmm_cli.note.blocks import (
     Contents,
     Equation,
     Figure,
-    Found,
     Heading,
     Note,
     Ref,
@@ -22,7 +21,7 @@ from tmm_cli.note.blocks import (
     Title,
     paragraph,
 )  # fmt: skip
-from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Found, Function, Leaf, SquareRoot, Sum
 from tmm_cli.note.formats import FORMATS
 from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Symbol
@@ -44,14 +43,12 @@ def leaf(letter, value, below="", above=""):
     return Leaf(Symbol(letter, below, above), value)
 
 
-TERMS = tuple((1, Product((leaf("G", 100.0 + k, str(k)), leaf("h", 0.01 * k, str(k))))) for k in range(1, 12))
-MOMENTS = Quotient(Sum(TERMS), leaf("l", 0.65, "CD"))
-SIDES = Sum(((1, Square(leaf("R", 3.0, "34", "n"))), (1, Square(leaf("R", 4.0, "34", "τ")))))
-FORCE = Substitution(Symbol("R", "34"), SquareRoot(SIDES), 5.0, "N")
-WIDE = Substitution(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
-TURNED = Substitution(
-    Symbol("x"), Product((Constant(2), Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)))), 1.0, "m"
-)
+TERMS = tuple((1, leaf("G", 100.0 + k, str(k)) * leaf("h", 0.01 * k, str(k))) for k in range(1, 12))
+MOMENTS = Sum(TERMS) / leaf("l", 0.65, "CD")
+SIDES = leaf("R", 3.0, "34", "n") ** 2 + leaf("R", 4.0, "34", "τ") ** 2
+FORCE = Found(Symbol("R", "34"), SquareRoot(SIDES), 5.0, "N")
+WIDE = Found(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
+TURNED = Found(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)), 1.0, "m")
 DRAWING = Drawing((80.0, 60.0), (
     Line((0j, 40 + 30j), "#000000", 0.3), Line((0j, 80j), "#000000", 0.3, "--"),
     Text(10 + 10j, "Ползун", 4.0, "#000000"),
@@ -61,7 +58,7 @@ NOTE = Note("Crank shaper", "ru", (
     Heading("Forces"), Heading(HOSTILE, 2),
     paragraph("Velocity ", Symbol("v", "B"), " in figure ", Ref("plan"), ", table ", Ref("v"), ". ", HOSTILE),
     Equation(row(Letter(Symbol("v", "B"), True, 1), "=", Letter(Symbol("v", "A"), True, 2))),
-    Found(FORCE), Found(WIDE), Found(TURNED),
+    FORCE, WIDE, TURNED,
     Figure("Velocity plan", DRAWING, "plan"), Figure(HOSTILE, DRAWING),
     Rows("Velocities", (("position",), (Symbol("v", "B"),)), tuple(((str(k),), (f"0,{k}",)) for k in range(12)), "v"),
     Heading("Literature"), Sources((Source("a", "И. И. Артоболевский, Теория механизмов и машин"),)),

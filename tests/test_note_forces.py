@@ -9,10 +9,10 @@ from bank import NAMES, solved
 from models import PROBLEMS
 
 from tmm_cli import load, solve
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Paragraph
+from tmm_cli.note.blocks import Block, Equation, Heading, Paragraph
 from tmm_cli.note.chapters.forces import blocks
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Leaf
+from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Letter, Row
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, reaction_symbol
@@ -61,9 +61,9 @@ def test_no_reaction_is_put_in_before_it_is_found(name):
     for block in chapter(name):
         if isinstance(block, Heading) and block.text.startswith("Loads of the links"):
             known = set()
-        if not isinstance(block, Found) or block.substitution.name.letter == "ΣM":
+        if not isinstance(block, Found) or block.name.letter == "ΣM":
             continue
-        found, expression = block.substitution.name, block.substitution.expression
+        found, expression = block.name, block.expression
         for leaf in leaves(expression):
             if leaf.symbol.letter == "R" and leaf.symbol != found:
                 assert {leaf.symbol, opposite(leaf.symbol, links)} & known, f"{leaf.symbol.name} for {found.name}"
@@ -99,9 +99,7 @@ def test_nothing_is_written_where_nothing_acts():
 def test_links_whose_reactions_are_found_together_are_said_to_be():
     said = " ".join(str(block.line) for block in chapter("class-iv") if isinstance(block, Paragraph))
     assert "solved together" in said
-    checks = [
-        b.substitution for b in chapter("class-iv") if isinstance(b, Found) and b.substitution.name.letter == "ΣM"
-    ]
+    checks = [b for b in chapter("class-iv") if isinstance(b, Found) and b.name.letter == "ΣM"]
     assert len(checks) == 4 and all(check.result == 0 for check in checks)
 
 
@@ -116,7 +114,7 @@ def rubbing(tmp_path_factory):
 
 
 def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
-    found = [block.substitution for block in blocks(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
+    found = [block for block in blocks(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
     rubbed = {s.name.below for s in found if s.name.letter == "T"}
     assert rubbed == {one.pair + rubbing.reactions.of(one.pair).on for one in rubbing.linkage.friction}
     without = [s.result for s in found if s.name == Symbol("M", "b", "0")]

@@ -9,9 +9,10 @@ from models import PROBLEMS
 
 from tmm_cli import load, solve
 from tmm_cli.draw.paper.picture import Picture
-from tmm_cli.note.blocks import Equation, Found, Heading, Paragraph
+from tmm_cli.note.blocks import Equation, Heading, Paragraph
 from tmm_cli.note.chapters.kinematics import blocks
 from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Found
 from tmm_cli.note.kinematics.on_paper import Here
 from tmm_cli.note.math import Letter, Row
 
@@ -27,7 +28,7 @@ def chapter(name):
 
 
 def found(name):
-    return [block.substitution for block in chapter(name) if isinstance(block, Found)]
+    return [block for block in chapter(name) if isinstance(block, Found)]
 
 
 def sentences(name):

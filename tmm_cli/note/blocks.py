@@ -8,7 +8,7 @@ from functools import cached_property
 
 from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.language import filled
-from tmm_cli.note.expression import Substitution
+from tmm_cli.note.expression import Found
 from tmm_cli.note.math import Node
 from tmm_cli.plans.record import Symbol
 
@@ -58,13 +58,6 @@ class Equation:
     """A formula on a line of its own."""
 
     node: Node
-
-
-@dataclass(frozen=True)
-class Found:
-    """A quantity found, on a line of its own: letters = numbers = result."""
-
-    substitution: Substitution
 
 
 @dataclass(frozen=True)
@@ -165,12 +158,7 @@ class Note:
 
 def paragraph(*line: Inline) -> Paragraph:
     """Of texts and symbols one after another."""
-    return Paragraph(tuple(line))
-
-
-def line(*parts: Inline) -> Line:
-    """Of texts and symbols one after another."""
-    return tuple(parts)
+    return Paragraph(line)
 
 
 def cells(*parts: Inline | Line) -> tuple[Line, ...]:
@@ -197,11 +185,6 @@ def several(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
 def said(sentence: str, **parts: Inline | Line) -> Paragraph:
     """A paragraph of such a sentence."""
     return Paragraph(filled(sentence, **parts))
-
-
-def chapters(*parts: Iterable[Block]) -> tuple[Block, ...]:
-    """All blocks of all chapters."""
-    return tuple(block for part in parts for block in part)
 
 
 def _is_number(cell: Line) -> bool:

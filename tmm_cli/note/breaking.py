@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tmm_cli.note.expression import Leaf, Substitution, letters, numbers, result_node
+from tmm_cli.note.expression import Found, Leaf, letters, numbers, result_node
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
 
 LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
@@ -30,7 +30,7 @@ def chain(sides: Sequence[Node], most: float = LINE) -> Node:
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
 
 
-def formula(found: Substitution, say: Callable[[str], str] = str) -> Node:
+def formula(found: Found, say: Callable[[str], str] = str) -> Node:
     """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
 
     Raises:

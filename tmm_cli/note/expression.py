@@ -7,7 +7,7 @@ before they are printed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -21,8 +21,40 @@ WHOLE = 7  # figures before the point that are written out
 NOTHING = 1e-9  # of the largest term: a sum that is less is zero
 
 
+class Joined:
+    """What signs of arithmetic join as on paper, numbers too: 2 * a - b / c; sums and products take in one another."""
+
+    def __add__(self, other: Expression | float) -> Sum:
+        return Sum((*_terms(self), *_terms(other)))
+
+    def __sub__(self, other: Expression | float) -> Sum:
+        return Sum((*_terms(self), *_terms(-_own(other))))
+
+    def __rsub__(self, number: float) -> Sum:
+        return _own(number) - _own(self)
+
+    def __neg__(self) -> Sum:
+        return Sum(tuple((-sign, term) for sign, term in _terms(self)))
+
+    def __mul__(self, other: Expression | float) -> Product:
+        own = self.factors if isinstance(self, Product) else (_own(self),)
+        return Product((*own, _own(other)))
+
+    def __rmul__(self, number: float) -> Product:
+        return _own(number) * _own(self)
+
+    def __truediv__(self, other: Expression | float) -> Quotient:
+        return Quotient(_own(self), _own(other))
+
+    def __rtruediv__(self, number: float) -> Quotient:
+        return _own(number) / _own(self)
+
+    def __pow__(self, over: int) -> Raised:
+        return Raised(_own(self), over)
+
+
 @dataclass(frozen=True)
-class Leaf:
+class Leaf(Joined):
     """A quantity with its value, SI. angle: in radians, printed in degrees. of: what is put in instead, as 2·π."""
 
     symbol: Symbol
@@ -32,7 +64,7 @@ class Leaf:
 
 
 @dataclass(frozen=True)
-class Constant:
+class Constant(Joined):
     """A number of the formula itself: the 2 of a Coriolis acceleration. text: where it is not the number, as π."""
 
     value: float
@@ -40,21 +72,21 @@ class Constant:
 
 
 @dataclass(frozen=True)
-class Sum:
+class Sum(Joined):
     """Terms with their signs, +1 or -1."""
 
     terms: tuple[tuple[int, Expression], ...]
 
 
 @dataclass(frozen=True)
-class Product:
+class Product(Joined):
     """Factors one after another."""
 
     factors: tuple[Expression, ...]
 
 
 @dataclass(frozen=True)
-class Quotient:
+class Quotient(Joined):
     """One expression over another."""
 
     over: Expression
@@ -62,15 +94,8 @@ class Quotient:
 
 
 @dataclass(frozen=True)
-class Square:
-    """A square."""
-
-    of: Expression
-
-
-@dataclass(frozen=True)
-class Raised:
-    """To a power, of whole numbers: a cube, or with `under` a root written as a power."""
+class Raised(Joined):
+    """To a power, of whole numbers: a square, or with `under` a root written as a power."""
 
     of: Expression
     over: int
@@ -78,21 +103,21 @@ class Raised:
 
 
 @dataclass(frozen=True)
-class SquareRoot:
+class SquareRoot(Joined):
     """A root of what is not negative."""
 
     of: Expression
 
 
 @dataclass(frozen=True)
-class Function:
+class Function(Joined):
     """cos, sin, tan of an angle; arccos, arcsin, arctan give one; abs."""
 
     name: str
     of: Expression
 
 
-Expression = Leaf | Constant | Sum | Product | Quotient | Square | Raised | SquareRoot | Function
+Expression = Leaf | Constant | Sum | Product | Quotient | Raised | SquareRoot | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "cos": math.cos, "sin": math.sin, "tan": math.tan, "abs": abs,
     "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
@@ -100,8 +125,8 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 
 @dataclass(frozen=True)
-class Substitution:
-    """A quantity found: name = letters = numbers = result with its unit.
+class Found:
+    """A quantity found, on a line of its own: name = letters = numbers = result with its unit.
 
     result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
     formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only. whole: a
@@ -141,6 +166,28 @@ class Substitution:
         raise ValueError(f"{self.name.name}: {self.value(MOST_FIGURES)} is not {result}")
 
 
+def read(name: Symbol, value: float, unit: str) -> Found:
+    """A quantity that is read off: its letter and its value."""
+    return Found(name, Leaf(name, value), value, unit)
+
+
+def added(terms: Iterable[Expression]) -> Sum:
+    """All of them."""
+    return Sum(tuple((1, term) for term in terms))
+
+
+def _own(part: object) -> Expression:
+    if isinstance(part, Expression):
+        return part
+    assert isinstance(part, int | float)
+    return Constant(part)
+
+
+def _terms(part: object) -> tuple[tuple[int, Expression], ...]:
+    own = _own(part)
+    return own.terms if isinstance(own, Sum) else ((1, own),)
+
+
 def evaluate(expression: Expression, figures: int) -> float:
     """With every leaf rounded to so many figures."""
     of = partial(evaluate, figures=figures)
@@ -157,8 +204,6 @@ def evaluate(expression: Expression, figures: int) -> float:
             return math.prod(of(factor) for factor in factors)
         case Quotient(over, under):
             return of(over) / of(under)
-        case Square(base):
-            return of(base) ** 2
         case Raised(base, over, under):
             return float(of(base) ** (over / under))
         case SquareRoot(base):
@@ -234,8 +279,6 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             return paper.row(*shown)
         case Quotient(over, under):
             return paper.Fraction(of(over), of(under))
-        case Square(base):
-            return _power(of(base), paper.Number("2"))
         case Raised(base, over, under):
             power = paper.Number(str(over))
             return _power(of(base), power if under == 1 else paper.Fraction(power, paper.Number(str(under))))

@@ -15,9 +15,9 @@ from tmm_cli.dynamics.balancing import Balanced, Counterweight
 from tmm_cli.dynamics.balancing_task import BalancingTask, Place
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Found, Paragraph, said
+from tmm_cli.note.blocks import Block, Paragraph, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Leaf, Product, Quotient, Substitution, Sum, evaluate
+from tmm_cli.note.expression import Expression, Found, Leaf, Sum, evaluate
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import cross, dot
 
@@ -53,16 +53,16 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
         )  # fmt: skip
         if weight.mass is not None and weight.size:
             own = Leaf(Symbol("D", weight.place.link), weight.size)
-            mass = Quotient(own, Leaf(Symbol("r", weight.place.link), weight.place.radius))
-            yield Found(Substitution(Symbol("m", f"c{weight.place.link}"), mass, weight.mass, _("kg")))
+            mass = own / Leaf(Symbol("r", weight.place.link), weight.place.radius)
+            yield Found(Symbol("m", f"c{weight.place.link}"), mass, weight.mass, _("kg"))
     before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
     if found.left < ON_LINE:
         yield said(_("They leave no shaking force: the common centre of mass of the links does not move."))
         return
     yield said(_("The largest shaking force is {F} without them and {Fb} with them; the share that is left:"),
                F=Symbol("F", "max"), Fb=Symbol("F", "max").primed)  # fmt: skip
-    share = Quotient(Leaf(Symbol("F", "max").primed, after), Leaf(Symbol("F", "max"), before))
-    yield Found(Substitution(Symbol("λ"), share, found.left))
+    share = Leaf(Symbol("F", "max").primed, after) / Leaf(Symbol("F", "max"), before)
+    yield Found(Symbol("λ"), share, found.left)
 
 
 @dataclass
@@ -121,7 +121,7 @@ class _Replaced:
         for (point, part), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
             symbol, value = Symbol("m", f"{name}{point}"), mass * part
             arm = Leaf(Symbol("l", f"S{name}{other}"), abs(line) * part)
-            self.told.append(Found(Substitution(symbol, Product((own, Quotient(arm, length))), value, _("kg"))))
+            self.told.append(Found(symbol, own * (arm / length), value, _("kg")))
             self.lumps.setdefault(point, []).append(Leaf(symbol, value))
         return True
 
@@ -147,7 +147,7 @@ class _Replaced:
         if any(abs(cross(along, arm)) > ON_LINE * abs(arm) for *__, arm in masses):
             return False
         terms: list[tuple[int, Expression]] = [
-            (1 if dot(along, arm) > 0 else -1, Product((one, length))) for one, length, arm in masses
+            (1 if dot(along, arm) > 0 else -1, one * length) for one, length, arm in masses
         ]
         terms += self._shared(name, pivot, along)
         expression = Sum(tuple(terms))
@@ -156,7 +156,7 @@ class _Replaced:
         if evaluate(expression, EXACT) < 0:
             expression = Sum(tuple((-sign, term) for sign, term in terms))
         self.told.append(_about(name, pivot))
-        self.told.append(Found(Substitution(Symbol("D", name), expression, weight.size, _("kg·m"))))
+        self.told.append(Found(Symbol("D", name), expression, weight.size, _("kg·m")))
         if self._fixed(place) is None:
             self._carry(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
         return True
@@ -168,9 +168,9 @@ class _Replaced:
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
         self.told.append(said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"),
                               m=every[-1].symbol, pivot=pivot))  # fmt: skip
-        own = Quotient(Leaf(Symbol("D", name), weight.size), Leaf(Symbol("r", name), weight.place.radius))
+        own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
         terms: list[tuple[int, Expression]] = [(1, one) for one in every[:-1]]
-        self.told.append(Found(Substitution(total.symbol, Sum((*terms, (1, own))), total.value, _("kg"))))
+        self.told.append(Found(total.symbol, Sum((*terms, (1, own))), total.value, _("kg")))
         self.lumps.setdefault(pivot, []).append(total)
 
     def _shared(self, name: str, pivot: str, along: complex) -> Iterator[tuple[int, Expression]]:
@@ -185,7 +185,7 @@ class _Replaced:
                 length = Leaf(Symbol("l", f"{pivot}{pins[0]}"), abs(arm))
                 share = Leaf(SHARE, self.task.share)
                 for one in self.lumps.pop(point):
-                    yield (1 if dot(along, arm) > 0 else -1), Product((share, one, length))
+                    yield (1 if dot(along, arm) > 0 else -1), share * one * length
                 self.told.append(said(_("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
                                       point=point, k=SHARE))  # fmt: skip
 

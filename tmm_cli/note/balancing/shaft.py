@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.dynamics.balancing_task import Rotor
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, SquareRoot, Sum
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import Vector
 
@@ -39,30 +39,30 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
         terms: list[tuple[int, Expression]] = []
         for number, (size, at) in enumerate(zip(rotor.sizes.tolist(), rotor.at.tolist(), strict=True), 1):
             angle = Leaf(Symbol("α", str(number)), float(np.angle(size) % (2 * np.pi)), angle=True)
-            part: Expression = Product((Leaf(Symbol("D", str(number)), abs(size)), Function(function, angle)))
+            part: Expression = Leaf(Symbol("D", str(number)), abs(size)) * Function(function, angle)
             if k:
-                part = Product((part, _gap(Symbol("z", str(number)), float(at), rotor)))
+                part = part * _gap(Symbol("z", str(number)), float(at), rotor)
             terms.append((-1, part))
         whole: Expression = Sum(tuple(terms))
         if k:
-            whole = Quotient(whole, _gap(Symbol("z", PLANES[1]), rotor.planes[1].at, rotor))
+            whole = whole / _gap(Symbol("z", PLANES[1]), rotor.planes[1].at, rotor)
         elif len(rotor.planes) > 1:
             other = complex(corrections[1])
             rest = Leaf(Symbol("D", f"{PLANES[1]}{axis}"), other.real if axis == "x" else other.imag)
             whole = Sum((*terms, (-1, rest)))
-        yield Found(Substitution(Symbol("D", f"{name}{axis}"), whole, value, _("kg·m")))
+        yield Found(Symbol("D", f"{name}{axis}"), whole, value, _("kg·m"))
     parts = [Leaf(Symbol("D", f"{name}{axis}"), v) for axis, v in (("x", found.real), ("y", found.imag))]
-    root = SquareRoot(Sum(tuple((1, Square(part)) for part in parts)))
-    yield Found(Substitution(own, root, abs(found), _("kg·m")))
+    root = SquareRoot(Sum(tuple((1, part**2) for part in parts)))
+    yield Found(own, root, abs(found), _("kg·m"))
     if abs(found):
         direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
         yield said(_("Its angle is {angle}°."), angle=direction)
     radius = rotor.planes[k].radius
     if radius:
-        mass = Quotient(Leaf(own, abs(found)), Leaf(Symbol("r", name), radius))
-        yield Found(Substitution(Symbol("m", name), mass, abs(found) / radius, _("kg")))
+        mass = Leaf(own, abs(found)) / Leaf(Symbol("r", name), radius)
+        yield Found(Symbol("m", name), mass, abs(found) / radius, _("kg"))
 
 
 def _gap(symbol: Symbol, at: float, rotor: Rotor) -> Expression:
     """How far beyond the first plane, m."""
-    return Sum(((1, Leaf(symbol, at)), (-1, Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at))))
+    return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

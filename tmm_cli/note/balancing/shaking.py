@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.analysis.balancing import Balancing, steadily
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, Inline, said
+from tmm_cli.note.blocks import Block, Inline, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Leaf, Product, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Leaf, SquareRoot, Sum
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
 
@@ -47,21 +47,21 @@ def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
             parts = [Leaf(Symbol("a", f"S{name}{axis}"), value) for axis, value in (("x", a.real), ("y", a.imag))]
             arms = [Leaf(Symbol(axis, f"S{name}"), value) for axis, value in (("x", r.real), ("y", r.imag))]
             for own, part in zip(terms, parts, strict=True):
-                own.append(Product((m, part)))
-            turned = Sum(((1, Product((arms[0], parts[1]))), (-1, Product((arms[1], parts[0])))))
-            moments.append(Product((m, turned)))
+                own.append(m * part)
+            turned = arms[0] * parts[1] - arms[1] * parts[0]
+            moments.append(m * turned)
         inertia, epsilon = float(np.ravel(link.inertia)[0]), float(np.broadcast_to(motion.link(name).epsilon, 1)[0])
         if inertia and epsilon:
-            moments.append(Product((Leaf(Symbol("J", f"S{name}"), inertia), Leaf(Symbol("ε", name), epsilon))))
+            moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
     if not moments:
         return
     yield said(_("Position {number}:"), number=str(results.numbers[k]))
     force = complex(found.before.force[k])
     for symbol, own, value in zip((X, Y), terms, (force.real, force.imag), strict=True):
-        yield Found(Substitution(symbol, _less(own), value, _("N")))
-    size = SquareRoot(Sum(((1, Square(Leaf(X, force.real))), (1, Square(Leaf(Y, force.imag))))))
-    yield Found(Substitution(FORCE, size, abs(force), _("N")))
-    yield Found(Substitution(MOMENT, _less(moments), float(found.before.moment[k]), _("N·m")))
+        yield Found(symbol, _less(own), value, _("N"))
+    size = SquareRoot(Leaf(X, force.real) ** 2 + Leaf(Y, force.imag) ** 2)
+    yield Found(FORCE, size, abs(force), _("N"))
+    yield Found(MOMENT, _less(moments), float(found.before.moment[k]), _("N·m"))
 
 
 def _less(terms: list[Expression]) -> Expression:

@@ -9,9 +9,9 @@ import numpy as np
 from tmm_cli.kinematics.centres import Centre, Links
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
-from tmm_cli.note.blocks import Block, Found, Heading, said
+from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.record import Symbol, subscript
 from tmm_cli.results.reports import walk
@@ -34,8 +34,8 @@ def blocks(subject: Subject) -> Iterable[Block]:
     )  # fmt: skip
     count = len(results.linkage.links)
     own = Leaf(LINKS, float(count))
-    pairs = Quotient(Product((own, Sum(((1, own), (-1, Constant(1)))))), Constant(2))
-    yield Found(Substitution(ALL, pairs, count * (count - 1) / 2, whole=True))
+    pairs = own * (own - 1) / 2
+    yield Found(ALL, pairs, count * (count - 1) / 2, whole=True)
     yield said(
         _("The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
           "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
@@ -55,7 +55,7 @@ def _speeds(subject: Subject) -> Iterable[Block]:
     assert results.centres is not None
     first = True
     for k, found in results.centres.items():
-        told = [Found(one) for one in _of_position(subject, k, {centre.links: centre for centre in found})]
+        told = list(_of_position(subject, k, {centre.links: centre for centre in found}))
         if told and first:
             yield said(
                 _("The centre of a link and the driving one has the same velocity on both, so that distances between "
@@ -69,7 +69,7 @@ def _speeds(subject: Subject) -> Iterable[Block]:
         first = first and not told
 
 
-def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Substitution]:
+def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Found]:
     motion = subject.motion
     driver = motion.linkage.driver.link
     own = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
@@ -82,14 +82,14 @@ def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Ite
         if both.place is None:
             continue
         arm = _distance(pivot, both)
-        reached: Expression = Product((rate, arm))
+        reached: Expression = rate * arm
         if here.place is None and here.direction is not None:
             speed = abs(complex(motion.point(link, 0j).v[k]))
-            yield Substitution(Symbol("v", link), reached, speed, _("m/s"))
+            yield Found(Symbol("v", link), reached, speed, _("m/s"))
         elif here.place is not None:
             other, turning = _distance(here, both), abs(float(motion.link(link).omega[k]))
             if turning > NO_VECTOR * own and other.value:
-                yield Substitution(Symbol("ω", link), Quotient(reached, other), turning, _("rad/s"))
+                yield Found(Symbol("ω", link), reached / other, turning, _("rad/s"))
 
 
 def _distance(one: Centre, other: Centre) -> Leaf:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Heading, Items, Ref, line, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, Items, Ref, paragraph, said
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
@@ -27,4 +27,4 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield rows_of(subject, table, _("Checks"), "checks")
     if told:
         yield paragraph(_("The following deserves attention:"))
-        yield Items(tuple(line(with_degrees(text)) for text in told))
+        yield Items(tuple((with_degrees(text),) for text in told))

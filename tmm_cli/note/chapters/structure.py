@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from tmm_cli.draw.sheets.structure import counted, parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Equation, Figure, Found, Heading, Line, Link, Ref, Rows, cells, paragraph, said
+from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Link, Ref, Rows, cells, paragraph, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
 from tmm_cli.note.tables import NONE, unbroken
 from tmm_cli.plans.record import Symbol
@@ -75,7 +75,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         source=Link("artobolevskii"), w=W, n=N, lower=LOWER, higher=HIGHER,
         turning=str(turning), sliding=str(lower - turning),
     )  # fmt: skip
-    yield Found(Substitution(W, chebyshev(n, lower, higher), structure.mobility, whole=True))
+    yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
     if structure.passive:
         yield said(
             _(
@@ -90,8 +90,8 @@ def _mobility(structure: Structure) -> Iterable[Block]:
 
 def chebyshev(n: int, lower: int, higher: int) -> Expression:
     """3n − 2p₁ − p₂."""
-    held = Product((Constant(2), Leaf(LOWER, lower)))
-    return Sum(((1, Product((Constant(3), Leaf(N, n)))), (-1, held), (-1, Leaf(HIGHER, higher))))
+    held = 2 * Leaf(LOWER, lower)
+    return 3 * Leaf(N, n) - held - Leaf(HIGHER, higher)
 
 
 def _groups(subject: Subject) -> Iterable[Block]:

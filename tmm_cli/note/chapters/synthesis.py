@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.language import _, translated
-from tmm_cli.note.blocks import Block, Found, Heading, Ref, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, Ref, paragraph, said
 from tmm_cli.note.context import Subject, by_hand
-from tmm_cli.note.expression import Constant, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.record import Symbol
 from tmm_cli.problem.record import Synthesised
@@ -72,17 +72,17 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
     if "k" in values:
         theta = float(theta_of(values["k"]))
         yield said(_("The angle {theta} follows from the coefficient {k} of change of mean speed:"), theta=THETA, k=K)
-        yield Found(_theta(values["k"], theta))
-        half = Function("sin", Quotient(Leaf(THETA, theta, angle=True), Constant(2)))
+        yield _theta(values["k"], theta)
+        half = Function("sin", Leaf(THETA, theta, angle=True) / 2)
         if task.task == "shaper":
-            length = Quotient(Leaf(H, values["stroke"]), Product((Constant(2), half)))
-            yield Found(Substitution(Symbol("l", "CD"), length, values["CD"], "m"))
+            length = Leaf(H, values["stroke"]) / (2 * half)
+            yield Found(Symbol("l", "CD"), length, values["CD"], "m")
         if task.task in ("shaper", "slotted-lever"):
-            crank = Product((Leaf(Symbol("l", "OC"), values["OC"]), half))
-            yield Found(Substitution(Symbol("l", "OA"), crank, values["OA"], "m"))
+            crank = Leaf(Symbol("l", "OC"), values["OC"]) * half
+            yield Found(Symbol("l", "OA"), crank, values["OA"], "m")
 
 
-def _theta(k: float, theta: float) -> Substitution:
+def _theta(k: float, theta: float) -> Found:
     ratio = Leaf(K, k)
-    share = Quotient(Sum(((1, ratio), (-1, Constant(1)))), Sum(((1, ratio), (1, Constant(1)))))
-    return Substitution(THETA, Product((Constant(math.pi, "180°"), share)), theta, "°", angle=True)
+    share = (ratio - 1) / (ratio + 1)
+    return Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, line, paragraph, said, several
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, paragraph, said, several
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
 from tmm_cli.plans.bodies import named
@@ -75,7 +75,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
             yield rows_of(subject, table, key=table.name)
             yield from (paragraph(with_degrees(note)) for note in table.notes)
     yield paragraph(_("It is required to find:"))
-    yield Items(tuple(line(text) for text in _wanted(subject)))
+    yield Items(tuple((text,) for text in _wanted(subject)))
 
 
 def _gravity(subject: Subject) -> Iterable[Block]:
@@ -107,11 +107,11 @@ def _lengths(subject: Subject, link: Link) -> Line:
     for a, b in pairs:
         length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
         if length > 0:
-            found.append(line(Symbol("l", a + b), f" = {subject.value(length, LENGTH, 6)}"))
+            found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH, 6)}"))
     if any(np.any(np.imag(place) != 0) for place in link.points.values()):
         for point, place in link.points.items():
             x, y = _place(subject, place)
-            found.append(line(unbroken(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}")))
+            found.append((unbroken(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}"),))
     return tuple(part for k, one in enumerate(found) for part in ((", ", *one) if k else one))
 
 
@@ -148,9 +148,9 @@ def _masses(subject: Subject) -> Rows:
         own = (float(units.from_si(mass, MASS)), float(units.from_si(inertia, INERTIA)))
         rows.append(cells(name, *(subject.text(value, 6) for value in own), *_place(subject, link.centre)))
     head = (
-        line(_("link")), line(Symbol("m"), f", {subject.unit(MASS)}"),
-        line(Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
-        line(Symbol("x", "S"), f", {subject.unit(LENGTH)}"), line(Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
+        (_("link"),), (Symbol("m"), f", {subject.unit(MASS)}"),
+        (Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
+        (Symbol("x", "S"), f", {subject.unit(LENGTH)}"), (Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
     )  # fmt: skip
     return Rows(
         _("Masses, moments of inertia, and centres of mass in the axes of each link"), head, tuple(rows), "masses"

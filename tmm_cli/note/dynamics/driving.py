@@ -9,9 +9,9 @@ import numpy as np
 
 from tmm_cli.dynamics.motors import Kloss, Linear
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import DRIVING, MOMENT, Here
-from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.expression import Constant, Found, Leaf
 from tmm_cli.plans.record import Lettered, Symbol
 
 CYCLE, WHOLE = Lettered("A_c"), Lettered("φ_c")
@@ -35,9 +35,9 @@ def mean(here: Here) -> Iterable[Block]:
     if steady.task.motor is not None:
         text = _("The mean moment of the motor, reduced to the driving link:")
     yield said(text)
-    way = Product((Constant(2.0 * turns), Constant(math.pi, "π")))
-    work = Quotient(Leaf(CYCLE, steady.machine.work_of_cycle), Leaf(WHOLE, 2 * math.pi * turns, of=way))
-    yield Found(Substitution(DRIVING, Sum(((-1, work),)), steady.moment, _("N·m")))
+    way = Constant(2.0 * turns) * Constant(math.pi, "π")
+    work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
+    yield Found(DRIVING, -work, steady.moment, _("N·m"))
 
 
 def motor(here: Here) -> Iterable[Block]:
@@ -49,9 +49,9 @@ def motor(here: Here) -> Iterable[Block]:
                   "rest and nothing at {omega}. At the speed of position {number}:"),
                 M=STALL, omega=FREE, number=here.number,
             )  # fmt: skip
-            share = Sum(((1, Constant(1)), (-1, Quotient(here.speed, Leaf(FREE, found.free)))))
-            moment = Product((Leaf(STALL, found.stall), share))
-            yield Found(Substitution(DRIVING, moment, here.of(here.steady.law.driving), _("N·m")))
+            share = 1 - here.speed / Leaf(FREE, found.free)
+            moment = Leaf(STALL, found.stall) * share
+            yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
         case Kloss() as found:
             yield from _asynchronous(here, found)
 
@@ -64,11 +64,11 @@ def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
         s=SLIP, omega=FREE, M=BREAKDOWN, sk=CRITICAL, number=here.number,
     )  # fmt: skip
     value = 1 - here.speed.value / motor.synchronous
-    share = Quotient(here.speed, Leaf(FREE, motor.synchronous))
-    yield Found(Substitution(SLIP, Sum(((1, Constant(1)), (-1, share))), value))
+    share = here.speed / Leaf(FREE, motor.synchronous)
+    yield Found(SLIP, 1 - share, value)
     slip, critical = Leaf(SLIP, value), Leaf(CRITICAL, motor.slip)
     if value:
-        under = Sum(((1, Quotient(slip, critical)), (1, Quotient(critical, slip))))
-        moment = Quotient(Product((Constant(2), Leaf(BREAKDOWN, motor.breakdown))), under)
+        under = slip / critical + critical / slip
+        moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / under
         found = float(motor.moment(np.array([here.speed.value]))[0])
-        yield Found(Substitution(DRIVING, moment, found, _("N·m")))
+        yield Found(DRIVING, moment, found, _("N·m"))

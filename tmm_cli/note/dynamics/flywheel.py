@@ -9,17 +9,15 @@ import numpy as np
 
 from tmm_cli.dynamics.flywheel import Tangent
 from tmm_cli.language import _, symbol
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
 from tmm_cli.note.expression import (
     Constant,
     Expression,
+    Found,
     Leaf,
     Product,
-    Quotient,
     Raised,
-    Square,
-    Substitution,
     Sum,
 )
 from tmm_cli.note.math import Brackets, Fraction, Letter, Node, Number, Power, row
@@ -42,8 +40,8 @@ def speeds(here: Here) -> Iterable[Block]:
         mean=MEAN, delta=DELTA,
     )  # fmt: skip
     for name, value, sign in ((LARGEST, high, 1), (LEAST, low, -1)):
-        share = Sum(((1, Constant(1)), (sign, Quotient(delta, Constant(2)))))
-        yield Found(Substitution(name, Product((middle, share)), value, _("rad/s")))
+        share = Sum(((1, Constant(1)), (sign, delta / 2)))
+        yield Found(name, middle * share, value, _("rad/s"))
 
 
 def diagram(here: Here) -> Iterable[Block]:
@@ -64,8 +62,8 @@ def diagram(here: Here) -> Iterable[Block]:
         energy = _slope(tangent, speed)
         inertia = Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
         ordinate = Leaf(Symbol(WORK.letter, point), tangent.energy)
-        cut = Sum(((1, ordinate), (-1, Product((energy, inertia)))))
-        yield Found(Substitution(name, cut, tangent.offset, _("J")))
+        cut = ordinate - energy * inertia
+        yield Found(name, cut, tangent.offset, _("J"))
 
 
 def by_tangents(here: Here) -> Iterable[Block]:
@@ -82,9 +80,9 @@ def by_tangents(here: Here) -> Iterable[Block]:
     else:
         yield said(_("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:"))
     cut = Sum(tuple((s, Leaf(n, t.offset)) for s, n, t in zip((1, -1), OFFSETS, (upper, lower), strict=True)))
-    squares = Sum(tuple((s, Square(_speed(t, n))) for s, n, t in ((1, LARGEST, upper), (-1, LEAST, lower))))
-    whole = Quotient(Product((Constant(2), cut)), squares)
-    yield Found(Substitution(FLYWHEEL, whole, steady.law.flywheel, _("kg·m²")))
+    squares = Sum(tuple((s, _speed(t, n) ** 2) for s, n, t in ((1, LARGEST, upper), (-1, LEAST, lower))))
+    whole = 2 * cut / squares
+    yield Found(FLYWHEEL, whole, steady.law.flywheel, _("kg·m²"))
 
 
 def by_mertsalov(here: Here) -> Iterable[Block]:
@@ -102,9 +100,9 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
         most=most.symbol, least=least.symbol, rest=row(Letter(WORK), "−", Letter(INERTIA), "·", _half(MEAN)),
     )  # fmt: skip
     gain = most.value - least.value
-    yield Found(Substitution(GAIN, Sum(((1, most), (-1, least))), gain, _("J")))
-    under = Product((Leaf(DELTA, steady.task.delta or 0.0), Square(Leaf(MEAN, steady.task.mean))))
-    yield Found(Substitution(FLYWHEEL.primed, Quotient(Leaf(GAIN, gain), under), steady.mertsalov, _("kg·m²")))
+    yield Found(GAIN, most - least, gain, _("J"))
+    under = Leaf(DELTA, steady.task.delta or 0.0) * Leaf(MEAN, steady.task.mean) ** 2
+    yield Found(FLYWHEEL.primed, Leaf(GAIN, gain) / under, steady.mertsalov, _("kg·m²"))
 
 
 def on_shaft(here: Here) -> Iterable[Block]:
@@ -117,8 +115,8 @@ def on_shaft(here: Here) -> Iterable[Block]:
           "is"),
         u=RATIO,
     )  # fmt: skip
-    own = Quotient(Leaf(FLYWHEEL, steady.law.flywheel), Square(Leaf(RATIO, steady.task.ratio)))
-    yield Found(Substitution(ON_SHAFT, own, steady.on_shaft, _("kg·m²")))
+    own = Leaf(FLYWHEEL, steady.law.flywheel) / Leaf(RATIO, steady.task.ratio) ** 2
+    yield Found(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
 
 
 def size(here: Here) -> Iterable[Block]:
@@ -144,13 +142,13 @@ def size(here: Here) -> Iterable[Block]:
             rho=DENSITY, beta=SHARE, eta=HEIGHT, J=_of_form("4"),
         )  # fmt: skip
         numbers, of_section = (4.0, 1.0), (density, share, height)
-    root = Quotient(Product((Constant(numbers[0]), inertia)), Product((pi, *of_section)))
-    yield Found(Substitution(DIAMETER, Raised(root, 1, 5), diameter, _("m")))
+    root = Constant(numbers[0]) * inertia / Product((pi, *of_section))
+    yield Found(DIAMETER, Raised(root, 1, 5), diameter, _("m"))
     yield said(_("Its width and its mass:"))
-    yield Found(Substitution(WIDTH, Product((share, Leaf(DIAMETER, diameter))), steady.width, _("m")))
+    yield Found(WIDTH, share * Leaf(DIAMETER, diameter), steady.width, _("m"))
     mass = Product((pi, *of_section, Raised(Leaf(DIAMETER, diameter), 3)))
-    whole = mass if numbers[1] == 1 else Quotient(mass, Constant(4))
-    yield Found(Substitution(MASS, whole, steady.mass, _("kg")))
+    whole = mass if numbers[1] == 1 else mass / 4
+    yield Found(MASS, whole, steady.mass, _("kg"))
 
 
 def _speed(tangent: Tangent, name: Symbol) -> Leaf:
@@ -158,7 +156,7 @@ def _speed(tangent: Tangent, name: Symbol) -> Leaf:
 
 
 def _slope(tangent: Tangent, name: Symbol) -> Expression:
-    return Quotient(Square(_speed(tangent, name)), Constant(2))
+    return _speed(tangent, name) ** 2 / 2
 
 
 def _half(speed: Symbol) -> Node:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found, said
+from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.dynamics.flywheel import OFFSETS
 from tmm_cli.note.dynamics.words import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
-from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Found, Leaf, SquareRoot, Sum
 from tmm_cli.note.math import Fraction, Letter, Sign, row
 from tmm_cli.plans.record import Symbol
 
@@ -19,11 +19,11 @@ def energy_at_start(here: Here) -> Iterable[Block]:
     """From the tangent of the largest speed."""
     upper, __ = here.tangents
     yield said(_("The kinetic energy of the machine in position 0:"))
-    square = Quotient(Square(Leaf(LARGEST, float(np.sqrt(2 * upper.slope)))), Constant(2))
-    flywheel = (1, Product((square, Leaf(FLYWHEEL, here.steady.law.flywheel))))
+    square = Leaf(LARGEST, float(np.sqrt(2 * upper.slope))) ** 2 / 2
+    flywheel = (1, square * Leaf(FLYWHEEL, here.steady.law.flywheel))
     terms = (flywheel, (-1, Leaf(OFFSETS[0], upper.offset)))
     own = Sum(terms if here.steady.law.flywheel else terms[1:])
-    yield Found(Substitution(START, own, here.start, _("J")))
+    yield Found(START, own, here.start, _("J"))
 
 
 def position(here: Here, *, explained: bool) -> Iterable[Block]:
@@ -40,15 +40,15 @@ def position(here: Here, *, explained: bool) -> Iterable[Block]:
     steady, link = here.steady, here.motion.linkage.driver.link
     law, speed = steady.law, here.speed
     inertia = Leaf(INERTIA, here.of(steady.machine.inertia))
-    every = Sum(((1, Leaf(FLYWHEEL, law.flywheel)), (1, inertia))) if law.flywheel else inertia
-    energy = Sum(((1, Leaf(START, here.start)), (1, Leaf(WORK, here.of(steady.work)))))
-    root = SquareRoot(Quotient(Product((Constant(2), energy)), every))
-    yield Found(Substitution(speed.symbol, root, speed.value, _("rad/s")))
+    every = Leaf(FLYWHEEL, law.flywheel) + inertia if law.flywheel else inertia
+    energy = Leaf(START, here.start) + Leaf(WORK, here.of(steady.work))
+    root = SquareRoot(2 * energy / every)
+    yield Found(speed.symbol, root, speed.value, _("rad/s"))
     moments = ((1, Leaf(DRIVING, here.of(law.driving))), (1, Leaf(MOMENT, here.of(steady.machine.moment))))
-    turned = Product((Leaf(SLOPE, here.of(steady.machine.slope)), Quotient(Square(speed), Constant(2))))
+    turned = Leaf(SLOPE, here.of(steady.machine.slope)) * (speed**2 / 2)
     found = here.running.sense * float(np.broadcast_to(here.motion.acceleration, here.motion.q.shape)[here.k])
-    whole = Quotient(Sum((*moments, (-1, turned))), every)
-    yield Found(Substitution(Symbol("ε", link), whole, found, _("rad/s²")))
+    whole = Sum((*moments, (-1, turned))) / every
+    yield Found(Symbol("ε", link), whole, found, _("rad/s²"))
 
 
 def time(here: Here) -> Iterable[Block]:

@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import INERTIA, MOMENT, Here
-from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Square, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
@@ -40,7 +40,7 @@ def inertia(here: Here) -> Iterable[Block]:
           "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"),
         number=here.number, m=Symbol("m"), v=Symbol("v", "S"), J=Symbol("J", "S"), omega=Symbol("ω"),
     )  # fmt: skip
-    yield Found(Substitution(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²")))
+    yield Found(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²"))
 
 
 def _of_link(here: Here, name: str) -> Iterable[Term]:
@@ -54,7 +54,7 @@ def _of_link(here: Here, name: str) -> Iterable[Term]:
         if symbol == omega.symbol:
             yield 1, own, size
         else:
-            yield 1, Product((own, Square(Quotient(Leaf(symbol, speed), omega)))), size
+            yield 1, own * (Leaf(symbol, speed) / omega) ** 2, size
 
 
 def moment(here: Here) -> Iterable[Block]:
@@ -67,8 +67,8 @@ def moment(here: Here) -> Iterable[Block]:
           "angle between the two, and a couple acting with or against the angular velocity of its link:"),
         v=Symbol("v"), alpha=Symbol("α"),
     )  # fmt: skip
-    whole = Quotient(_sum(terms), here.speed)
-    yield Found(Substitution(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m")))
+    whole = _sum(terms) / here.speed
+    yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
 
 
 def _of_load(here: Here, load: Applied) -> Iterable[Term]:
@@ -89,7 +89,7 @@ def _of_load(here: Here, load: Applied) -> Iterable[Term]:
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
         own = Leaf(Symbol("ω", load.link), abs(omega))
-        yield (1 if turned * omega > 0 else -1), Product((Leaf(couple, abs(turned)), own)), abs(turned * omega)
+        yield (1 if turned * omega > 0 else -1), Leaf(couple, abs(turned)) * own, abs(turned * omega)
 
 
 def _sum(terms: list[Term]) -> Sum:

@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.analysis.single_run import SingleRun
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import FLYWHEEL, INERTIA, START
-from tmm_cli.note.expression import Constant, Expression, Leaf, Product, Quotient, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Leaf, SquareRoot, Sum
 from tmm_cli.plans.record import Lettered, Symbol
 
 DRIVEN, LOADED, BRAKED, END = Lettered("A_d"), Lettered("A_l"), Lettered("A_b"), Symbol("T", "1")
@@ -32,13 +32,13 @@ def energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
                  "loads and the work {Ab} of the brake:")  # fmt: skip
     yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
     terms = tuple((1, Leaf(symbol, float(value))) for symbol, value in parts)
-    yield Found(Substitution(END, Sum(terms), float(run.kinetic[-1]), _("J")))
+    yield Found(END, Sum(terms), float(run.kinetic[-1]), _("J"))
     inertia = float(single.machine.inertia(np.array([run.way[-1]]))[0])
     every: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
     if single.task.flywheel:
-        every = Sum(((1, Leaf(FLYWHEEL, single.task.flywheel)), (1, every)))
+        every = Leaf(FLYWHEEL, single.task.flywheel) + every
     if run.speed[-1] > 0:
         yield said(_("With the reduced inertia at the end of the run the speed there is"))
-        root = SquareRoot(Quotient(Product((Constant(2), Leaf(END, float(run.kinetic[-1])))), every))
+        root = SquareRoot(2 * Leaf(END, float(run.kinetic[-1])) / every)
         unit = _("rad/s") if crank else _("m/s")
-        yield Found(Substitution(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit))
+        yield Found(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

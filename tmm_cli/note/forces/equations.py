@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tmm_cli.language import _
 from tmm_cli.note.breaking import chain
-from tmm_cli.note.expression import Expression, Leaf, Product, Quotient, Substitution, Sum, letters
+from tmm_cli.note.expression import Expression, Found, Leaf, Product, Sum, letters
 from tmm_cli.note.math import Letter, Node, Number, row
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
@@ -24,7 +24,7 @@ def moments(equation: MomentEquation) -> Node:
     return chain((Letter(Symbol("ΣM", equation.about)), letters(whole), Number("0")))
 
 
-def by_moments(equation: MomentEquation, unit: str = "") -> Substitution | None:
+def by_moments(equation: MomentEquation, unit: str = "") -> Found | None:
     """What an equation gives; of one that gives nothing, the sum itself, which is zero. None: nothing has a moment.
 
     unit: of moments, where it is not N·m.
@@ -33,18 +33,18 @@ def by_moments(equation: MomentEquation, unit: str = "") -> Substitution | None:
     unit = unit or _("N·m")
     if found is None or sought is None:
         whole = Sum(tuple((_sign(t.moment), _moment(t)) for t in equation.terms))
-        return Substitution(Symbol("ΣM", equation.about), whole, 0.0, unit) if equation.terms and not sought else None
+        return Found(Symbol("ΣM", equation.about), whole, 0.0, unit) if equation.terms and not sought else None
     sense = -_sign(found.moment)
     others = Sum(tuple((sense * _sign(t.moment), _moment(t)) for t in equation.terms if t is not found))
     size, arm = Leaf(found.acting.symbol, found.acting.size), Leaf(found.letter, found.arm)
     if found.acting.couple:
-        return Substitution(size.symbol, others, size.value, unit)
+        return Found(size.symbol, others, size.value, unit)
     if sought.arm:
-        return Substitution(arm.symbol, Quotient(others, size), arm.value, _("m"))
-    return Substitution(size.symbol, Quotient(others, arm), size.value, _("N"))
+        return Found(arm.symbol, others / size, arm.value, _("m"))
+    return Found(size.symbol, others / arm, size.value, _("N"))
 
 
-def along_guide(forces: ForceSum) -> tuple[Node, Substitution]:
+def along_guide(forces: ForceSum) -> tuple[Node, Found]:
     """ΣF = R − G·cos α₁ + ... = 0, and what it gives."""
     parts = [forces.found, *(part for part in forces.parts if part is not forces.found)]
     told = [(_sign(part.along), _projection(part, number)) for number, part in enumerate(parts)]
@@ -52,13 +52,13 @@ def along_guide(forces: ForceSum) -> tuple[Node, Substitution]:
     sense, found = -told[0][0], forces.found.acting
     others = Sum(tuple((sense * sign, term) for sign, term in told[1:]))
     if isinstance(told[0][1], Product):  # what is sought is not along the guide
-        return whole, Substitution(found.symbol, Quotient(others, told[0][1].factors[1]), found.size, _("N"))
-    return whole, Substitution(found.symbol, others, found.size, _("N"))
+        return whole, Found(found.symbol, others / told[0][1].factors[1], found.size, _("N"))
+    return whole, Found(found.symbol, others, found.size, _("N"))
 
 
-def value(symbol: Symbol, size: float, unit: str) -> Substitution:
+def value(symbol: Symbol, size: float, unit: str) -> Found:
     """A quantity that is read off: its letter and its value."""
-    return Substitution(symbol, Leaf(symbol, size), size, unit)
+    return Found(symbol, Leaf(symbol, size), size, unit)
 
 
 def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
@@ -73,11 +73,11 @@ def _sign(value: float) -> int:
 
 def _moment(term: Term) -> Expression:
     force = Leaf(term.acting.symbol, term.acting.size)
-    return Product((force, Leaf(term.letter, term.arm))) if term.number else force
+    return force * Leaf(term.letter, term.arm) if term.number else force
 
 
 def _projection(part: Part, number: int) -> Expression:
     force = Leaf(part.acting.symbol, part.acting.size)
     if math.isclose(part.cosine, 1.0, rel_tol=ALONG):
         return force
-    return Product((force, Leaf(Symbol("cos α", str(number)), part.cosine)))
+    return force * Leaf(Symbol("cos α", str(number)), part.cosine)

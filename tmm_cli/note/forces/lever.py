@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, said
+from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Expression, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
 from tmm_cli.note.forces.equations import by_moments, moments
 from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.bodies import load_symbols
@@ -37,13 +37,13 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
     if plan.equation.sought is None and found is not None:
-        yield Found(found)
+        yield found
         yield from _of_several(subject, k, unit)
         return
     if found is None:
         yield said(_("Nothing has a moment about the pole: nothing has to be balanced."))
         return
-    yield from (Equation(moments(plan.equation)), Found(found))
+    yield from (Equation(moments(plan.equation)), found)
     yield from _compared(subject, k)
 
 
@@ -73,7 +73,7 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     for pair in plan.pairs:
         couple, apart = Leaf(pair.couple, abs(pair.moment)), Leaf(Symbol("l", "".join(pair.points)), pair.distance)
         size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
-        yield Found(Substitution(pair.symbol, Quotient(couple, apart), size, _("N")))
+        yield Found(pair.symbol, couple / apart, size, _("N"))
     acting = {one.symbol: one for one in plan.acting if one.couple}
     bearing = [load for load in subject.results.loads if load.moment[k] != 0]  # a weight has a couple's letter too
     loads = [load for load in bearing if load_symbols(load)[1].primed in acting]
@@ -88,7 +88,7 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         symbol = load_symbols(load)[1]
         couple = Leaf(symbol, abs(float(load.moment[k])))
         own = Product((couple, *_ratio(subject, load, k)))
-        yield Found(Substitution(symbol.primed, own, size, _("N·m") if turns_of(subject) else _("N")))
+        yield Found(symbol.primed, own, size, _("N·m") if turns_of(subject) else _("N"))
 
 
 def turns_of(subject: Subject) -> bool:
@@ -105,7 +105,7 @@ def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
     if not rate:
         return (Leaf(Symbol("i", load.link), abs(float(motion.link(load.link).first[k]))),)
     omega = Leaf(Symbol("ω", load.link), abs(float(motion.link(load.link).omega[k])))
-    return (Quotient(omega, Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate)),)
+    return (omega / Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate),)
 
 
 def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
@@ -117,14 +117,14 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
         symbol = balance_symbol(driver, several=True, turns=balance.moment is not None)
         own = Leaf(symbol, float(balance.generalized[k]))
         ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
-        terms.append((1, own if balance is first else Product((own, ratio))))
+        terms.append((1, own if balance is first else own * ratio))
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
     yield said(
         _("The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
           "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"),
         link=first.driver.link, i=Symbol("i"),
     )  # fmt: skip
-    yield Found(Substitution(name, Sum(tuple(terms)), float(lever.balancing[k]), unit))
+    yield Found(name, Sum(tuple(terms)), float(lever.balancing[k]), unit)
 
 
 def _compared(subject: Subject, k: int) -> Iterable[Block]:
@@ -143,7 +143,7 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
           "largest magnitude in all positions:"),
         delta=Symbol("Δ"), plan=Symbol(name.letter, name.below, "R"), largest=Symbol(name.letter, "max"),
     )  # fmt: skip
-    gap = Function("abs", Sum(((1, Leaf(Symbol(name.letter, name.below, "R"), plan)), (-1, Leaf(name, own)))))
-    whole = Product((Quotient(gap, Leaf(Symbol(name.letter, "max"), largest)), Constant(100.0)))
+    gap = Function("abs", Leaf(Symbol(name.letter, name.below, "R"), plan) - Leaf(name, own))
+    whole = gap / Leaf(Symbol(name.letter, "max"), largest) * 100.0
     percent = 100 * float(lever.difference[k])
-    yield Found(Substitution(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%"))
+    yield Found(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%")

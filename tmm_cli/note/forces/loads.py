@@ -12,9 +12,9 @@ from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
-from tmm_cli.note.blocks import Block, Found, Line, Ref, Rows, cells, listed, said
+from tmm_cli.note.blocks import Block, Line, Ref, Rows, cells, listed, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Function, Leaf, Product, Quotient, Substitution, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
 from tmm_cli.note.forces.words import direction, shown
 from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
@@ -38,7 +38,7 @@ def weights(subject: Subject) -> Iterable[Block]:
     for load in own:
         mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
         size = float(np.abs(np.ravel(load.force)[0]))
-        yield Found(Substitution(load_symbols(load)[0], Product((mass, gravity)), size, _("N")))
+        yield Found(load_symbols(load)[0], mass * gravity, size, _("N"))
 
 
 def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
@@ -57,7 +57,7 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     units = {one.unit for one in found}
     largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
     there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
-    yield from map(Found, there)
+    yield from there
     nothing = [one.name for one in found if one not in there]
     if nothing:
         text = _("These vanish together with the accelerations: {names}.")
@@ -66,17 +66,17 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         yield said(text, names=listed(nothing))
 
 
-def _of_inertia(subject: Subject, load: Applied, k: int) -> Iterable[Substitution]:
+def _of_inertia(subject: Subject, load: Applied, k: int) -> Iterable[Found]:
     motion, link = subject.motion, subject.results.linkage.links[load.link]
     force, couple = load_symbols(load)
     if np.any(link.mass != 0):
         mass = Leaf(Symbol("m", load.link), float(link.mass))
         a = Leaf(Symbol("a", f"S{load.link}"), abs(complex(motion.centre(load.link).a[k])))
-        yield Substitution(force, Product((mass, a)), abs(complex(load.force[k])), _("N"))
+        yield Found(force, mass * a, abs(complex(load.force[k])), _("N"))
     if np.any(link.inertia != 0):
         moment = Leaf(Symbol("J", f"S{load.link}"), float(link.inertia))
         epsilon = Leaf(Symbol("ε", load.link), abs(float(motion.link(load.link).epsilon[k])))
-        yield Substitution(couple, Product((moment, epsilon)), abs(float(load.moment[k])), _("N·m"))
+        yield Found(couple, moment * epsilon, abs(float(load.moment[k])), _("N·m"))
 
 
 def springs(subject: Subject, k: int) -> Iterable[Block]:
@@ -103,14 +103,14 @@ def _spring(subject: Subject, spring: Spring, load: Applied, k: int) -> Iterable
         size, unit = abs(complex(load.force[k])), _("N")
         text = _("The force of the spring {name} follows its length {now}; {c} is its rate, {free} its free length:")
     c = Leaf(Symbol("c"), float(spring.rate))
-    stretch: Expression = Sum(((1, now), (-1, free))) if free.value else now
-    terms: list[tuple[int, Expression]] = [(1, Product((c, stretch)))]
+    stretch: Expression = now - free if free.value else now
+    terms: list[tuple[int, Expression]] = [(1, c * stretch)]
     if spring.preload:
         terms = [(1, Leaf(Symbol(letter, "0"), float(spring.preload))), *terms]
     if spring.damping:
-        terms.append((1, Product((Leaf(Symbol("b"), float(spring.damping)), rate))))
+        terms.append((1, Leaf(Symbol("b"), float(spring.damping)) * rate))
     yield said(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
-    yield Found(Substitution(load_symbols(load)[0], Function("abs", Sum(tuple(terms))), size, unit))
+    yield Found(load_symbols(load)[0], Function("abs", Sum(tuple(terms))), size, unit)
 
 
 def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
@@ -145,7 +145,7 @@ def _rubbing(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
     size = abs(complex(load.force[k])) if slides else abs(float(load.moment[k]))
     if size:
         factors = (f, normal) if slides else (f, r, normal)
-        yield Found(Substitution(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m")))
+        yield Found(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m"))
         if len(loads) > 1:
             yield equal(*(load_symbols(one)[0] for one in reversed(loads)))
 
@@ -162,7 +162,7 @@ def without_friction(subject: Subject, k: int) -> Iterable[Block]:
         symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)
         size = abs(float(balance.generalized[k]))
         name = replace(symbol, above="0")
-        yield Found(Substitution(name, Leaf(name, size), size, _("N·m") if turns else _("N")))
+        yield Found(name, Leaf(name, size), size, _("N·m") if turns else _("N"))
 
 
 def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
@@ -197,8 +197,8 @@ def losses(subject: Subject) -> Iterable[Block]:
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]
     yield said(_("Over the cycle the drivers do the work {work}, and friction in the pairs does:"), work=work.symbol)
     for one in (work, *taken):
-        yield Found(Substitution(one.symbol, one, one.value, _("J")))
+        yield Found(one.symbol, one, one.value, _("J"))
     if lost.efficiency is not None:
         yield said(_("The efficiency of the mechanism is:"))
         left = Sum(tuple((1, one) for one in (work, *taken)))
-        yield Found(Substitution(Symbol("η"), Quotient(left, work), lost.efficiency))
+        yield Found(Symbol("η"), left / work, lost.efficiency)

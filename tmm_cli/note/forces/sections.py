@@ -7,8 +7,8 @@ from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _, filled
-from tmm_cli.note.blocks import Block, Equation, Found, Heading, Line, listed, listed_below, said
-from tmm_cli.note.expression import Leaf, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
+from tmm_cli.note.expression import Found, Leaf, SquareRoot, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.forces.words import direction, links_of
@@ -62,7 +62,7 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
           "are the acute angles between the forces and the guide:"),
         guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
     )  # fmt: skip
-    yield from (Equation(node), Found(found))
+    yield from (Equation(node), found)
 
 
 def _taken_apart(part: Part) -> Iterable[Block]:
@@ -139,7 +139,7 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
     """A sum of moments, and what it gives."""
     found = by_moments(equation)
     if equation.sought is None:
-        yield from () if found is None else (Found(found),)
+        yield from () if found is None else (found,)
         return
     point, links, symbol = equation.about, links_of(equation.links), equation.sought.symbol
     if found is None:
@@ -151,9 +151,9 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=point, links=links, symbol=symbol)
     if found is None:
-        yield Found(value(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N")))
+        yield value(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N"))
     else:
-        yield from (Equation(moments(equation)), Found(found))
+        yield from (Equation(moments(equation)), found)
 
 
 def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
@@ -188,7 +188,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)
-        yield Found(value(vector.symbol, size if size > least else 0.0, _("N")))
+        yield value(vector.symbol, size if size > least else 0.0, _("N"))
     if part.plan.full:
         yield said(_("The total reactions are:"))
     for reaction in part.outer:
@@ -201,9 +201,9 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
     parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
     if along in parts and across in parts:
-        root = SquareRoot(Sum(tuple((1, Square(Leaf(s, parts[s]))) for s in (along, across))))
+        root = SquareRoot(Sum(tuple((1, Leaf(s, parts[s]) ** 2) for s in (along, across))))
         size = abs(complex(reaction.force[part.here.k]))
-        yield Found(Substitution(reaction_symbol(*names), root, size, _("N")))
+        yield Found(reaction_symbol(*names), root, size, _("N"))
 
 
 def _guide_between(part: Part) -> Iterable[Block]:
@@ -223,7 +223,7 @@ def _guide_between(part: Part) -> Iterable[Block]:
     symbols = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
     yield Equation(vector_sum([*((s, 2) for s in symbols), *((s, 1) for s in sought)]))
     for symbol, reaction in sought.items():
-        yield Found(value(symbol, abs(complex(reaction.force[part.here.k])), _("N")))
+        yield value(symbol, abs(complex(reaction.force[part.here.k])), _("N"))
 
 
 def _inner(part: Part) -> Iterable[Block]:
@@ -243,7 +243,7 @@ def _inner(part: Part) -> Iterable[Block]:
         yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))
     for reaction in inner:
         size = abs(complex(reaction.force[part.here.k]))
-        yield Found(value(reaction_symbol(reaction.by, reaction.on), size, _("N")))
+        yield value(reaction_symbol(reaction.by, reaction.on), size, _("N"))
 
 
 def _place(equation: MomentEquation) -> Iterable[Block]:
@@ -260,7 +260,7 @@ def _place(equation: MomentEquation) -> Iterable[Block]:
                  "of action of the reaction {symbol}:")  # fmt: skip
     yield said(text, point=equation.about, links=links_of(equation.links), symbol=symbol)
     if found is not None:
-        yield from (Equation(moments(equation)), Found(found))
+        yield from (Equation(moments(equation)), found)
 
 
 def _balance(part: Part) -> Iterable[Block]:

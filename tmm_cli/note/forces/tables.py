@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _, filled
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, line, said, several
+from tmm_cli.note.blocks import Block, Line, Ref, Rows, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle, shown
@@ -59,8 +59,8 @@ def _sized(
         for __, symbol, force, told in some:
             way, size = np.angle(force) if told is None else told, np.abs(force)
             size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
-            columns.append((line(symbol, ", ", _("N")), _texts(subject, size, shown)))
-            columns.append((line(_("angle, °")), _texts(subject, way, angle)))
+            columns.append(((symbol, ", ", _("N")), _texts(subject, size, shown)))
+            columns.append(((_("angle, °"),), _texts(subject, way, angle)))
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
         yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
 
@@ -83,7 +83,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
         )  # fmt: skip
     else:
         percent = 100 * lever.difference
-        head.append(line(_("difference, %")))
+        head.append((_("difference, %"),))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     one, more = _("Balancing load of the driving link"), _("Balancing loads of the driven links")
     caption = more if several else one

@@ -18,6 +18,7 @@ from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula, width
 from tmm_cli.note.context import figures
+from tmm_cli.note.expression import Found
 from tmm_cli.note.formats.docx_parts import TEXT, Parts, field, plain, prepared, title_page, unbroken
 from tmm_cli.note.formats.omml import display, omath
 from tmm_cli.note.math import Letter, Words
@@ -33,7 +34,7 @@ def docx(note: Note) -> bytes:
     """A file of Word."""
     writer = _Writer(note)
     for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
-        writer.write(block, leads=isinstance(following, blocks.Equation | blocks.Found | blocks.Items | blocks.Rows))
+        writer.write(block, leads=isinstance(following, blocks.Equation | Found | blocks.Items | blocks.Rows))
     file = io.BytesIO()
     writer.document.save(file)
     return file.getvalue()
@@ -64,8 +65,8 @@ class _Writer:
                     self._line(self._paragraph("ListBullet"), line)
             case blocks.Equation(node):
                 self._formula(display(node))
-            case blocks.Found(substitution):
-                self._formula(display(formula(substitution, self.figures)))
+            case Found():
+                self._formula(display(formula(block, self.figures)))
             case blocks.Rows():
                 self._rows(block)
             case blocks.Figure():

@@ -16,6 +16,7 @@ from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula
 from tmm_cli.note.context import figures
+from tmm_cli.note.expression import Found
 from tmm_cli.note.math import Letter
 from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
@@ -70,8 +71,8 @@ class Writer:
                 return f"<ul>{''.join(f'<li>{self.line(line)}</li>' for line in lines)}</ul>"
             case blocks.Equation(node):
                 return f'<div class="equation">{mathml(node, display=True)}</div>'
-            case blocks.Found(substitution):
-                shown = formula(substitution, partial(figures, language=self.note.language))
+            case Found():
+                shown = formula(block, partial(figures, language=self.note.language))
                 return f'<div class="equation found">{mathml(shown, display=True)}</div>'
             case blocks.Rows():
                 return self.table(block)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, listed, said
-from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, Substitution
+from tmm_cli.note.blocks import Block, listed, said
+from tmm_cli.note.expression import Constant, Found, Leaf
 from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
 from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import accelerations as by_ratio
@@ -80,8 +80,8 @@ def _parts(here: Here, about: About) -> Iterable[Block]:
     yield _normal(here, about)
     tangential, epsilon = _part(here, about, "τ"), here.epsilon.get(about.link, 0.0)
     if tangential.segment:
-        product = Product((Leaf(Symbol("ε", about.link), abs(epsilon)), here.length(about.point, about.base)))
-        yield Found(Substitution(tangential.symbol, product, tangential.size, unit("a")))
+        product = Leaf(Symbol("ε", about.link), abs(epsilon)) * here.length(about.point, about.base)
+        yield Found(tangential.symbol, product, tangential.size, unit("a"))
     elif about.link in here.epsilon:
         yield zero(tangential.symbol)
 
@@ -90,8 +90,8 @@ def _normal(here: Here, about: About) -> Block:
     found, omega = _part(here, about, "n"), abs(here.omega.get(about.link, 0.0))
     if not found.segment:
         return zero(found.symbol)
-    product = Product((Square(Leaf(Symbol("ω", about.link), omega)), here.length(about.point, about.base)))
-    return Found(Substitution(found.symbol, product, found.size, unit("a")))
+    product = Leaf(Symbol("ω", about.link), omega) ** 2 * here.length(about.point, about.base)
+    return Found(found.symbol, product, found.size, unit("a"))
 
 
 def _part(here: Here, equation: About | Along, above: str) -> Vector:
@@ -113,8 +113,8 @@ def _coriolis(here: Here, along: Along) -> Block:
     if not found.segment:
         return zero(found.symbol)
     omega = Leaf(Symbol("ω", link), abs(here.omega[link]))
-    product = Product((TWO, omega, here.v.relative(along.point, along.base).leaf))
-    return Found(Substitution(found.symbol, product, found.size, unit("a")))
+    product = TWO * omega * here.v.relative(along.point, along.base).leaf
+    return Found(found.symbol, product, found.size, unit("a"))
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -203,8 +203,8 @@ def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
         if not a.segment or not value:
             yield zero(symbol)
             continue
-        quotient = Quotient(a.leaf, here.length(about.point, about.base))
-        yield Found(Substitution(symbol, quotient, abs(value), unit("ε")))
+        quotient = a.leaf / here.length(about.point, about.base)
+        yield Found(symbol, quotient, abs(value), unit("ε"))
         if here.first:
             text = _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}.")
             yield said(text, a=vector(a.symbol), point=name_of(about.point), epsilon=symbol, sense=sense(value))

@@ -11,9 +11,9 @@ from tmm_cli.kinematics.output import Travel
 from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import _, symbol
 from tmm_cli.linkage import FRAME, Driver
-from tmm_cli.note.blocks import Block, Equation, Found, said
+from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Leaf, Product, Quotient, Square, SquareRoot, Substitution, Sum
+from tmm_cli.note.expression import Constant, Found, Leaf, Quotient, SquareRoot
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
@@ -61,8 +61,8 @@ def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     else:
         yield said(_("Driving link {link} turns about point {point} {sense} with the angular velocity"), **fields)
     if rpm:
-        product = Product((Constant(float(np.pi), "π"), Leaf(Symbol("n", own), n)))
-        yield Found(Substitution(omega, Quotient(product, Constant(30)), driver.rate, unit("ω")))
+        product = Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n)
+        yield Found(omega, product / 30, driver.rate, unit("ω"))
     else:
         yield _given(subject, omega, driver.rate, unit("ω"))
     if driver.acceleration:
@@ -109,10 +109,10 @@ def speed_here(here: Here) -> Iterable[Block]:
           "acceleration:"),
         gone=Symbol(f"Δ{way}"), speed=first,
     )  # fmt: skip
-    more = Product((Constant(2), Leaf(Symbol(rate, driver.link), driver.acceleration), Leaf(Symbol(f"Δ{way}"), gone)))
-    start = Square(Leaf(Symbol(letter, "0"), driver.rate))
-    root = SquareRoot(Sum(((1, start), (1, more))))
-    yield Found(Substitution(first, root, abs(float(here.motion.rate[here.k])), unit(letter)))
+    more = 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * Leaf(Symbol(f"Δ{way}"), gone)
+    start = Leaf(Symbol(letter, "0"), driver.rate) ** 2
+    root = SquareRoot(start + more)
+    yield Found(first, root, abs(float(here.motion.rate[here.k])), unit(letter))
 
 
 def _by_law(here: Here) -> Iterable[Block]:
@@ -187,7 +187,7 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
         text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
     )  # fmt: skip
     angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
-    yield Found(Substitution(Symbol("k"), Quotient(*angles), strokes.k))
+    yield Found(Symbol("k"), Quotient(*angles), strokes.k)
 
 
 def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:

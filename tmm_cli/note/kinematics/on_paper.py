@@ -11,9 +11,9 @@ from tmm_cli.draw.paper.picture import Picture
 from tmm_cli.draw.sheets.motion_plans import Sort, sorts
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Found
+from tmm_cli.note.blocks import Block, Equation
 from tmm_cli.note.context import OF_POSITION, Subject
-from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
+from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.math import Letter, Number, row
 from tmm_cli.plans.readings import turns
 from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, in_letters, round_scale
@@ -98,14 +98,14 @@ class OnPaper:
         """What a segment of the plan is worth."""
         if not vector.segment:
             return zero(vector.symbol)
-        measured = Product((Leaf(Symbol("μ", self.sort.letter), self.mu), self._segment(vector)))
-        return Found(Substitution(vector.symbol, measured, vector.size, unit(self.sort.letter)))
+        measured = Leaf(Symbol("μ", self.sort.letter), self.mu) * self._segment(vector)
+        return Found(vector.symbol, measured, vector.size, unit(self.sort.letter))
 
     def scaled(self, vector: Vector) -> Block:
         """The scale, told by the vector that is drawn first."""
         per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.sort.letter]
         name, most = Symbol("μ", self.sort.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
-        return Found(Substitution(name, Quotient(vector.leaf, self._segment(vector)), self.mu, per_mm, most=most))
+        return Found(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
 
     def _segment(self, vector: Vector) -> Leaf:
         return Leaf(drawn(vector), vector.size / self.mu)

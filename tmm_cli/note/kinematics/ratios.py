@@ -6,16 +6,13 @@ from collections.abc import Iterable
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
-from tmm_cli.note.blocks import Block, Equation, Found, said
+from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.expression import (
     Constant,
     Expression,
+    Found,
     Function,
     Leaf,
-    Product,
-    Quotient,
-    Square,
-    Substitution,
     Sum,
 )
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
@@ -71,8 +68,8 @@ def _turning(here: Here, link: str, letter: str) -> Leaf | None:
 def _about(one: Leaf | None, other: Leaf | None) -> Expression | None:
     """One less the other."""
     if one is None or other is None:
-        return one if other is None else Sum(((-1, other),))
-    return Sum(((1, one), (-1, other)))
+        return one if other is None else -other
+    return one - other
 
 
 def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
@@ -80,7 +77,7 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     linkage = here.motion.linkage
     a, b = (complex(axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
-    radii = Quotient(Leaf(Symbol("r", mesh.i), abs(pitch - a)), Leaf(Symbol("r", mesh.j), abs(pitch - b)))
+    radii = Leaf(Symbol("r", mesh.i), abs(pitch - a)) / Leaf(Symbol("r", mesh.j), abs(pitch - b))
     carried = _turning(here, mesh.carrier, "ω") is not None
     symbols = [Letter(Symbol("ω", link)) for link in (mesh.j, mesh.i)]
     if carried:
@@ -109,7 +106,7 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
         )
     yield Equation(row(Letter(_ratio(mesh)), "=", Fraction(over, under)))
     outer = mesh.ratio < 0
-    yield Found(Substitution(_ratio(mesh), Sum(((-1, radii),)) if outer else radii, mesh.ratio))
+    yield Found(_ratio(mesh), -radii if outer else radii, mesh.ratio)
     yield said(_("The angular velocity sought follows from this:"))
 
 
@@ -125,16 +122,16 @@ def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
         return zero(Symbol(letter, link))
     expression: Expression | None
     if link == mesh.carrier:
-        expression = Quotient(_less(j, Product((u, i)) if i else None), Sum(((1, ONE), (-1, u))))
+        expression = _less(j, u * i if i else None) / (ONE - u)
     else:
         relative = _about(i if link == mesh.j else j, c)
         assert relative is not None
-        share: Expression = Product((u, relative)) if link == mesh.j else Quotient(relative, u)
+        share: Expression = u * relative if link == mesh.j else relative / u
         own = i if link == mesh.j else j
-        expression = share if c is None else Sum(((1, c), (1, share)))
+        expression = share if c is None else c + share
         if own is None and c is not None:
-            expression = Product((c, Sum(((1, ONE), (-1, u if link == mesh.j else Quotient(ONE, u))))))
-    return Found(Substitution(found.symbol, expression, found.value, unit(letter)))
+            expression = c * (ONE - u if link == mesh.j else ONE / u)
+    return Found(found.symbol, expression, found.value, unit(letter))
 
 
 def _less(one: Expression | None, other: Expression | None) -> Expression:
@@ -163,10 +160,10 @@ def _rolls(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
         return zero(run.symbol if ratio.slide is not None else Symbol(letter, ratio.link))
     own = unit("v" if letter == "ω" else "a")
     if ratio.slide is not None:
-        return Found(Substitution(run.symbol, Product((radius, Function("abs", turning))), run.size, own))
+        return Found(run.symbol, radius * Function("abs", turning), run.size, own)
     alone = Symbol(letter, mesh.i if carrier is None else f"{mesh.i}{mesh.carrier}")
     value = abs((wheel.value if wheel else 0.0) - (carrier.value if carrier else 0.0))
-    return Found(Substitution(alone, Quotient(run.leaf, radius), value, unit(letter)))
+    return Found(alone, run.leaf / radius, value, unit(letter))
 
 
 def _law(mesh: Mesh) -> Iterable[Block]:
@@ -188,19 +185,17 @@ def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
     omega, epsilon = _turning(here, mesh.i, "ω"), _turning(here, mesh.i, "ε")
     assert omega is not None
     by_law = Leaf(_derivative(mesh, 1), first)
-    expression: Expression = Product((by_law, omega))
+    expression: Expression = by_law * omega
     if letter == "ε":
-        expression = Product((Leaf(_derivative(mesh, 2), second), Square(omega)))
+        expression = Leaf(_derivative(mesh, 2), second) * omega**2
         if epsilon is not None:
-            expression = Sum(((1, expression), (1, Product((by_law, epsilon)))))
+            expression = expression + by_law * epsilon
     if mesh.slide:
         run = _sliding(here, step, ratio, letter)
         if not run.segment:
             return zero(run.symbol)
-        return Found(
-            Substitution(run.symbol, Function("abs", expression), run.size, unit("v" if letter == "ω" else "a"))
-        )
+        return Found(run.symbol, Function("abs", expression), run.size, unit("v" if letter == "ω" else "a"))
     found = _turning(here, mesh.j, letter)
     if found is None or found.value == 0:
         return zero(Symbol(letter, mesh.j))
-    return Found(Substitution(found.symbol, expression, found.value, unit(letter)))
+    return Found(found.symbol, expression, found.value, unit(letter))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, line, listed, said
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, listed, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import FIGURES, fixed
 from tmm_cli.note.kinematics.driver import output
@@ -40,7 +40,7 @@ def tables(subject: Subject) -> Iterable[Block]:
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
             largest = float(np.nanmax(np.abs(values), initial=0.0))
             own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if per == "°" else values)
-            columns.append(Column(line(Symbol(letter, link), f", {per}"), own))
+            columns.append(Column((Symbol(letter, link), f", {per}"), own))
         key = f"output-{link}"
         yield said(_("The motion of the output in all positions is given in table {table}."), table=Ref(key))
         yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
@@ -94,14 +94,14 @@ def _differs(values: Real) -> float:
 
 
 def _head(letter: str, links: Sequence[str]) -> Line:
-    return line(*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}")
+    return (*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}")
 
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
     every, told = (*_places(subject), *columns), states(subject.results)
     texts = [(column.head, [_cell(subject, float(value)) for value in column.values]) for column in every]
-    return over_positions(subject, caption, [*texts, *([(line(_("state")), told)] if any(told) else [])], key)
+    return over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
 
 
 def _places(subject: Subject) -> Iterable[Column]:
@@ -112,10 +112,10 @@ def _places(subject: Subject) -> Iterable[Column]:
         value = np.asarray(subject.motion.drives[driver.link].value, float)
         link = driver.link if several else ""
         if driver.kind == "slide":
-            yield Column(line(Symbol("s", link or driver.link), f", {_('m')}"), value)
+            yield Column((Symbol("s", link or driver.link), f", {_('m')}"), value)
             continue
         full = results.driver_range is not None and results.driver_range.full
-        yield Column(line(Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
+        yield Column((Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
 
 
 def _cell(subject: Subject, value: float) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Found, listed, said
-from tmm_cli.note.expression import Leaf, Product, Quotient, Substitution
+from tmm_cli.note.blocks import Block, listed, said
+from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
 from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
 from tmm_cli.note.kinematics.ratios import velocities as by_ratio
@@ -72,8 +72,8 @@ def _turned(here: Here, about: About) -> Block:
     found, omega = here.v.relative(about.point, about.base), abs(here.omega.get(about.link, 0.0))
     if not found.segment:
         return zero(found.symbol)
-    product = Product((Leaf(Symbol("ω", about.link), omega), here.length(about.point, about.base)))
-    return Found(Substitution(found.symbol, product, found.size, unit("v")))
+    product = Leaf(Symbol("ω", about.link), omega) * here.length(about.point, about.base)
+    return Found(found.symbol, product, found.size, unit("v"))
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -145,8 +145,8 @@ def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
         if not v.segment or not value:
             yield zero(symbol)
             continue
-        quotient = Quotient(v.leaf, here.length(about.point, about.base))
-        yield Found(Substitution(symbol, quotient, abs(value), unit("ω")))
+        quotient = v.leaf / here.length(about.point, about.base)
+        yield Found(symbol, quotient, abs(value), unit("ω"))
         if here.first:
             text = _("Vector {v}, carried over to point {point}, turns link {link} {sense}.")
             yield said(text, v=vector(v.symbol), point=name_of(about.point), link=about.link, sense=sense(value))
