@@ -10,7 +10,7 @@ from tmm_cli.dynamics.balancing_task import Rotor
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, SquareRoot, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Sum
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import Vector
 
@@ -52,7 +52,7 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
             whole = Sum((*terms, (-1, rest)))
         yield Found(Symbol("D", f"{name}{axis}"), whole, value, _("kg·m"))
     parts = [Leaf(Symbol("D", f"{name}{axis}"), v) for axis, v in (("x", found.real), ("y", found.imag))]
-    root = SquareRoot(Sum(tuple((1, part**2) for part in parts)))
+    root = Function("sqrt", Sum(tuple((1, part**2) for part in parts)))
     yield Found(own, root, abs(found), _("kg·m"))
     if abs(found):
         direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))

@@ -99,7 +99,7 @@ def turns_of(subject: Subject) -> bool:
 def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
     """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
     motion, driver = subject.motion, subject.results.linkage.driver
-    rate = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
+    rate = abs(subject.rate(k))
     if load.link == driver.link and turns_of(subject):
         return ()
     if not rate:

@@ -15,7 +15,7 @@ from tmm_cli.linkage import Friction, Spring
 from tmm_cli.note.blocks import Block, Line, Ref, Rows, cells, listed, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
-from tmm_cli.note.forces.words import direction, shown
+from tmm_cli.note.forces.words import direction
 from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
@@ -174,10 +174,10 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
     for load in loads:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
-            told = f"{shown(subject, abs(push))} {_('N')}"
+            told = f"{subject.shown(abs(push))} {_('N')}"
             rows.append(cells(force, load.link, told, direction(subject, push)))
         if abs(moment) > still:
-            told = f"{shown(subject, abs(moment))} {_('N·m')}"
+            told = f"{subject.shown(abs(moment))} {_('N·m')}"
             rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
         yield said(

@@ -8,7 +8,7 @@ from itertools import chain
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
-from tmm_cli.note.expression import Found, Leaf, SquareRoot, Sum
+from tmm_cli.note.expression import Found, Function, Leaf, Sum
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.forces.words import direction, links_of
@@ -201,7 +201,7 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
     parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
     if along in parts and across in parts:
-        root = SquareRoot(Sum(tuple((1, Leaf(s, parts[s]) ** 2) for s in (along, across))))
+        root = Function("sqrt", Sum(tuple((1, Leaf(s, parts[s]) ** 2) for s in (along, across))))
         size = abs(complex(reaction.force[part.here.k]))
         yield Found(reaction_symbol(*names), root, size, _("N"))
 
