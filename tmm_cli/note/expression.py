@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 
 from tmm_cli.language import half_up
 from tmm_cli.note import math as paper
@@ -167,8 +168,13 @@ def read(name: Symbol, value: float, unit: str) -> Found:
 
 
 def added(terms: Iterable[Expression]) -> Sum:
-    """All of them."""
-    return Sum(tuple((1, term) for term in terms))
+    """All of them; those of sums one by one."""
+    return Sum(tuple(chain.from_iterable(map(_terms, terms))))
+
+
+def signed(sense: float, expression: Expression) -> Expression:
+    """As it is, or with a minus before it where the sense is not positive."""
+    return expression if sense > 0 else -expression
 
 
 def _own(part: object) -> Expression:
