@@ -50,6 +50,9 @@ class Joined:
     def __truediv__(self, other: Expression | float) -> Quotient:
         return Quotient(_own(self), _own(other))
 
+    def __rtruediv__(self, number: float) -> Quotient:
+        return _own(number) / _own(self)
+
     def __pow__(self, over: int) -> Raised:
         return Raised(_own(self), over)
 

@@ -5,30 +5,25 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, listed, said
-from tmm_cli.note.expression import Constant, Found, Leaf
-from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
-from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
-from tmm_cli.note.kinematics.ratios import accelerations as by_ratio
+from tmm_cli.note.blocks import Block, said
+from tmm_cli.note.kinematics.equations import equations, of_known_link
+from tmm_cli.note.kinematics.on_paper import Here, Vector
+from tmm_cli.note.kinematics.ratios import begun
 from tmm_cli.note.kinematics.words import (
-    begun,
     direct,
     equal,
     further,
-    name_of,
+    introduced,
     not_on_paper,
-    once_a_link,
     points_of,
     remaining,
-    sense,
+    scale,
     solved,
     sought,
+    turning,
     turning_as_one,
 )
-from tmm_cli.plans.record import Symbol
 from tmm_cli.plans.vector_equations import About, Along, OnGuide, Step, VectorEquation
-
-TWO = Constant(2)
 
 
 def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -78,20 +73,14 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
 def _parts(here: Here, about: About) -> Iterable[Block]:
     """Normal and tangential part of a point's acceleration about another of a link whose rotation is known."""
     yield _normal(here, about)
-    tangential, epsilon = _part(here, about, "τ"), here.epsilon.get(about.link, 0.0)
-    if tangential.segment:
-        product = Leaf(Symbol("ε", about.link), abs(epsilon)) * here.length(about.point, about.base)
-        yield Found(tangential.symbol, product, tangential.size, unit("a"))
-    elif about.link in here.epsilon:
-        yield zero(tangential.symbol)
+    tangential = _part(here, about, "τ")
+    if tangential.segment or about.link in here.epsilon:
+        yield here.a.found(tangential, here.rate("ε", about.link) * here.length(about.point, about.base))
 
 
 def _normal(here: Here, about: About) -> Block:
-    found, omega = _part(here, about, "n"), abs(here.omega.get(about.link, 0.0))
-    if not found.segment:
-        return zero(found.symbol)
-    product = Leaf(Symbol("ω", about.link), omega) ** 2 * here.length(about.point, about.base)
-    return Found(found.symbol, product, found.size, unit("a"))
+    length = here.length(about.point, about.base)
+    return here.a.found(_part(here, about, "n"), here.rate("ω", about.link) ** 2 * length)
 
 
 def _part(here: Here, equation: About | Along, above: str) -> Vector:
@@ -109,26 +98,17 @@ def _whole(here: Here, about: About) -> Iterable[Block]:
 
 def _coriolis(here: Here, along: Along) -> Block:
     """2 ω v."""
-    found, link = _part(here, along, "k"), along.slide.carrier
-    if not found.segment:
-        return zero(found.symbol)
-    omega = Leaf(Symbol("ω", link), abs(here.omega[link]))
-    product = TWO * omega * here.v.relative(along.point, along.base).leaf
-    return Found(found.symbol, product, found.size, unit("a"))
+    sliding = here.v.relative(along.point, along.base)
+    return here.a.found(_part(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
-    """Of the plan, by the first vector on it that is known."""
-    first = large([vector for step in steps for vector in _known(here, step)])
-    if first is None:
-        yield said(_("Nothing accelerates in this position."))
-        return
-    yield said(
+    return scale(
+        here.a, [vector for step in steps for vector in _known(here, step)],
         _("The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
           "factor of the plan is"),
-        pole=Symbol(here.a.sort.pole), segment=drawn(first), a=first.symbol,
+        _("Nothing accelerates in this position."),
     )  # fmt: skip
-    yield here.a.scaled(first)
 
 
 def _known(here: Here, step: Step) -> Iterable[Vector]:
@@ -147,16 +127,13 @@ def _known(here: Here, step: Step) -> Iterable[Vector]:
 
 def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """What is known from velocities and from higher pairs, and the equations."""
-    assert step.group is not None
-    title, points, together = step.group.title, sought(step, known), solved(step)
-    yield from begun(here, step, by_ratio)
+    points, together = sought(step, known), solved(step)
+    yield from begun(here, step, "ε")
     if here.first and together:
         one = _("Group {group}: the acceleration of point {points} is found from")
         several = _("Group {group}: the accelerations of points {points} are found from")
-        none = _("Group {group}: what is not known yet is found from")
-        text = none if not points else one if len(points) == 1 else several
-        yield said(text, group=title, points=listed(map(name_of, points)))
-        yield from equations(step, together, "a", {*known, *(about.point.name for about in direct(step))}, here.omega)
+        yield introduced(step, points, one, several)
+        yield from equations(here, step, together, "a", {*known, *(about.point.name for about in direct(step))})
         if any(_has_known_part(here, equation) for equation in together):
             yield said(_("The velocities give:"))
     for about in direct(step):
@@ -186,27 +163,14 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
             yield here.a.read(_part(here, equation, "τ" if isinstance(equation, About) else "r"))
     for spot in points:
         yield here.a.read(here.a.of(spot))
-    yield from _rates(here, together)
-    yield from turning_as_one(step, here.epsilon, "ε", explained=here.first and not step.ratios)
+    yield from turning(
+        here, together, "ε", lambda about: _part(here, about, "τ"),
+        _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}."),
+        _("Angular acceleration {epsilon} is {sense}."),
+    )  # fmt: skip
+    yield from turning_as_one(here, step, "ε")
     found = {*known, *points_of(step)}
     for about in further(step):
         yield from of_known_link(here, about, "a", found - {about.point.name})
         yield from _parts(here, about)
         yield from _whole(here, about)
-
-
-def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
-    """Angular accelerations, each once, with its sense."""
-    for about in once_a_link(together):
-        symbol, value = Symbol("ε", about.link), here.epsilon.get(about.link, 0.0)
-        a = _part(here, about, "τ")
-        if not a.segment or not value:
-            yield zero(symbol)
-            continue
-        quotient = a.leaf / here.length(about.point, about.base)
-        yield Found(symbol, quotient, abs(value), unit("ε"))
-        if here.first:
-            text = _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}.")
-            yield said(text, a=vector(a.symbol), point=name_of(about.point), epsilon=symbol, sense=sense(value))
-        else:
-            yield said(_("Angular acceleration {epsilon} is {sense}."), epsilon=symbol, sense=sense(value))

@@ -9,7 +9,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Slide
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.breaking import LINE, width
-from tmm_cli.note.kinematics.on_paper import Here
+from tmm_cli.note.kinematics.on_paper import Here, vector
 from tmm_cli.note.kinematics.words import name_of
 from tmm_cli.note.math import Letter, Node, Number, Words, row
 from tmm_cli.plans.record import Symbol
@@ -19,11 +19,11 @@ WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
 
 
 def equations(
-    step: Step, chosen: Sequence[VectorEquation], letter: str, known: Collection[str], turning: Collection[str]
+    here: Here, step: Step, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
 ) -> Iterable[Block]:
     """Those of a step, and a line with the directions in them.
 
-    letter: v, or a, whose parts are told apart; known: names of points that are found; turning: links that turn.
+    letter: v, or a, whose parts are told apart; known: names of points that are found.
     """
     lined = {
         e.point.name
@@ -35,7 +35,7 @@ def equations(
         if isinstance(equation, OnGuide):
             told[row(vector(Symbol(letter, equation.point.name)), "∥", guide(equation.slide))] = None
             continue
-        terms = list(_parts(equation, letter, turning))
+        terms = list(_parts(equation, letter, here.omega))
         base = Letter(Symbol(letter, equation.base.name), True, _lines(equation.base, known, lined))
         point = Letter(Symbol(letter, equation.point.name), True, _lines(equation.point, known, lined))
         yield Equation(row(point, "=", base, *(node for term, __ in terms for node in ("+", term))))
@@ -52,7 +52,7 @@ def of_known_link(here: Here, about: About, letter: str, known: Collection[str])
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield said(text, point=name_of(about.point), link=about.link)
         if not about.base.fixed:
-            yield from equations(Step((), ()), [about], letter, known, here.omega)
+            yield from equations(here, Step((), ()), [about], letter, known)
 
 
 def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
@@ -66,11 +66,6 @@ def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
         shown = longer
     if shown is not None:
         yield Equation(shown)
-
-
-def vector(symbol: Symbol) -> Letter:
-    """A quantity with its direction."""
-    return Letter(symbol, True)
 
 
 def _lines(spot: Spot, known: Collection[str], lined: Collection[str]) -> int:

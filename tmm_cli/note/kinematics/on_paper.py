@@ -13,7 +13,7 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation
 from tmm_cli.note.context import OF_POSITION, Subject
-from tmm_cli.note.expression import Found, Leaf
+from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Letter, Number, row
 from tmm_cli.plans.readings import turns
 from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, in_letters, round_scale
@@ -74,15 +74,15 @@ class OnPaper:
     def of(self, spot: Spot | str) -> Vector:
         """The vector of a point, or of a centre of mass by its name."""
         name = spot if isinstance(spot, str) else spot.name
-        return self._vector(Symbol(self.sort.letter, name), self._end(spot), self.sort.pole + self._letter(spot))
+        return self._vector(Symbol(self.sort.letter, name), self._end(name), self.sort.pole + self._letter(name))
 
     def relative(self, point: Spot, base: Spot) -> Vector:
         """The velocity of a point about another one; about one of the frame it is the whole one."""
         if base.fixed:
             return self.of(point)
         symbol = Symbol(self.sort.letter, point.name + base.name)
-        letters = [self._letter(spot) or self.sort.pole for spot in (base, point)]
-        return self._vector(symbol, self._end(point) - self._end(base), "".join(letters))
+        letters = [self._letter(spot.name) or self.sort.pole for spot in (base, point)]
+        return self._vector(symbol, self._end(point.name) - self._end(base.name), "".join(letters))
 
     def part(self, point: Spot, base: Spot, above: str) -> Vector:
         """A part of an acceleration: n, τ, k or r."""
@@ -96,10 +96,13 @@ class OnPaper:
 
     def read(self, vector: Vector) -> Block:
         """What a segment of the plan is worth."""
+        return self.found(vector, Leaf(Symbol("μ", self.sort.letter), self.mu) * self._segment(vector))
+
+    def found(self, vector: Vector, expression: Expression) -> Block:
+        """A vector by what gives its size."""
         if not vector.segment:
             return zero(vector.symbol)
-        measured = Leaf(Symbol("μ", self.sort.letter), self.mu) * self._segment(vector)
-        return Found(vector.symbol, measured, vector.size, unit(self.sort.letter))
+        return Found(vector.symbol, expression, vector.size, unit(self.sort.letter))
 
     def scaled(self, vector: Vector) -> Block:
         """The scale, told by the vector that is drawn first."""
@@ -110,13 +113,11 @@ class OnPaper:
     def _segment(self, vector: Vector) -> Leaf:
         return Leaf(drawn(vector), vector.size / self.mu)
 
-    def _end(self, spot: Spot | str) -> complex:
-        name = spot if isinstance(spot, str) else spot.name
+    def _end(self, name: str) -> complex:
         return self.ends[name].end if name in self.ends else 0j
 
-    def _letter(self, spot: Spot | str) -> str:
+    def _letter(self, name: str) -> str:
         """Of the end of its vector; none of a point of the frame, which ends in the pole."""
-        name = spot if isinstance(spot, str) else spot.name
         return self.ends[name].name[len(self.sort.pole) :] if name in self.ends else ""
 
     def _vector(self, symbol: Symbol, value: complex, segment: str) -> Vector:
@@ -157,6 +158,18 @@ class Here:
         """Of the links that turn unevenly, rad/s2."""
         return {turn.symbol.below: turn.value for turn in turns(self.motion, self.k, "epsilon")}
 
+    def rates(self, letter: str) -> Mapping[str, float]:
+        """What links turn with: ω, or ε."""
+        return self.omega if letter == "ω" else self.epsilon
+
+    def rate(self, letter: str, link: str) -> Leaf:
+        """The size of what a link turns with."""
+        return Leaf(Symbol(letter, link), abs(self.rates(letter).get(link, 0.0)))
+
+    def plan_of(self, letter: str) -> OnPaper:
+        """Of what belongs to ω, or to ε."""
+        return self.v if letter == "ω" else self.a
+
     def length(self, point: Spot, base: Spot) -> Leaf:
         """Between two points of a link, m."""
         places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
@@ -172,6 +185,11 @@ def large(vectors: Sequence[Vector]) -> Vector | None:
     """The first that is large enough among these to tell a scale; None where all are points."""
     largest = max((vector.size for vector in vectors), default=0.0)
     return next((vector for vector in vectors if vector.segment and vector.size > SMALL * largest), None)
+
+
+def vector(symbol: Symbol) -> Letter:
+    """A quantity with its direction."""
+    return Letter(symbol, True)
 
 
 def drawn(vector: Vector) -> Symbol:

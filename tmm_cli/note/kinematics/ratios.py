@@ -7,59 +7,54 @@ from collections.abc import Iterable
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.note.blocks import Block, Equation, said
-from tmm_cli.note.expression import Constant, Expression, Found, Function, Leaf, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
 from tmm_cli.note.kinematics.words import sense
-from tmm_cli.note.math import Fraction, Letter, row
+from tmm_cli.note.math import Letter, row
 from tmm_cli.pairs.base import axis
 from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import Along, OnGuide, Ratio, Spot, Step
-
-ONE = Constant(1)
+from tmm_cli.plans.vector_equations import Along, OnGuide, Ratio, Step
 
 
-def velocities(here: Here, step: Step, ratio: Ratio) -> Iterable[Block]:
+def begun(here: Here, step: Step, letter: str) -> Iterable[Block]:
+    """How a group begins: what its higher pairs give of ω, or of ε."""
+    assert step.group is not None
+    if step.ratios:
+        yield said(_("Group {group} is found from its higher pairs."), group=step.group.title)
+    elif not here.first:
+        yield said(_("Group {group} gives:"), group=step.group.title)
+    for ratio in step.ratios:
+        yield from _by_ratio(here, step, ratio, letter)
+
+
+def _by_ratio(here: Here, step: Step, ratio: Ratio, letter: str) -> Iterable[Block]:
     """Of a link, or in a sliding pair, from a higher pair."""
-    mesh = ratio.mesh
+    mesh, first = ratio.mesh, here.first and letter == "ω"
     if mesh.kind == "gear":
-        if here.first:
+        if first:
             yield from _willis(here, mesh)
-        yield _wheel(here, mesh, ratio.link, "ω")
+        yield _wheel(here, mesh, ratio.link, letter)
     elif mesh.kind == "rack":
-        if here.first:
+        if first:
             text = _("Wheel {wheel} of radius {radius} rolls without sliding on the rack, so that")
             yield said(text, wheel=mesh.i, radius=Symbol("r", mesh.i))
-        yield _rolls(here, step, ratio, "ω")
+        yield _rolls(here, step, ratio, letter)
     else:
         if here.first:
-            yield from _law(mesh)
-        yield _follower(here, step, ratio, "ω")
-    if here.omega.get(ratio.link):
+            yield _law(mesh, letter)
+        yield _follower(here, step, ratio, letter)
+    if letter == "ω" and here.omega.get(ratio.link):
         yield said(_("Link {link} turns {sense}."), link=ratio.link, sense=sense(here.omega[ratio.link]))
-
-
-def accelerations(here: Here, step: Step, ratio: Ratio) -> Iterable[Block]:
-    """The same of accelerations."""
-    mesh = ratio.mesh
-    if mesh.kind == "gear":
-        yield _wheel(here, mesh, ratio.link, "ε")
-    elif mesh.kind == "rack":
-        yield _rolls(here, step, ratio, "ε")
-    else:
-        if here.first:
-            text = _("The second derivative {second} of the law of motion gives")
-            yield said(text, second=_derivative(mesh, 2))
-        yield _follower(here, step, ratio, "ε")
 
 
 def _turning(here: Here, link: str, letter: str) -> Leaf | None:
     """What a link turns with, with its sign; None of one that never does."""
-    rates = here.omega if letter == "ω" else here.epsilon
+    rates = here.rates(letter)
     return Leaf(Symbol(letter, link), rates[link]) if link in rates else None
 
 
-def _about(one: Leaf | None, other: Leaf | None) -> Expression | None:
-    """One less the other."""
+def _less(one: Expression | None, other: Expression | None) -> Expression | None:
+    """One without the other; None of what never turns."""
     if one is None or other is None:
         return one if other is None else -other
     return one - other
@@ -72,34 +67,19 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
     radii = Leaf(Symbol("r", mesh.i), abs(pitch - a)) / Leaf(Symbol("r", mesh.j), abs(pitch - b))
     carried = _turning(here, mesh.carrier, "ω") is not None
-    symbols = [Letter(Symbol("ω", link)) for link in (mesh.j, mesh.i)]
+    over, under, carrier = (Leaf(Symbol("ω", link)) for link in (mesh.j, mesh.i, mesh.carrier))
+    share = over / under
+    text = _("Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive "
+             "counterclockwise)")  # fmt: skip
     if carried:
-        carrier = Letter(Symbol("ω", mesh.carrier))
-        over, under = (row(symbol, "−", carrier) for symbol in symbols)
-        yield said(
-            _(
-                "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier "
-                "{carrier}. By "
-                "Willis' method all links are given the carrier's rotation backwards, so that it rests; then the ratio "
-                "of the wheels is (positive counterclockwise)"
-            ),
-            i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=Symbol("r", mesh.i), rj=Symbol("r", mesh.j),
-        )  # fmt: skip
-    else:
-        over, under = symbols
-        yield said(
-            _(
-                "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive "
-                "counterclockwise)"
-            ),
-            i=mesh.i,
-            j=mesh.j,
-            ri=Symbol("r", mesh.i),
-            rj=Symbol("r", mesh.j),
-        )
-    yield Equation(row(Letter(_ratio(mesh)), "=", Fraction(over, under)))
-    outer = mesh.ratio < 0
-    yield Found(_ratio(mesh), -radii if outer else radii, mesh.ratio)
+        share = (over - carrier) / (under - carrier)
+        text = _("Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier {carrier}. "
+                 "By Willis' method all links are given the carrier's rotation backwards, so that it rests; then the "
+                 "ratio of the wheels is (positive counterclockwise)")  # fmt: skip
+    ri, rj = Symbol("r", mesh.i), Symbol("r", mesh.j)
+    yield said(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
+    yield Equation(row(Letter(_ratio(mesh)), "=", letters(share)))
+    yield Found(_ratio(mesh), signed(mesh.ratio, radii), mesh.ratio)
     yield said(_("The angular velocity sought follows from this:"))
 
 
@@ -113,58 +93,55 @@ def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
     u, found = Leaf(_ratio(mesh), mesh.ratio), _turning(here, link, letter)
     if found is None:
         return zero(Symbol(letter, link))
-    expression: Expression | None
+    forward = link == mesh.j
+    own = i if forward else j
     if link == mesh.carrier:
-        expression = _less(j, u * i if i else None) / (ONE - u)
+        expression = _less(j, u * i if i else None)
+        assert expression is not None
+        expression = expression / (1 - u)
+    elif own is None and c is not None:
+        expression = c * (1 - (u if forward else 1 / u))
     else:
-        relative = _about(i if link == mesh.j else j, c)
+        relative = _less(own, c)
         assert relative is not None
-        share: Expression = u * relative if link == mesh.j else relative / u
-        own = i if link == mesh.j else j
+        share = u * relative if forward else relative / u
         expression = share if c is None else c + share
-        if own is None and c is not None:
-            expression = c * (ONE - u if link == mesh.j else ONE / u)
     return Found(found.symbol, expression, found.value, unit(letter))
-
-
-def _less(one: Expression | None, other: Expression | None) -> Expression:
-    terms = ((sign, term) for sign, term in ((1, one), (-1, other)) if term is not None)
-    return Sum(tuple(terms))
 
 
 def _sliding(here: Here, step: Step, ratio: Ratio, letter: str) -> Vector:
     """The velocity, or acceleration, in the sliding pair of a rack or a follower."""
-    name = ratio.mesh.slide
-    linkage = here.motion.linkage
-    slide = linkage.slide(name)
-    own = next((e for e in step.equations if isinstance(e, Along | OnGuide) and e.slide.name == name), None)
+    slide, plan = here.motion.linkage.slide(ratio.mesh.slide), here.plan_of(letter)
+    own = next((e for e in step.equations if isinstance(e, Along | OnGuide) and e.slide.name == slide.name), None)
     if isinstance(own, Along):
-        return here.v.relative(own.point, own.base) if letter == "ω" else here.a.part(own.point, own.base, "r")
-    point = own.point if own is not None else Spot(slide.point, slide.point, slide.runner)
-    return here.v.of(point) if letter == "ω" else here.a.of(point)
+        return plan.relative(own.point, own.base) if letter == "ω" else plan.part(own.point, own.base, "r")
+    return plan.of(own.point if own is not None else slide.point)
 
 
 def _rolls(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
     mesh = ratio.mesh
     run, radius = _sliding(here, step, ratio, letter), Leaf(Symbol("r", mesh.i), abs(mesh.ratio))
     wheel, carrier = (_turning(here, link, letter) for link in (mesh.i, mesh.carrier))
-    turning = _about(wheel, carrier)
+    turning = _less(wheel, carrier)
     if turning is None:
         return zero(run.symbol if ratio.slide is not None else Symbol(letter, ratio.link))
-    own = unit("v" if letter == "ω" else "a")
     if ratio.slide is not None:
+        own = unit(here.plan_of(letter).sort.letter)
         return Found(run.symbol, radius * Function("abs", turning), run.size, own)
     alone = Symbol(letter, mesh.i if carrier is None else f"{mesh.i}{mesh.carrier}")
     value = abs((wheel.value if wheel else 0.0) - (carrier.value if carrier else 0.0))
     return Found(alone, run.leaf / radius, value, unit(letter))
 
 
-def _law(mesh: Mesh) -> Iterable[Block]:
-    run = _(
-        "The law of motion of follower {follower} gives the derivative {first} of its run by the angle of cam {cam}:"
-    )
-    turn = _("The law of motion of follower {follower} gives the derivative {first} of its angle by that of cam {cam}:")
-    yield said(run if mesh.slide else turn, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1))
+def _law(mesh: Mesh, letter: str) -> Block:
+    text = _("The second derivative {second} of the law of motion gives")
+    if letter == "ω" and mesh.slide:
+        text = _("The law of motion of follower {follower} gives the derivative {first} of its run by the angle of cam "
+                 "{cam}:")  # fmt: skip
+    elif letter == "ω":
+        text = _("The law of motion of follower {follower} gives the derivative {first} of its angle by that of cam "
+                 "{cam}:")  # fmt: skip
+    return said(text, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1), second=_derivative(mesh, 2))
 
 
 def _derivative(mesh: Mesh, order: int) -> Symbol:
@@ -184,10 +161,7 @@ def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
         if epsilon is not None:
             expression = expression + by_law * epsilon
     if mesh.slide:
-        run = _sliding(here, step, ratio, letter)
-        if not run.segment:
-            return zero(run.symbol)
-        return Found(run.symbol, Function("abs", expression), run.size, unit("v" if letter == "ω" else "a"))
+        return here.plan_of(letter).found(_sliding(here, step, ratio, letter), Function("abs", expression))
     found = _turning(here, mesh.j, letter)
     if found is None or found.value == 0:
         return zero(Symbol(letter, mesh.j))

@@ -6,27 +6,25 @@ from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, listed, said
-from tmm_cli.note.expression import Found, Leaf
-from tmm_cli.note.kinematics.equations import equations, of_known_link, vector
-from tmm_cli.note.kinematics.on_paper import Here, Vector, drawn, large, unit, zero
-from tmm_cli.note.kinematics.ratios import velocities as by_ratio
+from tmm_cli.note.kinematics.equations import equations, of_known_link
+from tmm_cli.note.kinematics.on_paper import Here, Vector
+from tmm_cli.note.kinematics.ratios import begun
 from tmm_cli.note.kinematics.words import (
-    begun,
     direct,
     further,
+    introduced,
     name_of,
     not_on_paper,
     not_turning,
-    once_a_link,
     points_of,
     remaining,
-    sense,
+    scale,
     solved,
     sought,
+    turning,
     turning_as_one,
 )
-from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import About, OnGuide, Step, VectorEquation
+from tmm_cli.plans.vector_equations import About, OnGuide, Step
 
 
 def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
@@ -36,7 +34,12 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
         if step.group is None:
             yield from _driving(here, step)
             known |= points_of(step)
-    yield from _scale(here, steps)
+    yield from scale(
+        here.v, [vector for step in steps for vector in _known(here, step)],
+        _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
+          "of the plan is"),
+        _("All points are at rest in this position."),
+    )  # fmt: skip
     for step in steps:
         if step.group is not None:
             yield from _group(here, step, known)
@@ -69,26 +72,8 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
 
 def _turned(here: Here, about: About) -> Block:
     """v = ω l of a point about another one of its link."""
-    found, omega = here.v.relative(about.point, about.base), abs(here.omega.get(about.link, 0.0))
-    if not found.segment:
-        return zero(found.symbol)
-    product = Leaf(Symbol("ω", about.link), omega) * here.length(about.point, about.base)
-    return Found(found.symbol, product, found.size, unit("v"))
-
-
-def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
-    """Of the plan, by the first vector on it that is known."""
-    plan = here.v
-    first = large([vector for step in steps for vector in _known(here, step)])
-    if first is None:
-        yield said(_("All points are at rest in this position."))
-        return
-    yield said(
-        _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
-          "of the plan is"),
-        pole=Symbol(plan.sort.pole), segment=drawn(first), v=first.symbol,
-    )  # fmt: skip
-    yield plan.scaled(first)
+    found = here.v.relative(about.point, about.base)
+    return here.v.found(found, here.rate("ω", about.link) * here.length(about.point, about.base))
 
 
 def _known(here: Here, step: Step) -> Iterable[Vector]:
@@ -102,20 +87,16 @@ def _known(here: Here, step: Step) -> Iterable[Vector]:
 
 def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """Ratios, equations, what they give, further points."""
-    assert step.group is not None
     points, together, found = sought(step, known), solved(step), {*known}
-    title = step.group.title
-    yield from begun(here, step, by_ratio)
+    yield from begun(here, step, "ω")
     for about in direct(step):
         yield from _known_about(here, about, found)
         found.add(about.point.name)
     if here.first and together:
         one = _("Group {group}: the velocity of point {points} is found from")
         several = _("Group {group}: the velocities of points {points} are found from")
-        none = _("Group {group}: what is not known yet is found from")
-        text = none if not points else one if len(points) == 1 else several
-        yield said(text, group=title, points=listed(map(name_of, points)))
-        yield from equations(step, together, "v", found, here.omega)
+        yield introduced(step, points, one, several)
+        yield from equations(here, step, together, "v", found)
         yield from not_turning(together)
         yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
     for spot in points:
@@ -123,8 +104,11 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     for equation in together:
         if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
-    yield from _rates(here, together)
-    yield from turning_as_one(step, here.omega, "ω", explained=here.first and not step.ratios)
+    yield from turning(
+        here, together, "ω", lambda about: here.v.relative(about.point, about.base),
+        _("Vector {v}, carried over to point {point}, turns link {link} {sense}."), _("Link {link} turns {sense}."),
+    )  # fmt: skip
+    yield from turning_as_one(here, step, "ω")
     for about in further(step):
         yield from _known_about(here, about, found)
 
@@ -135,20 +119,3 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
     yield _turned(here, about)
     if not about.base.fixed:
         yield here.v.read(here.v.of(about.point))
-
-
-def _rates(here: Here, together: Sequence[VectorEquation]) -> Iterable[Block]:
-    """What links turn with, each once, with its sense."""
-    for about in once_a_link(together):
-        symbol, value = Symbol("ω", about.link), here.omega.get(about.link, 0.0)
-        v = here.v.relative(about.point, about.base)
-        if not v.segment or not value:
-            yield zero(symbol)
-            continue
-        quotient = v.leaf / here.length(about.point, about.base)
-        yield Found(symbol, quotient, abs(value), unit("ω"))
-        if here.first:
-            text = _("Vector {v}, carried over to point {point}, turns link {link} {sense}.")
-            yield said(text, v=vector(v.symbol), point=name_of(about.point), link=about.link, sense=sense(value))
-        else:
-            yield said(_("Link {link} turns {sense}."), link=about.link, sense=sense(value))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, said
-from tmm_cli.note.kinematics.on_paper import Here, OnPaper
+from tmm_cli.note.blocks import Block, Equation, listed, said
+from tmm_cli.note.expression import Found, Leaf
+from tmm_cli.note.kinematics.on_paper import Here, OnPaper, Vector, drawn, large, unit, vector, zero
 from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import About, OnGuide, Ratio, Spot, Step, VectorEquation
+from tmm_cli.plans.vector_equations import About, OnGuide, Spot, Step, VectorEquation
 from tmm_cli.plans.velocity import massive
 
 
@@ -71,24 +72,46 @@ def equal(*symbols: Symbol) -> Block:
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
 
 
-def begun(
-    here: Here, step: Step, by_ratio: Callable[[Here, Step, Ratio], Iterable[Block]]
-) -> Iterable[Block]:  # fmt: skip
-    """How a group begins: what its higher pairs give."""
+def introduced(step: Step, points: Sequence[Spot], one: str, several: str) -> Block:
+    """What the equations of a group are for: one point, several ones, or none."""
     assert step.group is not None
-    if step.ratios:
-        yield said(_("Group {group} is found from its higher pairs."), group=step.group.title)
-    elif not here.first:
-        yield said(_("Group {group} gives:"), group=step.group.title)
-    for ratio in step.ratios:
-        yield from by_ratio(here, step, ratio)
+    text = one if len(points) == 1 else several if points else _("Group {group}: what is not known yet is found from")
+    return said(text, group=step.group.title, points=listed(map(name_of, points)))
 
 
-def turning_as_one(step: Step, rates: Collection[str], letter: str, *, explained: bool) -> Iterable[Block]:
-    """Links that turn as others do. explained: that they do."""
+def scale(plan: OnPaper, vectors: Sequence[Vector], text: str, at_rest: str) -> Iterable[Block]:
+    """Of a plan, by the first vector on it that is known."""
+    first = large(vectors)
+    if first is None:
+        yield said(at_rest)
+        return
+    yield said(text, pole=Symbol(plan.sort.pole), segment=drawn(first), v=first.symbol, a=first.symbol)
+    yield plan.scaled(first)
+
+
+def turning(
+    here: Here, together: Iterable[VectorEquation], letter: str, vector_of: Callable[[About], Vector],
+    carried: str, told: str,
+) -> Iterable[Block]:  # fmt: skip
+    """What links turn with, each once, with its sense; carried: how that is seen, where the method is explained."""
+    for about in once_a_link(together):
+        value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
+        rate = Leaf(Symbol(letter, about.link), abs(value))
+        if not found.segment or not value:
+            yield zero(rate.symbol)
+            continue
+        yield Found(rate.symbol, found.leaf / here.length(about.point, about.base), rate.value, unit(letter))
+        yield said(
+            carried if here.first else told, v=vector(found.symbol), a=vector(found.symbol), epsilon=rate.symbol,
+            point=name_of(about.point), link=about.link, sense=sense(value),
+        )  # fmt: skip
+
+
+def turning_as_one(here: Here, step: Step, letter: str) -> Iterable[Block]:
+    """Links that turn as others do, which is said where the method is explained."""
     for links in step.same:
-        if links[0] in rates:
-            if explained:
+        if links[0] in here.rates(letter):
+            if here.first and not step.ratios:
                 yield said(_("Links {links} turn as one:"), links=", ".join(links))
             yield equal(*(Symbol(letter, link) for link in links))
 
@@ -101,11 +124,9 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
         return
     if here.first:
         yield said(
-            _(
-                "The ends of the vectors of all other points and of the centres of mass are found by similarity: "
-                "the figure of a link on the plan is similar to the link."
-            )
-        )
+            _("The ends of the vectors of all other points and of the centres of mass are found by similarity: "
+              "the figure of a link on the plan is similar to the link.")
+        )  # fmt: skip
     named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
     for name in names:
         vector = plan.of(name)
@@ -122,9 +143,7 @@ def not_turning(chosen: Iterable[VectorEquation]) -> Iterable[Block]:
 def not_on_paper() -> Block:
     """Of a group that no polygon solves."""
     return said(
-        _(
-            "These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
-            "found before the others. The equations of the group were solved together, numerically; the plan shows "
-            "their solution:"
-        )
-    )
+        _("These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
+          "found before the others. The equations of the group were solved together, numerically; the plan shows "
+          "their solution:")
+    )  # fmt: skip
