@@ -21,7 +21,7 @@ from tmm_cli.note.blocks import (
     Title,
     paragraph,
 )  # fmt: skip
-from tmm_cli.note.expression import Found, Function, Leaf, SquareRoot, Sum
+from tmm_cli.note.expression import Found, Function, Leaf, Sum
 from tmm_cli.note.formats import FORMATS
 from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Symbol
@@ -46,7 +46,7 @@ def leaf(letter, value, below="", above=""):
 TERMS = tuple((1, leaf("G", 100.0 + k, str(k)) * leaf("h", 0.01 * k, str(k))) for k in range(1, 12))
 MOMENTS = Sum(TERMS) / leaf("l", 0.65, "CD")
 SIDES = leaf("R", 3.0, "34", "n") ** 2 + leaf("R", 4.0, "34", "τ") ** 2
-FORCE = Found(Symbol("R", "34"), SquareRoot(SIDES), 5.0, "N")
+FORCE = Found(Symbol("R", "34"), Function("sqrt", SIDES), 5.0, "N")
 WIDE = Found(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
 TURNED = Found(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)), 1.0, "m")
 DRAWING = Drawing((80.0, 60.0), (

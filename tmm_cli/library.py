@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from tmm_cli.analysis import pipeline
 from tmm_cli.analysis.mechanism import Inputs
@@ -22,8 +22,9 @@ from tmm_cli.problem.record import ChainProblem, Problem, TaskProblem
 from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.tree import Tree
 from tmm_cli.structure.spatial import examine
-from tmm_cli.variants.batch import Batch
-from tmm_cli.variants.batch import prepare as every_variant
+
+if TYPE_CHECKING:  # commands that compute one mechanism go without
+    from tmm_cli.variants.batch import Batch
 
 
 def load(path: str) -> Problem | TaskProblem:
@@ -130,6 +131,8 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
     """
+    from tmm_cli.variants.batch import prepare as every_variant  # and the tape under it
+
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
     for one in several:
         refuse_law(one.linkage.driver.law is not None, one.dynamics is not None)

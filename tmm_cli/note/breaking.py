@@ -30,7 +30,7 @@ def chain(sides: Sequence[Node], most: float = LINE) -> Node:
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
 
 
-def formula(found: Found, say: Callable[[str], str] = str) -> Node:
+def formula(found: Found, say: Callable[[str], str]) -> Node:
     """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
 
     Raises:

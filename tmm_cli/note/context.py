@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from tmm_cli.analysis.in_detail import in_detail
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.draw.formats import Drawn
@@ -30,7 +32,7 @@ from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import signed, typeset
 from tmm_cli.note.blocks import Block, Figure, Ref, said
-from tmm_cli.note.expression import plain, rounded
+from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
 from tmm_cli.plans.record import subscript
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
@@ -88,6 +90,14 @@ class Subject:
         """One of them, as drawings take it."""
         return Position(self.results, self.motion, k)
 
+    def number(self, k: int) -> str:
+        """What a position is called."""
+        return str(self.results.numbers[k])
+
+    def rate(self, k: int) -> float:
+        """How fast the first driver moves in a position, SI."""
+        return float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[k])
+
     @property
     def acts(self) -> bool:
         """Whether anything acts on the links; else there are no forces to write of."""
@@ -105,6 +115,10 @@ class Subject:
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
         return self.figures_of(plain(rounded(value, digits), digits))
+
+    def shown(self, value: float) -> str:
+        """A result, with all figures that it has."""
+        return self.figures_of(fixed(value, FIGURES))
 
     def figures_of(self, text: str) -> str:
         """The same of figures that are there already."""

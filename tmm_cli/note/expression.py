@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 
 from tmm_cli.language import half_up
 from tmm_cli.note import math as paper
@@ -26,6 +27,9 @@ class Joined:
 
     def __add__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(other)))
+
+    def __radd__(self, number: float) -> Sum:
+        return _own(number) + _own(self)
 
     def __sub__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(-_own(other))))
@@ -46,19 +50,19 @@ class Joined:
     def __truediv__(self, other: Expression | float) -> Quotient:
         return Quotient(_own(self), _own(other))
 
-    def __rtruediv__(self, number: float) -> Quotient:
-        return _own(number) / _own(self)
-
     def __pow__(self, over: int) -> Raised:
         return Raised(_own(self), over)
 
 
 @dataclass(frozen=True)
 class Leaf(Joined):
-    """A quantity with its value, SI. angle: in radians, printed in degrees. of: what is put in instead, as 2·π."""
+    """A quantity with its value, SI; none is needed where it is written in letters only.
+
+    angle: in radians, printed in degrees. of: what is put in instead, as 2·π.
+    """
 
     symbol: Symbol
-    value: float
+    value: float = math.nan
     angle: bool = False
     of: Expression | None = None
 
@@ -103,24 +107,16 @@ class Raised(Joined):
 
 
 @dataclass(frozen=True)
-class SquareRoot(Joined):
-    """A root of what is not negative."""
-
-    of: Expression
-
-
-@dataclass(frozen=True)
 class Function(Joined):
-    """cos, sin, tan of an angle; arccos, arcsin, arctan give one; abs."""
+    """cos or sin of an angle; sqrt, abs: they are written as signs."""
 
     name: str
     of: Expression
 
 
-Expression = Leaf | Constant | Sum | Product | Quotient | Raised | SquareRoot | Function
+Expression = Leaf | Constant | Sum | Product | Quotient | Raised | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
-    "cos": math.cos, "sin": math.sin, "tan": math.tan, "abs": abs,
-    "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
+    "cos": math.cos, "sin": math.sin, "abs": abs, "sqrt": lambda value: math.sqrt(max(value, 0.0)),
 }  # fmt: skip
 
 
@@ -129,8 +125,8 @@ class Found:
     """A quantity found, on a line of its own: name = letters = numbers = result with its unit.
 
     result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
-    formula shows. unit: as it is printed, degrees of an angle. name: None of a sum that is checked only. whole: a
-    number that is counted. most: figures of the result.
+    formula shows. unit: as it is printed, degrees of an angle. whole: a number that is counted.
+    most: figures of the result.
     """
 
     name: Symbol
@@ -172,8 +168,13 @@ def read(name: Symbol, value: float, unit: str) -> Found:
 
 
 def added(terms: Iterable[Expression]) -> Sum:
-    """All of them."""
-    return Sum(tuple((1, term) for term in terms))
+    """All of them; those of sums one by one."""
+    return Sum(tuple(chain.from_iterable(map(_terms, terms))))
+
+
+def signed(sense: float, expression: Expression) -> Expression:
+    """As it is, or with a minus before it where the sense is not positive."""
+    return expression if sense > 0 else -expression
 
 
 def _own(part: object) -> Expression:
@@ -206,11 +207,8 @@ def evaluate(expression: Expression, figures: int) -> float:
             return of(over) / of(under)
         case Raised(base, over, under):
             return float(of(base) ** (over / under))
-        case SquareRoot(base):
-            return math.sqrt(max(of(base), 0.0))
         case Function(name, argument):
-            found = of(argument)
-            return FUNCTIONS[name](min(1.0, max(-1.0, found)) if name in ("arccos", "arcsin") else found)
+            return FUNCTIONS[name](of(argument))
 
 
 def largest_term(expression: Expression) -> float:
@@ -230,7 +228,7 @@ def letters(expression: Expression) -> paper.Node:
     return _written(expression, lambda leaf: paper.Letter(leaf.symbol))
 
 
-def numbers(expression: Expression, figures: int, text: Callable[[str], str] = str) -> paper.Node:
+def numbers(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
     """The expression with numbers put in; text: how the language writes figures."""
 
     def number(leaf: Leaf) -> paper.Node:
@@ -239,20 +237,20 @@ def numbers(expression: Expression, figures: int, text: Callable[[str], str] = s
         value = math.degrees(leaf.value) if leaf.angle else leaf.value
         digits = plain(rounded(value, figures), figures)
         shown = _figures(digits, text)
-        shown = paper.row(shown, paper.Words("°")) if leaf.angle else shown
-        return paper.Brackets(paper.row("−", _figures(digits[1:], text))) if digits.startswith("-") else shown
+        if digits.startswith("-"):
+            return paper.Brackets(shown)
+        return paper.row(shown, paper.Words("°")) if leaf.angle else shown
 
     return _written(expression, number)
 
 
 def _figures(digits: str, text: Callable[[str], str]) -> paper.Node:
-    """1.2e-5 is 1.2·10^−5."""
+    """-1.2e-5 is −1.2·10^−5."""
+    if digits.startswith("-"):
+        return paper.row("−", _figures(digits[1:], text))
     mantissa, _, power = digits.partition("e")
-    if not power:
-        return paper.Number(text(mantissa))
-    exponent = int(power)
-    shown = paper.row("−", paper.Number(str(-exponent))) if exponent < 0 else paper.Number(str(exponent))
-    return paper.row(paper.Number(text(mantissa)), "·", paper.Power(paper.Number("10"), shown))
+    shown = paper.Number(text(mantissa))
+    return paper.row(shown, "·", paper.Power(paper.Number("10"), _figures(power, text))) if power else shown
 
 
 def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> paper.Node:
@@ -282,10 +280,10 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
         case Raised(base, over, under):
             power = paper.Number(str(over))
             return _power(of(base), power if under == 1 else paper.Fraction(power, paper.Number(str(under))))
-        case SquareRoot(base):
-            return paper.Root(of(base))
         case Function(name, argument):
             node = of(argument)
+            if name == "sqrt":
+                return paper.Root(node)
             if name == "abs":
                 return paper.Brackets(node, bars=True)
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
@@ -329,8 +327,7 @@ def last_digit(text: str) -> float:
     return 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
 
 
-def result_node(text: str, unit: str, say: Callable[[str], str] = str) -> paper.Node:
+def result_node(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
     """A result as it stands at the end of its formula, with its unit."""
-    digits = text[1:] if text.startswith("-") else text
-    shown = paper.row("−", _figures(digits, say)) if text.startswith("-") else _figures(digits, say)
+    shown = _figures(text, say)
     return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown

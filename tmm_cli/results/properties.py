@@ -24,7 +24,7 @@ from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Path
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
-from tmm_cli.roots import bisect, least
+from tmm_cli.roots import least, roots
 from tmm_cli.structure.assur import analyse
 from tmm_cli.vectors import Real
 
@@ -233,13 +233,17 @@ def _zone(read: Callable[[Real], Real], place: float, most: float, results: Resu
     way = abs(results.closely(2)[1] - results.closely(2)[0])
     low, high = np.min(results.closely(2)), np.max(results.closely(2))
     ends = []
+
+    def beyond(q: Real) -> Real:
+        over = np.abs(read(q) - middle) - most
+        return np.where(np.isnan(over), np.inf, over)
+
     for sign in (-1.0, 1.0):
         far = way if results.turns else abs((low if sign < 0 else high) - place)
         q = place + sign * np.linspace(0, far, STEPS * max(results.turns, 1) + 1)
-        gone = np.flatnonzero(~(np.abs(read(q) - middle) <= most))
+        gone = np.flatnonzero(beyond(q) > 0)
         if not gone.size:
             ends.append(float(q[-1]))
             continue
-        inside, __ = bisect(lambda x: np.abs(read(x) - middle) <= most, q[gone[:1] - 1], q[gone[:1]])
-        ends.append(float(inside[0]))
+        ends.append(float(roots(beyond, q[gone[:1] - 1], q[gone[:1]])[0]))
     return min(ends[1] - ends[0], way if results.turns else np.inf)

@@ -15,9 +15,9 @@ from tmm_cli.dynamics.balancing import Balanced, Counterweight
 from tmm_cli.dynamics.balancing_task import BalancingTask, Place
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Paragraph, said
+from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Leaf, Sum, evaluate
+from tmm_cli.note.expression import Expression, Found, Leaf, added, evaluate, signed
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import cross, dot
 
@@ -146,16 +146,14 @@ class _Replaced:
         along = masses[-1][2] / abs(masses[-1][2])
         if any(abs(cross(along, arm)) > ON_LINE * abs(arm) for *__, arm in masses):
             return False
-        terms: list[tuple[int, Expression]] = [
-            (1 if dot(along, arm) > 0 else -1, one * length) for one, length, arm in masses
-        ]
-        terms += self._shared(name, pivot, along)
-        expression = Sum(tuple(terms))
+        moments = [signed(dot(along, arm), one * length) for one, length, arm in masses]
+        expression = added((*moments, *self._shared(name, pivot, along)))
         if abs(abs(evaluate(expression, EXACT)) - weight.size) > SAME * weight.size:
             return False
         if evaluate(expression, EXACT) < 0:
-            expression = Sum(tuple((-sign, term) for sign, term in terms))
-        self.told.append(_about(name, pivot))
+            expression = -expression
+        text = _("The counterweight of link {link} balances its masses about {pivot}:")
+        self.told.append(said(text, link=name, pivot=pivot))
         self.told.append(Found(Symbol("D", name), expression, weight.size, _("kg·m")))
         if self._fixed(place) is None:
             self._carry(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
@@ -169,11 +167,10 @@ class _Replaced:
         self.told.append(said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"),
                               m=every[-1].symbol, pivot=pivot))  # fmt: skip
         own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
-        terms: list[tuple[int, Expression]] = [(1, one) for one in every[:-1]]
-        self.told.append(Found(total.symbol, Sum((*terms, (1, own))), total.value, _("kg")))
+        self.told.append(Found(total.symbol, added((*every[:-1], own)), total.value, _("kg")))
         self.lumps.setdefault(pivot, []).append(total)
 
-    def _shared(self, name: str, pivot: str, along: complex) -> Iterator[tuple[int, Expression]]:
+    def _shared(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
         """Of masses that go to and fro at the end of a coupler the share that a counterweight on the crank takes."""
         points = self.linkage.links[name].points
         for point in list(self.lumps):
@@ -185,10 +182,6 @@ class _Replaced:
                 length = Leaf(Symbol("l", f"{pivot}{pins[0]}"), abs(arm))
                 share = Leaf(SHARE, self.task.share)
                 for one in self.lumps.pop(point):
-                    yield (1 if dot(along, arm) > 0 else -1), share * one * length
+                    yield signed(dot(along, arm), share * one * length)
                 self.told.append(said(_("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
                                       point=point, k=SHARE))  # fmt: skip
-
-
-def _about(link: str, pivot: str) -> Paragraph:
-    return said(_("The counterweight of link {link} balances its masses about {pivot}:"), link=link, pivot=pivot)

@@ -10,7 +10,7 @@ from tmm_cli.dynamics.balancing_task import Rotor
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, SquareRoot, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import Vector
 
@@ -35,24 +35,16 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
     found, name = complex(corrections[k]), PLANES[k]
     own = Symbol("D", name)
     yield said(_("In plane {plane}:"), plane=name)
-    for axis, function, value in (("x", "cos", found.real), ("y", "sin", found.imag)):
-        terms: list[tuple[int, Expression]] = []
-        for number, (size, at) in enumerate(zip(rotor.sizes.tolist(), rotor.at.tolist(), strict=True), 1):
-            angle = Leaf(Symbol("α", str(number)), float(np.angle(size) % (2 * np.pi)), angle=True)
-            part: Expression = Leaf(Symbol("D", str(number)), abs(size)) * Function(function, angle)
-            if k:
-                part = part * _gap(Symbol("z", str(number)), float(at), rotor)
-            terms.append((-1, part))
-        whole: Expression = Sum(tuple(terms))
+    parts = []
+    for axis, function, take in (("x", "cos", np.real), ("y", "sin", np.imag)):
+        whole: Expression = -added(_share(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes)))
         if k:
-            whole = whole / _gap(Symbol("z", PLANES[1]), rotor.planes[1].at, rotor)
+            whole = whole / _gap(Symbol("z", name), rotor.planes[k].at, rotor)
         elif len(rotor.planes) > 1:
-            other = complex(corrections[1])
-            rest = Leaf(Symbol("D", f"{PLANES[1]}{axis}"), other.real if axis == "x" else other.imag)
-            whole = Sum((*terms, (-1, rest)))
-        yield Found(Symbol("D", f"{name}{axis}"), whole, value, _("kg·m"))
-    parts = [Leaf(Symbol("D", f"{name}{axis}"), v) for axis, v in (("x", found.real), ("y", found.imag))]
-    root = SquareRoot(Sum(tuple((1, part**2) for part in parts)))
+            whole = whole - Leaf(Symbol("D", f"{PLANES[1]}{axis}"), float(take(corrections[1])))
+        parts.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(found))))
+        yield Found(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
+    root = Function("sqrt", added(part**2 for part in parts))
     yield Found(own, root, abs(found), _("kg·m"))
     if abs(found):
         direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
@@ -61,6 +53,14 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
     if radius:
         mass = Leaf(own, abs(found)) / Leaf(Symbol("r", name), radius)
         yield Found(Symbol("m", name), mass, abs(found) / radius, _("kg"))
+
+
+def _share(rotor: Rotor, number: int, function: str, *, moment: bool) -> Expression:
+    """Of a mass, along an axis; moment: about the first plane."""
+    size, index = complex(rotor.sizes[number]), str(number + 1)
+    angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
+    share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
+    return share * _gap(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
 
 
 def _gap(symbol: Symbol, at: float, rotor: Rotor) -> Expression:

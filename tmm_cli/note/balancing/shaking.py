@@ -10,7 +10,7 @@ from tmm_cli.analysis.balancing import Balancing, steadily
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Inline, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Leaf, SquareRoot, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
 
@@ -55,14 +55,10 @@ def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
             moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
     if not moments:
         return
-    yield said(_("Position {number}:"), number=str(results.numbers[k]))
+    yield said(_("Position {number}:"), number=subject.number(k))
     force = complex(found.before.force[k])
-    for symbol, own, value in zip((X, Y), terms, (force.real, force.imag), strict=True):
-        yield Found(symbol, _less(own), value, _("N"))
-    size = SquareRoot(Leaf(X, force.real) ** 2 + Leaf(Y, force.imag) ** 2)
-    yield Found(FORCE, size, abs(force), _("N"))
-    yield Found(MOMENT, _less(moments), float(found.before.moment[k]), _("N·m"))
-
-
-def _less(terms: list[Expression]) -> Expression:
-    return Sum(tuple((-1, term) for term in terms))
+    x, y = Leaf(X, force.real), Leaf(Y, force.imag)
+    for part, own in zip((x, y), terms, strict=True):
+        yield Found(part.symbol, -added(own), part.value, _("N"))
+    yield Found(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
+    yield Found(MOMENT, -added(moments), float(found.before.moment[k]), _("N·m"))

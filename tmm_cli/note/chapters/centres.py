@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-import numpy as np
-
 from tmm_cli.kinematics.centres import Centre, Links
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
@@ -61,10 +59,10 @@ def _speeds(subject: Subject) -> Iterable[Block]:
                 _("The centre of a link and the driving one has the same velocity on both, so that distances between "
                   "centres give the angular velocities of links, and the velocities of those that do not turn. "
                   "Position {number}:"),
-                number=str(results.numbers[k]),
+                number=subject.number(k),
             )  # fmt: skip
         elif told:
-            yield said(_("Position {number}:"), number=str(results.numbers[k]))
+            yield said(_("Position {number}:"), number=subject.number(k))
         yield from told
         first = first and not told
 
@@ -72,7 +70,7 @@ def _speeds(subject: Subject) -> Iterable[Block]:
 def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Found]:
     motion = subject.motion
     driver = motion.linkage.driver.link
-    own = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
+    own = abs(subject.rate(k))
     rate, pivot = Leaf(Symbol("ω", driver), own), found[FRAME, driver]
     for link in motion.linkage.moving:
         if link == driver or pivot.place is None or not own:

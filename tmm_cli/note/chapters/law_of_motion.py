@@ -18,9 +18,7 @@ TABLES = ("dynamics", "law-of-motion")
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """Of steady running."""
-    running = subject.results.steady
-    assert running is not None
-    every = [Here(subject, running, k) for k in subject.detail]
+    every = [Here(subject, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
@@ -55,7 +53,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
         only="law-motion",
     )  # fmt: skip
-    if running.sense < 0:
+    if here.running.sense < 0:
         yield paragraph(signs(subject.results.linkage))
     yield from tables(subject)
 

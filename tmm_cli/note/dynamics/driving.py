@@ -35,7 +35,7 @@ def mean(here: Here) -> Iterable[Block]:
     if steady.task.motor is not None:
         text = _("The mean moment of the motor, reduced to the driving link:")
     yield said(text)
-    way = Constant(2.0 * turns) * Constant(math.pi, "π")
+    way = 2 * turns * Constant(math.pi, "π")
     work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
     yield Found(DRIVING, -work, steady.moment, _("N·m"))
 
@@ -49,8 +49,7 @@ def motor(here: Here) -> Iterable[Block]:
                   "rest and nothing at {omega}. At the speed of position {number}:"),
                 M=STALL, omega=FREE, number=here.number,
             )  # fmt: skip
-            share = 1 - here.speed / Leaf(FREE, found.free)
-            moment = Leaf(STALL, found.stall) * share
+            moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
             yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
         case Kloss() as found:
             yield from _asynchronous(here, found)
@@ -63,12 +62,9 @@ def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
           "position {number}:"),
         s=SLIP, omega=FREE, M=BREAKDOWN, sk=CRITICAL, number=here.number,
     )  # fmt: skip
-    value = 1 - here.speed.value / motor.synchronous
-    share = here.speed / Leaf(FREE, motor.synchronous)
-    yield Found(SLIP, 1 - share, value)
-    slip, critical = Leaf(SLIP, value), Leaf(CRITICAL, motor.slip)
-    if value:
-        under = slip / critical + critical / slip
-        moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / under
+    slip, critical = Leaf(SLIP, 1 - here.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
+    yield Found(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
+    if slip.value:
+        moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / (slip / critical + critical / slip)
         found = float(motor.moment(np.array([here.speed.value]))[0])
         yield Found(DRIVING, moment, found, _("N·m"))

@@ -11,16 +11,8 @@ from tmm_cli.dynamics.flywheel import Tangent
 from tmm_cli.language import _, symbol
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
-from tmm_cli.note.expression import (
-    Constant,
-    Expression,
-    Found,
-    Leaf,
-    Product,
-    Raised,
-    Sum,
-)
-from tmm_cli.note.math import Brackets, Fraction, Letter, Node, Number, Power, row
+from tmm_cli.note.expression import Constant, Found, Leaf, Raised, letters
+from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Lettered, Symbol
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
@@ -33,36 +25,32 @@ def speeds(here: Here) -> Iterable[Block]:
     """The largest and the least one, from their mean and the fluctuation."""
     steady = here.steady
     low, high = steady.speeds
-    middle, delta = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta)
+    middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
     yield said(
         _("The largest and the least speed of the driving link follow from their mean {mean} and the coefficient of "
           "fluctuation {delta}:"),
         mean=MEAN, delta=DELTA,
     )  # fmt: skip
-    for name, value, sign in ((LARGEST, high, 1), (LEAST, low, -1)):
-        share = Sum(((1, Constant(1)), (sign, delta / 2)))
-        yield Found(name, middle * share, value, _("rad/s"))
+    yield Found(LARGEST, middle * (1 + half), high, _("rad/s"))
+    yield Found(LEAST, middle * (1 - half), low, _("rad/s"))
 
 
 def diagram(here: Here) -> Iterable[Block]:
     """The energy-mass diagram and what its tangents cut off."""
+    upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
+    slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield said(
         _("The kinetic energy of the machine is {T} in position 0 and grows by the work {A} of all moments from there "
           "on. Over the reduced moment of inertia {J} this work gives the energy-mass diagram of Wittenbauer. A line "
           "that touches it from above with the slope {up}, and one that touches it from below with the slope {low}, "
           "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
           "which {J} is zero the energies {Ea} and {Eb}:"),
-        T=START, A=WORK, J=INERTIA, up=_half(LARGEST), low=_half(LEAST), Ea=OFFSETS[0], Eb=OFFSETS[1],
-        psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", Fraction(
-            row(Letter(Symbol("μ", "J")), "·", Power(Letter(Symbol("ω")), Number("2"))),
-            row(Number("2"), "·", Letter(Symbol("μ", "A"))),
-        )),
+        T=START, A=WORK, J=INERTIA, up=letters(upper), low=letters(lower), Ea=OFFSETS[0], Eb=OFFSETS[1],
+        psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", letters(slope)),
     )  # fmt: skip
     for tangent, name, speed, point in zip(here.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
-        energy = _slope(tangent, speed)
-        inertia = Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
-        ordinate = Leaf(Symbol(WORK.letter, point), tangent.energy)
-        cut = ordinate - energy * inertia
+        energy, work = speed_of(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
+        cut = work - energy * Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
         yield Found(name, cut, tangent.offset, _("J"))
 
 
@@ -79,10 +67,9 @@ def by_tangents(here: Here) -> Iterable[Block]:
         yield said(_("The moment of inertia of the flywheel, reduced to the driving link:"))
     else:
         yield said(_("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:"))
-    cut = Sum(tuple((s, Leaf(n, t.offset)) for s, n, t in zip((1, -1), OFFSETS, (upper, lower), strict=True)))
-    squares = Sum(tuple((s, _speed(t, n) ** 2) for s, n, t in ((1, LARGEST, upper), (-1, LEAST, lower))))
-    whole = 2 * cut / squares
-    yield Found(FLYWHEEL, whole, steady.law.flywheel, _("kg·m²"))
+    cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
+    squares = speed_of(upper, LARGEST) ** 2 - speed_of(lower, LEAST) ** 2
+    yield Found(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))
 
 
 def by_mertsalov(here: Here) -> Iterable[Block]:
@@ -92,17 +79,18 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
         return
     upper, lower = steady.at_mean
     most, least = Leaf(OFFSETS[0].primed, upper.offset), Leaf(OFFSETS[1].primed, lower.offset)
+    square, delta = Leaf(MEAN, steady.task.mean) ** 2, Leaf(DELTA, steady.task.delta or 0.0)
     yield said(
         _("With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
           "{found} kg·m². By the method of Mertsalov the energy of the links is taken at the mean speed; then the "
           "energy of the flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
-        plus=_square(1), minus=_square(-1), found=here.subject.text(steady.wittenbauer),
-        most=most.symbol, least=least.symbol, rest=row(Letter(WORK), "−", Letter(INERTIA), "·", _half(MEAN)),
+        plus=letters(square * (1 + delta)), minus=letters(square * (1 - delta)),
+        found=here.subject.text(steady.wittenbauer), most=most.symbol, least=least.symbol,
+        rest=letters(Leaf(WORK) - Leaf(INERTIA) * (Leaf(MEAN) ** 2 / 2)),
     )  # fmt: skip
     gain = most.value - least.value
     yield Found(GAIN, most - least, gain, _("J"))
-    under = Leaf(DELTA, steady.task.delta or 0.0) * Leaf(MEAN, steady.task.mean) ** 2
-    yield Found(FLYWHEEL.primed, Leaf(GAIN, gain) / under, steady.mertsalov, _("kg·m²"))
+    yield Found(FLYWHEEL.primed, Leaf(GAIN, gain) / (delta * square), steady.mertsalov, _("kg·m²"))
 
 
 def on_shaft(here: Here) -> Iterable[Block]:
@@ -123,51 +111,32 @@ def size(here: Here) -> Iterable[Block]:
     """Diameter, width and mass of a disk, or of a rim."""
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
-    density, share, height = Leaf(DENSITY, form.density), Leaf(SHARE, form.width), Leaf(HEIGHT, form.height)
-    diameter = steady.diameter
-    pi = Constant(math.pi, "π")
-    of_section: tuple[Expression, ...] = (density, share)
+    share, diameter = Leaf(SHARE, form.width), Leaf(DIAMETER, steady.diameter)
+    section = Constant(math.pi, "π") * Leaf(DENSITY, form.density) * share
+    moment = Leaf(MASS) * Leaf(DIAMETER) ** 2
     if form.shape == "disk":
         yield said(
             _("The flywheel is a solid disk of the density {rho}, whose width is the share {beta} of its diameter; its "
               "moment of inertia is {J}, and so its diameter is"),
-            rho=DENSITY, beta=SHARE, J=_of_form("8"),
+            rho=DENSITY, beta=SHARE, J=letters(moment / 8),
         )  # fmt: skip
-        numbers = 32.0, 0.25
+        numbers = 32, 4
     else:
         yield said(
             _("The flywheel is a rim of the density {rho}, whose section has the shares {beta} and {eta} of its mean "
               "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its "
               "mean diameter is"),
-            rho=DENSITY, beta=SHARE, eta=HEIGHT, J=_of_form("4"),
+            rho=DENSITY, beta=SHARE, eta=HEIGHT, J=letters(moment / 4),
         )  # fmt: skip
-        numbers, of_section = (4.0, 1.0), (density, share, height)
-    root = Constant(numbers[0]) * inertia / Product((pi, *of_section))
-    yield Found(DIAMETER, Raised(root, 1, 5), diameter, _("m"))
+        section = section * Leaf(HEIGHT, form.height)
+        numbers = 4, 1
+    yield Found(DIAMETER, Raised(numbers[0] * inertia / section, 1, 5), diameter.value, _("m"))
     yield said(_("Its width and its mass:"))
-    yield Found(WIDTH, share * Leaf(DIAMETER, diameter), steady.width, _("m"))
-    mass = Product((pi, *of_section, Raised(Leaf(DIAMETER, diameter), 3)))
-    whole = mass if numbers[1] == 1 else mass / 4
-    yield Found(MASS, whole, steady.mass, _("kg"))
+    yield Found(WIDTH, share * diameter, steady.width, _("m"))
+    mass = section * diameter**3
+    yield Found(MASS, mass if numbers[1] == 1 else mass / numbers[1], steady.mass, _("kg"))
 
 
-def _speed(tangent: Tangent, name: Symbol) -> Leaf:
+def speed_of(tangent: Tangent, name: Symbol) -> Leaf:
+    """At which the energy-mass diagram has this tangent."""
     return Leaf(name, float(np.sqrt(2 * tangent.slope)))
-
-
-def _slope(tangent: Tangent, name: Symbol) -> Expression:
-    return _speed(tangent, name) ** 2 / 2
-
-
-def _half(speed: Symbol) -> Node:
-    return Fraction(Power(Letter(speed), Number("2")), Number("2"))
-
-
-def _square(sign: int) -> Node:
-    """Of the course: with the fluctuation itself."""
-    share = Brackets(row(Number("1"), "+" if sign > 0 else "−", Letter(DELTA)))
-    return row(Power(Letter(MEAN), Number("2")), "·", share)
-
-
-def _of_form(under: str) -> Node:
-    return Fraction(row(Letter(MASS), "·", Power(Letter(DIAMETER), Number("2"))), Number(under))

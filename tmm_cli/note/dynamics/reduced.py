@@ -10,12 +10,12 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import INERTIA, MOMENT, Here
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Sum, added, signed
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
 
-Term = tuple[int, Expression, float]  # its sign, how it is written, its size
+Term = tuple[Expression, float]  # how it is written, its size
 
 
 def explained(here: Here) -> Iterable[Block]:
@@ -52,9 +52,9 @@ def _of_link(here: Here, name: str) -> Iterable[Term]:
         own = Leaf(letter, float(np.ravel(mass)[0]))
         size = own.value * (speed / omega.value) ** 2
         if symbol == omega.symbol:
-            yield 1, own, size
+            yield own, size
         else:
-            yield 1, own * (Leaf(symbol, speed) / omega) ** 2, size
+            yield own * (Leaf(symbol, speed) / omega) ** 2, size
 
 
 def moment(here: Here) -> Iterable[Block]:
@@ -80,19 +80,19 @@ def _of_load(here: Here, load: Applied) -> Iterable[Term]:
     if pull and speed:
         in_centre = load.kind == "weight"
         own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
-        angle, factors = abs(float(np.angle(pull / speed))), (Leaf(force, abs(pull)), own)
+        angle, factors = abs(float(np.angle(pull / speed))), Leaf(force, abs(pull)) * own
         if min(angle, np.pi - angle) < NO_VECTOR:
-            yield (1 if angle < 1 else -1), Product(factors), abs(power)
+            yield signed(1 - angle, factors), abs(power)
         else:
             cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
-            yield 1, Product((*factors, cosine)), abs(power)
+            yield factors * cosine, abs(power)
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
         own = Leaf(Symbol("ω", load.link), abs(omega))
-        yield (1 if turned * omega > 0 else -1), Leaf(couple, abs(turned)) * own, abs(turned * omega)
+        yield signed(turned * omega, Leaf(couple, abs(turned)) * own), abs(turned * omega)
 
 
 def _sum(terms: list[Term]) -> Sum:
     """Without terms that are nothing beside the others."""
-    largest = max(size for *__, size in terms)
-    return Sum(tuple((sign, term) for sign, term, size in terms if size > NO_VECTOR * largest))
+    largest = max(size for __, size in terms)
+    return added(term for term, size in terms if size > NO_VECTOR * largest)

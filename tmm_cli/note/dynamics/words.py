@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from tmm_cli.analysis.running import Running
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.flywheel import Tangent
@@ -26,8 +24,12 @@ class Here:
     """The running machine, and a position of it; letters are those of what it is reduced to, along its sense."""
 
     subject: Subject
-    running: Running
     k: int
+
+    @property
+    def running(self) -> Running:
+        assert self.subject.results.steady is not None
+        return self.subject.results.steady
 
     @property
     def steady(self) -> Steady:
@@ -39,13 +41,12 @@ class Here:
 
     @property
     def number(self) -> str:
-        return str(self.subject.results.numbers[self.k])
+        return self.subject.number(self.k)
 
     @property
     def speed(self) -> Leaf:
         """Of the driving link, as a size."""
-        rate = float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[self.k])
-        return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(rate))
+        return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(self.subject.rate(self.k)))
 
     @cached_property
     def tangents(self) -> tuple[Tangent, Tangent]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tmm_cli.language import _
 from tmm_cli.note.breaking import chain
-from tmm_cli.note.expression import Expression, Found, Leaf, Product, Sum, letters
+from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
 from tmm_cli.note.math import Letter, Node, Number, row
 from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
@@ -20,8 +20,7 @@ def moments(equation: MomentEquation) -> Node:
     """ΣM_E = −R·h₃ + G·h₁ − ... = 0, what is sought first."""
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
-    whole = Sum(tuple((_sign(t.moment), _moment(t)) for t in terms))
-    return chain((Letter(Symbol("ΣM", equation.about)), letters(whole), Number("0")))
+    return chain((Letter(Symbol("ΣM", equation.about)), letters(added(map(_moment, terms))), Number("0")))
 
 
 def by_moments(equation: MomentEquation, unit: str = "") -> Found | None:
@@ -30,12 +29,11 @@ def by_moments(equation: MomentEquation, unit: str = "") -> Found | None:
     unit: of moments, where it is not N·m.
     """
     found, sought = equation.found, equation.sought
+    others: Expression = added(_moment(t) for t in equation.terms if t is not found)
     unit = unit or _("N·m")
     if found is None or sought is None:
-        whole = Sum(tuple((_sign(t.moment), _moment(t)) for t in equation.terms))
-        return Found(Symbol("ΣM", equation.about), whole, 0.0, unit) if equation.terms and not sought else None
-    sense = -_sign(found.moment)
-    others = Sum(tuple((sense * _sign(t.moment), _moment(t)) for t in equation.terms if t is not found))
+        return Found(Symbol("ΣM", equation.about), others, 0.0, unit) if equation.terms and not sought else None
+    others = signed(-found.moment, others)
     size, arm = Leaf(found.acting.symbol, found.acting.size), Leaf(found.letter, found.arm)
     if found.acting.couple:
         return Found(size.symbol, others, size.value, unit)
@@ -46,19 +44,15 @@ def by_moments(equation: MomentEquation, unit: str = "") -> Found | None:
 
 def along_guide(forces: ForceSum) -> tuple[Node, Found]:
     """ΣF = R − G·cos α₁ + ... = 0, and what it gives."""
-    parts = [forces.found, *(part for part in forces.parts if part is not forces.found)]
-    told = [(_sign(part.along), _projection(part, number)) for number, part in enumerate(parts)]
-    whole = chain((Letter(Symbol("ΣF", forces.guide)), letters(Sum(tuple(told))), Number("0")))
-    sense, found = -told[0][0], forces.found.acting
-    others = Sum(tuple((sense * sign, term) for sign, term in told[1:]))
-    if isinstance(told[0][1], Product):  # what is sought is not along the guide
-        return whole, Found(found.symbol, others / told[0][1].factors[1], found.size, _("N"))
-    return whole, Found(found.symbol, others, found.size, _("N"))
-
-
-def value(symbol: Symbol, size: float, unit: str) -> Found:
-    """A quantity that is read off: its letter and its value."""
-    return Found(symbol, Leaf(symbol, size), size, unit)
+    own = forces.found
+    parts = [own, *(part for part in forces.parts if part is not own)]
+    shares = [_projection(part, number) for number, part in enumerate(parts)]
+    told = [signed(part.along, share) for part, share in zip(parts, shares, strict=True)]
+    whole = chain((Letter(Symbol("ΣF", forces.guide)), letters(added(told)), Number("0")))
+    rest = signed(-own.along, added(told[1:]))
+    if isinstance(shares[0], Product):  # what is sought is not along the guide
+        rest = rest / shares[0].factors[1]
+    return whole, Found(own.acting.symbol, rest, own.acting.size, _("N"))
 
 
 def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
@@ -67,13 +61,9 @@ def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     return chain((row(*parts[1:]), Number("0")))
 
 
-def _sign(value: float) -> int:
-    return 1 if value > 0 else -1
-
-
 def _moment(term: Term) -> Expression:
     force = Leaf(term.acting.symbol, term.acting.size)
-    return force * Leaf(term.letter, term.arm) if term.number else force
+    return signed(term.moment, force * Leaf(term.letter, term.arm) if term.number else force)
 
 
 def _projection(part: Part, number: int) -> Expression:

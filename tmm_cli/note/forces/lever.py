@@ -10,7 +10,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
 from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.bodies import load_symbols
@@ -99,7 +99,7 @@ def turns_of(subject: Subject) -> bool:
 def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
     """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
     motion, driver = subject.motion, subject.results.linkage.driver
-    rate = abs(float(np.broadcast_to(motion.rate, motion.q.shape)[k]))
+    rate = abs(subject.rate(k))
     if load.link == driver.link and turns_of(subject):
         return ()
     if not rate:
@@ -111,20 +111,20 @@ def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
 def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
     """What several drivers do together, each in the ratio of its speed to that of the first."""
     motion, reactions, lever = subject.motion, subject.reactions, subject.lever
-    first, terms = reactions.balance, list[tuple[int, Expression]]()
+    first, terms = reactions.balance, list[Expression]()
     for balance in reactions.balances:
         driver = balance.driver.link
         symbol = balance_symbol(driver, several=True, turns=balance.moment is not None)
         own = Leaf(symbol, float(balance.generalized[k]))
         ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
-        terms.append((1, own if balance is first else own * ratio))
+        terms.append(own if balance is first else own * ratio)
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
     yield said(
         _("The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
           "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"),
         link=first.driver.link, i=Symbol("i"),
     )  # fmt: skip
-    yield Found(name, Sum(tuple(terms)), float(lever.balancing[k]), unit)
+    yield Found(name, added(terms), float(lever.balancing[k]), unit)
 
 
 def _compared(subject: Subject, k: int) -> Iterable[Block]:

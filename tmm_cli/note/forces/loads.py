@@ -14,8 +14,8 @@ from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
 from tmm_cli.note.blocks import Block, Line, Ref, Rows, cells, listed, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, Sum
-from tmm_cli.note.forces.words import direction, shown
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
+from tmm_cli.note.forces.words import direction
 from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
@@ -104,13 +104,13 @@ def _spring(subject: Subject, spring: Spring, load: Applied, k: int) -> Iterable
         text = _("The force of the spring {name} follows its length {now}; {c} is its rate, {free} its free length:")
     c = Leaf(Symbol("c"), float(spring.rate))
     stretch: Expression = now - free if free.value else now
-    terms: list[tuple[int, Expression]] = [(1, c * stretch)]
+    whole: Expression = c * stretch
     if spring.preload:
-        terms = [(1, Leaf(Symbol(letter, "0"), float(spring.preload))), *terms]
+        whole = Leaf(Symbol(letter, "0"), float(spring.preload)) + whole
     if spring.damping:
-        terms.append((1, Leaf(Symbol("b"), float(spring.damping)) * rate))
+        whole = whole + Leaf(Symbol("b"), float(spring.damping)) * rate
     yield said(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
-    yield Found(load_symbols(load)[0], Function("abs", Sum(tuple(terms))), size, unit)
+    yield Found(load_symbols(load)[0], Function("abs", whole), size, unit)
 
 
 def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
@@ -161,8 +161,7 @@ def without_friction(subject: Subject, k: int) -> Iterable[Block]:
         turns = balance.moment is not None
         symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)
         size = abs(float(balance.generalized[k]))
-        name = replace(symbol, above="0")
-        yield Found(name, Leaf(name, size), size, _("N·m") if turns else _("N"))
+        yield read(replace(symbol, above="0"), size, _("N·m") if turns else _("N"))
 
 
 def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
@@ -174,10 +173,10 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
     for load in loads:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
-            told = f"{shown(subject, abs(push))} {_('N')}"
+            told = f"{subject.shown(abs(push))} {_('N')}"
             rows.append(cells(force, load.link, told, direction(subject, push)))
         if abs(moment) > still:
-            told = f"{shown(subject, abs(moment))} {_('N·m')}"
+            told = f"{subject.shown(abs(moment))} {_('N·m')}"
             rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
         yield said(
@@ -197,8 +196,7 @@ def losses(subject: Subject) -> Iterable[Block]:
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]
     yield said(_("Over the cycle the drivers do the work {work}, and friction in the pairs does:"), work=work.symbol)
     for one in (work, *taken):
-        yield Found(one.symbol, one, one.value, _("J"))
+        yield read(one.symbol, one.value, _("J"))
     if lost.efficiency is not None:
         yield said(_("The efficiency of the mechanism is:"))
-        left = Sum(tuple((1, one) for one in (work, *taken)))
-        yield Found(Symbol("η"), left / work, lost.efficiency)
+        yield Found(Symbol("η"), added((work, *taken)) / work, lost.efficiency)

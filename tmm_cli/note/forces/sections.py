@@ -8,8 +8,8 @@ from itertools import chain
 from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
-from tmm_cli.note.expression import Found, Leaf, SquareRoot, Sum
-from tmm_cli.note.forces.equations import along_guide, by_moments, moments, value, vector_sum
+from tmm_cli.note.expression import Found, Function, Leaf, read
+from tmm_cli.note.forces.equations import along_guide, by_moments, moments, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.forces.words import direction, links_of
 from tmm_cli.note.kinematics.words import sense
@@ -151,7 +151,7 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=point, links=links, symbol=symbol)
     if found is None:
-        yield value(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N"))
+        yield read(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N"))
     else:
         yield from (Equation(moments(equation)), found)
 
@@ -188,7 +188,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)
-        yield value(vector.symbol, size if size > least else 0.0, _("N"))
+        yield read(vector.symbol, size if size > least else 0.0, _("N"))
     if part.plan.full:
         yield said(_("The total reactions are:"))
     for reaction in part.outer:
@@ -201,9 +201,8 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
     parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
     if along in parts and across in parts:
-        root = SquareRoot(Sum(tuple((1, Leaf(s, parts[s]) ** 2) for s in (along, across))))
-        size = abs(complex(reaction.force[part.here.k]))
-        yield Found(reaction_symbol(*names), root, size, _("N"))
+        root = Function("sqrt", Leaf(along, parts[along]) ** 2 + Leaf(across, parts[across]) ** 2)
+        yield Found(reaction_symbol(*names), root, abs(complex(reaction.force[part.here.k])), _("N"))
 
 
 def _guide_between(part: Part) -> Iterable[Block]:
@@ -223,7 +222,7 @@ def _guide_between(part: Part) -> Iterable[Block]:
     symbols = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
     yield Equation(vector_sum([*((s, 2) for s in symbols), *((s, 1) for s in sought)]))
     for symbol, reaction in sought.items():
-        yield value(symbol, abs(complex(reaction.force[part.here.k])), _("N"))
+        yield read(symbol, abs(complex(reaction.force[part.here.k])), _("N"))
 
 
 def _inner(part: Part) -> Iterable[Block]:
@@ -243,7 +242,7 @@ def _inner(part: Part) -> Iterable[Block]:
         yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))
     for reaction in inner:
         size = abs(complex(reaction.force[part.here.k]))
-        yield value(reaction_symbol(reaction.by, reaction.on), size, _("N"))
+        yield read(reaction_symbol(reaction.by, reaction.on), size, _("N"))
 
 
 def _place(equation: MomentEquation) -> Iterable[Block]:

@@ -10,7 +10,7 @@ from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Line, Ref, Rows, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import NOTHING
-from tmm_cli.note.forces.words import angle, shown
+from tmm_cli.note.forces.words import angle
 from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE, over_positions
 from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
@@ -59,7 +59,7 @@ def _sized(
         for __, symbol, force, told in some:
             way, size = np.angle(force) if told is None else told, np.abs(force)
             size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
-            columns.append(((symbol, ", ", _("N")), _texts(subject, size, shown)))
+            columns.append(((symbol, ", ", _("N")), _texts(subject, size, Subject.shown)))
             columns.append(((_("angle, °"),), _texts(subject, way, angle)))
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
         yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
@@ -89,7 +89,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
     caption = more if several else one
     yield from _signs(subject, of_all)
     yield said(_("The balancing load found in both ways is given in table {table}."), table=Ref("balance"))
-    texts = [_texts(subject, column, shown) for column in columns]
+    texts = [_texts(subject, column, Subject.shown) for column in columns]
     yield over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
     if has_flywheel(results) and balances[0].moment is not None:
         yield said(

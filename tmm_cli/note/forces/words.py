@@ -9,12 +9,6 @@ import numpy as np
 from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.language import _
 from tmm_cli.note.context import Subject, with_degrees
-from tmm_cli.note.expression import FIGURES, fixed
-
-
-def shown(subject: Subject, value: float) -> str:
-    """With as many figures as a result has."""
-    return subject.figures_of(fixed(value, FIGURES))
 
 
 def angle(subject: Subject, radians: float) -> str:
@@ -35,4 +29,4 @@ def links_of(names: Sequence[str]) -> str:
 def at_position(subject: Subject, k: int) -> str:
     """Which position, and where the driver stands."""
     place = with_degrees(place_of_driver(subject.results, float(subject.motion.q[k]), 4))
-    return _("position {number}, {place}").format(number=subject.results.numbers[k], place=place)
+    return _("position {number}, {place}").format(number=subject.number(k), place=place)

@@ -13,7 +13,7 @@ from tmm_cli.language import _, symbol
 from tmm_cli.linkage import FRAME, Driver
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Found, Leaf, Quotient, SquareRoot
+from tmm_cli.note.expression import Constant, Found, Function, Leaf, Quotient
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
@@ -111,7 +111,7 @@ def speed_here(here: Here) -> Iterable[Block]:
     )  # fmt: skip
     more = 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * Leaf(Symbol(f"Δ{way}"), gone)
     start = Leaf(Symbol(letter, "0"), driver.rate) ** 2
-    root = SquareRoot(start + more)
+    root = Function("sqrt", start + more)
     yield Found(first, root, abs(float(here.motion.rate[here.k])), unit(letter))
 
 
@@ -215,7 +215,7 @@ def place_here(here: Here) -> Block:
     if driver.kind == "turn":
         text = _("In position {number} the driving link is at the angle {phi} = {angle}° to the axis x.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
-        return said(text, number=str(here.subject.results.numbers[here.k]), phi=Symbol("φ", driver.link), angle=angle)
+        return said(text, number=here.subject.number(here.k), phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the driving link is at {run} = {place} m.")
-    number = str(here.subject.results.numbers[here.k])
+    number = here.subject.number(here.k)
     return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))

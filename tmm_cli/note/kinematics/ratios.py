@@ -7,14 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Mesh
 from tmm_cli.note.blocks import Block, Equation, said
-from tmm_cli.note.expression import (
-    Constant,
-    Expression,
-    Found,
-    Function,
-    Leaf,
-    Sum,
-)
+from tmm_cli.note.expression import Constant, Expression, Found, Function, Leaf, Sum
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Fraction, Letter, row

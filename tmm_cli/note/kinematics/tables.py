@@ -10,7 +10,6 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, listed, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import FIGURES, fixed
 from tmm_cli.note.kinematics.driver import output
 from tmm_cli.note.kinematics.on_paper import unit
 from tmm_cli.note.tables import over_positions
@@ -119,4 +118,4 @@ def _places(subject: Subject) -> Iterable[Column]:
 
 
 def _cell(subject: Subject, value: float) -> str:
-    return subject.figures_of(fixed(value, FIGURES)) if np.isfinite(value) else "–"
+    return subject.shown(value) if np.isfinite(value) else "–"
