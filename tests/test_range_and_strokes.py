@@ -12,6 +12,7 @@ from models import PROBLEMS as FILES
 from models import results_of
 
 from tmm_cli import solve
+from tmm_cli.pairs.cam_law import SHAPES
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.reports import tables
@@ -106,6 +107,46 @@ def test_the_strokes_of_a_cam_of_constant_velocities_end_at_its_hard_impacts(dwe
     assert [math.degrees(s.length) for s in (back, forth)] == pytest.approx([200 - dwell, 160], abs=1e-9)
     assert math.degrees(forth.rest) == pytest.approx(dwell, abs=1e-9)
     assert (back.run, forth.run) == pytest.approx((-0.02, 0.02), abs=1e-15)
+
+
+def flat_follower(law, **keys):
+    """The cam with a flat follower by another law, the follower alone as output."""
+    text = PROBLEMS["flat follower"].replace("output: 4", "output: 2")
+    text = text.replace(text[text.index("law: [{over: 120") : text.index("\ndriver")], f"law: {law}")
+    for old, new in {"speed": "speed: 60 rpm", "at": "at: 0 deg", "count": "count: 12"}.items():
+        text = text.replace(new, keys.get(old, new))
+    return solve(build(read_text(text, "cam.yaml")), "kinematics")
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_cam_turned_clockwise_moves_its_follower_as_its_mirror_image_does_where_pieces_meet_too(shape):
+    """Where the acceleration jumps it is that of the piece which then begins, whichever way the cam turns."""
+    own, image = (f"{{over: {over}, rise: 20, law: {shape}}}, {{over: 120}}, {{over: {then}, rise: -20, law: {shape}}}"
+                  for over, then in ((60, 90), (90, 60)))  # fmt: skip
+    drawn = flat_follower(f"[{own}, {{over: 90}}]", speed="speed: 1, turns: cw").motion.centre("2")
+    other = flat_follower(f"[{{over: 90}}, {image}]", speed="speed: 1").motion.centre("2")
+    assert np.max(np.abs(drawn.v - other.v)) < 1e-15 and np.max(np.abs(drawn.a - other.a)) < 1e-13
+    rises = 0.02 * abs(SHAPES[shape](0.0)[2]) / math.radians(90) ** 2
+    assert abs(other.a[3]) == pytest.approx(rises, rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize("start", [0, -359.5, 77.3, 1234.5])
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+@pytest.mark.parametrize("shape", ["linear", "parabolic", "cosine"])
+def test_a_stroke_of_a_cam_begins_with_the_speed_and_the_acceleration_of_its_piece(shape, turns, start):
+    """Both may jump there, and it is not left to rounding on which side of the jump the first position lies."""
+    law = f"[{{over: 120, rise: 20, law: {shape}}}, {{over: 120, rise: -20, law: {shape}}}, {{over: 120}}]"
+    follower = flat_follower(
+        f"{law}\n    start: {start}",
+        speed=f"speed: 1, turns: {turns}",
+        at=f"at: {start} deg",
+        count="count: 12, from: working stroke",
+    ).motion.centre("2")
+    __, first, second = (abs(float(x)) for x in SHAPES[shape](0.0))
+    for n in (0, 4):  # both strokes
+        assert abs(follower.v[n]) == pytest.approx(0.02 * first / math.radians(120), abs=1e-14)
+        assert abs(follower.a[n]) == pytest.approx(0.02 * second / math.radians(120) ** 2, abs=1e-13)
+    assert abs(follower.a[8]) < 1e-13  # the dwell
 
 
 def test_the_useful_resistance_of_a_working_stroke_does_not_act_in_its_dwell():

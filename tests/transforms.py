@@ -29,7 +29,7 @@ def mirrored(it: Linkage) -> Linkage:
         # the follower goes through the pieces of the cam's law from the last to the first
         sense = -1 if m.slide else 1
         pieces = tuple(replace(piece, rise=sense * piece.rise) for piece in reversed(m.law.pieces))
-        return replace(m, law=CamLaw(pieces, -m.law.start), offset=m.offset * (1 if m.slide else -1))
+        return replace(m, law=CamLaw(pieces, -m.law.start, -m.law.sense), offset=m.offset * (1 if m.slide else -1))
 
     def driver(d):
         return d if d.kind == "slide" else replace(d, sense=-d.sense, at=-d.at)
@@ -135,7 +135,7 @@ def sized(it: Linkage, size: float) -> Linkage:
             return replace(m, ratio=m.ratio * size, offset=m.offset * size)
         if m.kind == "cam" and m.slide:
             pieces = tuple(Piece(p.over, p.rise * size, p.shape) for p in m.law.pieces)
-            return replace(m, offset=m.offset * size, law=CamLaw(pieces, m.law.start))
+            return replace(m, offset=m.offset * size, law=replace(m.law, pieces=pieces))
         return m
 
     def spring(s):

@@ -14,7 +14,7 @@ from tmm_cli.kinematics.output import OutputCurve, runs_of
 from tmm_cli.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.roots import roots
 from tmm_cli.structure.naming import output_link
-from tmm_cli.tolerances import BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
+from tmm_cli.tolerances import AT_EDGE_OF_CAM, BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
 from tmm_cli.vectors import Real
 
 
@@ -148,7 +148,10 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
     rests[rests < NO_DWELL] = 0.0
     ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
     sides = np.abs(curve.slope(ends + BESIDE_END * np.array([[-1], [0], [1]]))).min(axis=0)
-    impacts = any(mesh.law is not None and mesh.law.jumps() for mesh in curve.linkage.meshes)
+    laws = [mesh.law for mesh in curve.linkage.meshes if mesh.law is not None]
+    if laws:  # a piece is taken to begin so little before its edge, and at that very place rounding would choose
+        ends = ends + sense * AT_EDGE_OF_CAM
+    impacts = any(law.jumps() for law in laws)
     true = impacts | (rests > 0) | (sides < NO_JUMP * np.nanmax(np.abs(slope)))
     return ends[true], rests[true]
 

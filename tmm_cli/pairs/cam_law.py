@@ -8,7 +8,7 @@ Artobolevsky, Theory of Mechanisms and Machines, ch. 25 (parabolic, cosine, sine
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -79,10 +79,19 @@ class Piece:
 
 @dataclass(frozen=True)
 class CamLaw:
-    """Pieces one after another from the cam's angle `start` (rad); together a full turn, and back where they began."""
+    """Pieces one after another from the cam's angle `start` (rad); together a full turn, and back where they began.
+
+    sense: in which the cam turns. Where pieces meet, the acceleration is that of the piece which then begins.
+    """
 
     pieces: tuple[Piece, ...]
     start: float = 0.0
+    sense: int = 1
+
+    @cached_property
+    def _mirrored(self) -> CamLaw:
+        """The law by the angle that grows clockwise: all laws are symmetric about the middle of their piece."""
+        return CamLaw(tuple(replace(p, rise=-p.rise) for p in reversed(self.pieces)), -self.start)
 
     @cached_property
     def _table(self) -> tuple[Real, Real, Real, Real]:
@@ -108,6 +117,9 @@ class CamLaw:
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
+        if self.sense < 0:
+            value, first, second = self._mirrored(-angle)
+            return value, -first, second
         turn = 2 * pi(angle)
         turned, ahead = np.mod(angle - self.start, turn), np.mod(angle - self.start + AT_EDGE_OF_CAM, turn)
         turned = np.where(ahead < turned, 0.0, turned)  # a turn is over but for rounding

@@ -94,7 +94,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     first, *others = build_drivers(shape, members, values)
     meshes: tuple[Mesh, ...] = ()
     if shape.gears or shape.racks or shape.cams:  # few files have any, and only those import what reads them
-        meshes = build_meshes(shape, members, values)
+        meshes = build_meshes(shape, members, first.sense, values)
     outputs = _outputs(shape, links, values)
     linkage = Linkage(
         links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),

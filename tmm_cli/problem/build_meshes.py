@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -22,11 +23,11 @@ from tmm_cli.vectors import cross, unit
 MANY_TEETH = 100_000
 
 
-def build_meshes(shape: schema.File, members: Members, values: ValueReader) -> tuple[Mesh, ...]:
-    """All higher pairs: gears, racks, cams."""
+def build_meshes(shape: schema.File, members: Members, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
+    """All higher pairs: gears, racks, cams; sense: of the driver."""
     taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
     found: list[Mesh] = []
-    for block, build in (("gears", _gear), ("racks", _rack), ("cams", _cam)):
+    for block, build in (("gears", _gear), ("racks", _rack), ("cams", partial(_cam, sense))):
         for name, given in getattr(shape, block).items():
             check_name(name, (block, name), "pair", taken)
             taken.add(name)
@@ -168,7 +169,7 @@ def _rack(name: str, part: Part, members: Members) -> Mesh:
     )  # fmt: skip
 
 
-def _cam(name: str, part: Part, members: Members) -> Mesh:
+def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
     given: schema_meshes.Cam = part.given
     cam, follower = given.cam, given.follower
     _different((cam, follower, FRAME), part, part.path, members)
@@ -186,6 +187,6 @@ def _cam(name: str, part: Part, members: Members) -> Mesh:
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
         allowed = _("rises that add up to 0")
         raise part.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
-    law = CamLaw(pieces, part.number("start", ANGLE))
+    law = CamLaw(pieces, part.number("start", ANGLE), sense)
     offset = part.number("offset", want)
     return Mesh(name, "cam", cam, follower, FRAME, offset=offset, slide=slide.name if slide else "", law=law)
