@@ -67,21 +67,17 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     n, lower = len(structure.links), len(structure.pairs) - structure.higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     yield said(
-        _(
-            "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
-            "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
-            "higher pairs:"
-        ),
+        _("The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+          "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
+          "higher pairs:"),
         source=Link("artobolevskii"), w=W, n=N, lower=LOWER, higher=HIGHER,
         turning=str(turning), sliding=str(lower - turning),
     )  # fmt: skip
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
     if structure.passive:
         yield said(
-            _(
-                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only "
-                "repeat others by the special sizes of the mechanism; its true mobility is {w} = {true}."
-            ),
+            _("The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "
+              "others by the special sizes of the mechanism; its true mobility is {w} = {true}."),
             count=str(structure.redundant), w=W,
             pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),
             true=str(structure.mobility + structure.redundant),
@@ -98,10 +94,8 @@ def _groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
         yield said(
-            _(
-                "When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
-                "mobility of each of them is zero."
-            ),
+            _("When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
+              "mobility of each of them is zero."),
             table=Ref("groups"),
         )  # fmt: skip
         head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))

@@ -105,13 +105,11 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
         )
     if pair.slide is not None:
         return filled(
-            _(
-                "on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
-                "guide"
-            ),
+            _("on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
+              "guide"),
             guide=pair.name,
             R=whole,
-        )
+        )  # fmt: skip
     if lead is None or lead.axis is None:
         return filled(_("at hinge {point}: magnitude and direction of the reaction {R}"), point=pair.point, R=whole)
     parts = {"R": whole, "n": reaction_symbol(*names, "n"), "t": reaction_symbol(*names, "τ")}

@@ -60,10 +60,8 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
         even = _(
             "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
         )
-        uneven = _(
-            "Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
-            "tangential parts."
-        )
+        uneven = _("Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
+                   "tangential parts.")  # fmt: skip
         yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
     for about in turned:
         yield from _parts(here, about)

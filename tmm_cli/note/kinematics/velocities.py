@@ -51,14 +51,10 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
     turned = further(step)
     if here.first and turned:
-        one = _(
-            "The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
-            "rotation:"
-        )
-        several = _(
-            "The velocities of points {points} of the driving link are perpendicular to their radii, in the sense of "
-            "its rotation:"
-        )
+        one = _("The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
+                "rotation:")  # fmt: skip
+        several = _("The velocities of points {points} of the driving link are perpendicular to their radii, in the "
+                    "sense of its rotation:")  # fmt: skip
         line = turned[0].base.at + turned[0].point.at
         yield said(
             one if len(turned) == 1 else several, points=listed(name_of(about.point) for about in turned), line=line
