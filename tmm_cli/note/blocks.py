@@ -87,12 +87,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Contents:
-    """The table of contents stands here."""
-
-
-@dataclass(frozen=True)
-class NewPage:
-    """What follows begins a page."""
+    """The table of contents stands here; what follows begins a page."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +116,7 @@ class Sources:
     sources: tuple[Source, ...]
 
 
-Block = Heading | Paragraph | Items | Equation | Found | Rows | Figure | Contents | NewPage | Title | Sources
+Block = Heading | Paragraph | Items | Equation | Found | Rows | Figure | Contents | Title | Sources
 
 
 @dataclass(frozen=True)
@@ -166,9 +161,9 @@ def cells(*parts: Inline | Line) -> tuple[Line, ...]:
     return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
 
 
-def listed(parts: Iterable[Inline], between: str = ", ") -> Line:
+def listed(parts: Iterable[Inline | Line], between: str = ", ") -> Line:
     """One after another."""
-    return tuple(one for k, part in enumerate(parts) for one in ((between, part) if k else (part,)))
+    return tuple(one for k, line in enumerate(cells(*parts)) for one in ((between, *line) if k else line))
 
 
 def listed_below(lines: Sequence[Line]) -> Items:

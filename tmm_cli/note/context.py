@@ -90,8 +90,8 @@ class Subject:
         """One of them, as drawings take it."""
         return Position(self.results, self.motion, k)
 
-    def number(self, k: int) -> str:
-        """What a position is called."""
+    def called(self, k: int) -> str:
+        """The number of a position."""
         return str(self.results.numbers[k])
 
     def rate(self, k: int) -> float:
@@ -103,10 +103,13 @@ class Subject:
         """Whether anything acts on the links; else there are no forces to write of."""
         return self.results.reactions is not None and bool(self.results.reactions.applied)
 
-    def value(self, si: float, dimension: Dimension, digits: int = 4) -> str:
-        """A number of the file with its unit there."""
-        units = self.results.problem.units
-        return with_degrees(f"{self.text(units.from_si(si, dimension), digits)} {self.unit(dimension)}".rstrip())
+    def number(self, si: float, dimension: Dimension, digits: int = 6) -> str:
+        """A number of the file in the unit that it has there."""
+        return self.text(float(self.results.problem.units.from_si(si, dimension)), digits)
+
+    def value(self, si: float, dimension: Dimension, digits: int = 6) -> str:
+        """The same with this unit."""
+        return with_degrees(f"{self.number(si, dimension, digits)} {self.unit(dimension)}".rstrip())
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""

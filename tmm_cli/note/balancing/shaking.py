@@ -55,7 +55,7 @@ def position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
             moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
     if not moments:
         return
-    yield said(_("Position {number}:"), number=subject.number(k))
+    yield said(_("Position {number}:"), number=subject.called(k))
     force = complex(found.before.force[k])
     x, y = Leaf(X, force.real), Leaf(Y, force.imag)
     for part, own in zip((x, y), terms, strict=True):

@@ -59,10 +59,10 @@ def _speeds(subject: Subject) -> Iterable[Block]:
                 _("The centre of a link and the driving one has the same velocity on both, so that distances between "
                   "centres give the angular velocities of links, and the velocities of those that do not turn. "
                   "Position {number}:"),
-                number=subject.number(k),
+                number=subject.called(k),
             )  # fmt: skip
         elif told:
-            yield said(_("Position {number}:"), number=subject.number(k))
+            yield said(_("Position {number}:"), number=subject.called(k))
         yield from told
         first = first and not told
 

@@ -42,7 +42,7 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
     def heading(text: str) -> str:
         if not several:
             return text
-        return _("{section}, position {number}").format(section=text, number=subject.number(k))
+        return _("{section}, position {number}").format(section=text, number=subject.called(k))
 
     yield Heading(heading(_("Loads of the links")), 2)
     if first:

@@ -33,7 +33,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
 
 
 def _position(here: Here, every: list[Step]) -> Iterable[Block]:
-    subject, number = here.subject, here.subject.number(here.k)
+    subject, number = here.subject, here.subject.called(here.k)
     yield Heading(_("Velocities, position {number}").format(number=number), 2)
     if here.first:
         yield said(

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.draw.sheets.structure import counted, parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Link, Ref, Rows, cells, paragraph, said
+from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Link, Ref, Rows, cells, paragraph, said, several
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
@@ -112,12 +112,12 @@ def _apart(subject: Subject) -> Iterable[Block]:
     """The drawings of the parts, one after the other."""
     drawn = subject.drawings("groups")
     if drawn:
-        sentence = _("The parts of the mechanism are shown in figures {first} to {last}.")
-        if len(drawn) == 2:
-            sentence = _("The parts of the mechanism are shown in figures {first} and {last}.")
-        if len(drawn) == 1:
-            sentence = _("The only part of the mechanism is shown in figure {first}.")
-        yield said(sentence, first=Ref(next(iter(drawn))), last=Ref(next(reversed(drawn))))
+        yield several(
+            _("The only part of the mechanism is shown in figure {first}."),
+            _("The parts of the mechanism are shown in figures {first} and {last}."),
+            _("The parts of the mechanism are shown in figures {first} to {last}."),
+            list(drawn),
+        )  # fmt: skip
     for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
         yield Figure(text.format(title=part.title), drawing, stem)

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, paragraph, said, several
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
 from tmm_cli.plans.bodies import named
@@ -86,7 +86,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
         return
     yield said(
         _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the axis x."),
-        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE),
+        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE, 4),
     )  # fmt: skip
 
 
@@ -107,12 +107,12 @@ def _lengths(subject: Subject, link: Link) -> Line:
     for a, b in pairs:
         length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
         if length > 0:
-            found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH, 6)}"))
+            found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH)}"))
     if any(np.any(np.imag(place) != 0) for place in link.points.values()):
         for point, place in link.points.items():
             x, y = _place(subject, place)
-            found.append((unbroken(f"{point} ({x[0]}; {y[0]}) {subject.unit(LENGTH)}"),))
-    return tuple(part for k, one in enumerate(found) for part in ((", ", *one) if k else one))
+            found.append((unbroken(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
+    return listed(found)
 
 
 def _fixed(subject: Subject) -> Rows:
@@ -121,7 +121,7 @@ def _fixed(subject: Subject) -> Rows:
     rows = [cells(point, *_place(subject, place), NONE) for point, place in points]
     for slide in linkage.slides:
         if slide.carrier == FRAME:
-            angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE, 6)
+            angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE)
             rows.append(cells(_("guide {name}").format(name=slide.name), *_place(subject, slide.through), angle))
     unit = subject.unit(LENGTH)
     head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
@@ -134,19 +134,19 @@ def _guided(subject: Subject) -> bool:
     return any(slide.carrier == FRAME for slide in subject.results.linkage.slides)
 
 
-def _place(subject: Subject, place: complex) -> tuple[Line, ...]:
-    value, units = complex(np.ravel(place)[0]), subject.results.problem.units
-    return cells(*(subject.text(float(units.from_si(part, LENGTH)), 6) for part in (value.real, value.imag)))
+def _place(subject: Subject, place: complex) -> tuple[str, str]:
+    value = complex(np.ravel(place)[0])
+    return subject.number(value.real, LENGTH), subject.number(value.imag, LENGTH)
 
 
 def _masses(subject: Subject) -> Rows:
-    linkage, units = subject.results.linkage, subject.results.problem.units
+    linkage = subject.results.linkage
     rows = []
     for name in heavy(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
-        own = (float(units.from_si(mass, MASS)), float(units.from_si(inertia, INERTIA)))
-        rows.append(cells(name, *(subject.text(value, 6) for value in own), *_place(subject, link.centre)))
+        own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
+        rows.append(cells(name, *own, *_place(subject, link.centre)))
     head = (
         (_("link"),), (Symbol("m"), f", {subject.unit(MASS)}"),
         (Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
@@ -164,23 +164,22 @@ def _loads(subject: Subject) -> Rows:
 
 
 def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
-    units = subject.results.problem.units
     place = load.point
     if load.force and not place:
         x, y = _place(subject, load.at)
-        place = _("({x}; {y}) {unit}").format(x=x[0], y=y[0], unit=subject.unit(LENGTH))
-    size = subject.value(load.moment, MOMENT, 6)
+        place = _("({x}; {y}) {unit}").format(x=x, y=y, unit=subject.unit(LENGTH))
+    size = subject.value(load.moment, MOMENT)
     if load.force:
-        parts = (subject.text(float(units.from_si(part, FORCE)), 6) for part in (load.force.real, load.force.imag))
-        size = "({}; {}) {}".format(*parts, subject.unit(FORCE))
+        x, y = (subject.number(part, FORCE) for part in (load.force.real, load.force.imag))
+        size = f"({x}; {y}) {subject.unit(FORCE)}"
     if load.table is not None:
         size = _("by a table")
     elif load.resists:
-        against = subject.value(abs(load.force), FORCE, 6) if load.force else subject.value(load.moment, MOMENT, 6)
+        against = subject.value(abs(load.force), FORCE) if load.force else subject.value(load.moment, MOMENT)
         size = _("{size} against the motion").format(size=against)
     when = _("in the working stroke") if load.working_stroke_only else _("always")
     if load.window is not None:
-        first, last = (subject.value(angle, ANGLE, 6) for angle in load.window)
+        first, last = (subject.value(angle, ANGLE) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
     name = named(load.name, "P" if load.force else "M")
     return cells(name, link_name(load.link), place if load.force else NONE, size, when)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Contents, NewPage, Title
+from tmm_cli.note.blocks import Block, Contents, Title
 from tmm_cli.note.context import Subject
 
 
@@ -19,4 +19,3 @@ def blocks(subject: Subject) -> Iterable[Block]:
         subject.results.problem.title, people, texts.code,
     )  # fmt: skip
     yield Contents()
-    yield NewPage()

@@ -41,7 +41,7 @@ class Here:
 
     @property
     def number(self) -> str:
-        return self.subject.number(self.k)
+        return self.subject.called(self.k)
 
     @property
     def speed(self) -> Leaf:

@@ -102,6 +102,10 @@ class Part:
             v for v in self.plan.plan.vectors if v.kind != "inner" and (v.symbol in self.sought or abs(v.value) > least)
         ]
 
+    def size(self, reaction: Reaction) -> float:
+        """Of a reaction in this position, N."""
+        return abs(complex(reaction.force[self.here.k]))
+
     def stem(self, name: str) -> str:
         """Of its drawing."""
         kind = "links" if len(self.links) > 1 else "link"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
@@ -50,7 +50,7 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
     yield from chain.from_iterable(map(_projections, later))
     for equation in part.loaded.equations:
         if equation.sought is not None and equation.sought.arm:
-            yield from _place(equation)
+            yield from _moments(equation)
     yield from _balance(part)
 
 
@@ -68,21 +68,13 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
 def _taken_apart(part: Part) -> Iterable[Block]:
     """What acts, what is unknown of the outer reactions, and a figure."""
     given = listed(dict.fromkeys(one.symbol for one in part.given))
-    if part.forces is None:
-        yield said(
-            _("The driving link is taken last. Known are: {given}. It is required to find:"),
-            given=given or _("nothing"),
-        )
-    elif given:
-        yield said(
-            _("The group {group} is separated from the mechanism. Known are: {given}. It is required to find:"),
-            group=part.forces.group.title, given=given,
-        )  # fmt: skip
-    else:
-        yield said(
-            _("The group {group} is separated from the mechanism. It is required to find:"),
-            group=part.forces.group.title,
-        )
+    group = "" if part.forces is None else part.forces.group.title
+    text = _("The driving link is taken last. Known are: {given}. It is required to find:")
+    if group:
+        text = _("The group {group} is separated from the mechanism. Known are: {given}. It is required to find:")
+    if group and not given:
+        text = _("The group {group} is separated from the mechanism. It is required to find:")
+    yield said(text, group=group, given=given or _("nothing"))
     leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
     drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
@@ -97,61 +89,58 @@ def _taken_apart(part: Part) -> Iterable[Block]:
 
 def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     """Of an outer reaction; lead: of the hinge or guide."""
-    pair, names = reaction.pair, (reaction.by, reaction.on)
-    whole = reaction_symbol(*names)
+    pair, line = reaction.pair, ""
     if not pair.lower:
-        return filled(
-            _("in pair {pair}: magnitude of the reaction {R} along the normal to the profiles"), pair=pair.name, R=whole
-        )
-    if pair.slide is not None:
-        return filled(
-            _("on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
-              "guide"),
-            guide=pair.name,
-            R=whole,
-        )  # fmt: skip
-    if lead is None or lead.axis is None:
-        return filled(_("at hinge {point}: magnitude and direction of the reaction {R}"), point=pair.point, R=whole)
-    parts = {"R": whole, "n": reaction_symbol(*names, "n"), "t": reaction_symbol(*names, "τ")}
-    if lead.rest is not None and lead.about is not None and len(lead.links) == 1:
-        return filled(
-            _("at hinge {point}: two components of the reaction {R}, {n} along the line {line} and {t} "
-              "perpendicular to it"),
-            point=pair.point, line=pair.point + lead.about, **parts,
-        )  # fmt: skip
-    return filled(
-        _("at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
-          "perpendicular to it"),
-        point=pair.point, link=reaction.on, **parts,
-    )  # fmt: skip
+        text = _("in pair {pair}: magnitude of the reaction {R} along the normal to the profiles")
+    elif pair.slide is not None:
+        text = _("on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
+                 "guide")  # fmt: skip
+    elif lead is None or lead.axis is None:
+        text = _("at hinge {point}: magnitude and direction of the reaction {R}")
+    elif lead.rest is not None and lead.about is not None and len(lead.links) == 1:
+        line = pair.point + lead.about
+        text = _("at hinge {point}: two components of the reaction {R}, {n} along the line {line} and {t} "
+                 "perpendicular to it")  # fmt: skip
+    else:
+        text = _("at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
+                 "perpendicular to it")  # fmt: skip
+    whole, n, t = (reaction_symbol(reaction.by, reaction.on, part) for part in ("", "n", "τ"))
+    places = {"guide": pair.name, "pair": pair.name, "point": pair.point, "link": reaction.on, "line": line}
+    return filled(text, **places, R=whole, n=n, t=t)
 
 
 def _drive(one: Acting) -> Line:
     """What balances a driver."""
-    if one.couple:
-        return filled(_("the balancing moment {symbol}"), symbol=one.symbol)
-    return filled(_("the balancing force {symbol}"), symbol=one.symbol)
+    text = _("the balancing moment {symbol}") if one.couple else _("the balancing force {symbol}")
+    return filled(text, symbol=one.symbol)
 
 
 def _moments(equation: MomentEquation) -> Iterable[Block]:
-    """A sum of moments, and what it gives."""
-    found = by_moments(equation)
-    if equation.sought is None:
+    """A sum of moments, and what it gives: a force, a couple, or where the reaction of a guide acts."""
+    found, sought = by_moments(equation), equation.sought
+    if sought is None:
         yield from () if found is None else (found,)
         return
-    point, links, symbol = equation.about, links_of(equation.links), equation.sought.symbol
-    if found is None:
+    if sought.arm and found is None:
+        text = _("No other force has a moment about the point {point} ({links}), so {symbol} goes through this point.")
+    elif sought.arm and equation.found is not None and equation.found.acting.couple:
+        text = _("The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
+                 "beside the reaction {symbol}:")  # fmt: skip
+    elif sought.arm:
+        text = _("The equation of moments about the point {point} ({links}) gives the distance from it to the line "
+                 "of action of the reaction {symbol}:")  # fmt: skip
+    elif found is None:
         text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
                  "moments about it ({links}) gives {symbol}:")  # fmt: skip
     else:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
-    yield said(text, point=point, links=links, symbol=symbol)
-    if found is None:
-        yield read(symbol, 0.0, _("N·m") if symbol.letter == "M" else _("N"))
-    else:
+    yield said(text, point=equation.about, links=links_of(equation.links), symbol=sought.symbol)
+    if found is not None:
         yield from (Equation(moments(equation)), found)
+    elif not sought.arm:
+        yield read(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
 
 
 def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
@@ -177,10 +166,8 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
         yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
     elif unknown:
-        yield said(
-            _("The lengths of its sides, multiplied by the scale factor {mu}, give what is still unknown:"),
-            mu=Symbol("μ", "F"),
-        )
+        text = _("The lengths of its sides, multiplied by the scale factor {mu}, give what is still unknown:")
+        yield said(text, mu=Symbol("μ", "F"))
     else:
         yield said(_("All its vectors are known already; its closing serves as a check."))
     least = NO_FORCE * part.plan.plan.size
@@ -200,7 +187,7 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
     if along in parts and across in parts:
         root = Function("sqrt", Leaf(along, parts[along]) ** 2 + Leaf(across, parts[across]) ** 2)
-        yield Found(reaction_symbol(*names), root, abs(complex(reaction.force[part.here.k])), _("N"))
+        yield Found(reaction_symbol(*names), root, part.size(reaction), _("N"))
 
 
 def _guide_between(part: Part) -> Iterable[Block]:
@@ -216,11 +203,16 @@ def _guide_between(part: Part) -> Iterable[Block]:
         pair=inner.pair.name, links=links_of([link]),
     )  # fmt: skip
     sought = {own: inner, reaction_symbol(outer.by, link): outer}
-    acting = part.here.acting([link], {})
-    symbols = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
-    yield Equation(vector_sum([*((s, 2) for s in symbols), *((s, 1) for s in sought)]))
+    yield _polygon(part, link, dict.fromkeys(sought, 1))
     for symbol, reaction in sought.items():
-        yield read(symbol, abs(complex(reaction.force[part.here.k])), _("N"))
+        yield read(symbol, part.size(reaction), _("N"))
+
+
+def _polygon(part: Part, link: str, sought: Mapping[Symbol, int]) -> Equation:
+    """The forces on one link, and what is sought of them, each with so many lines under it."""
+    acting = part.here.acting([link], {})
+    known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
+    return Equation(vector_sum([*((symbol, 2) for symbol in known), *sought.items()]))
 
 
 def _inner(part: Part) -> Iterable[Block]:
@@ -232,32 +224,11 @@ def _inner(part: Part) -> Iterable[Block]:
             _("The reaction in the inner pair {pair} closes the polygon of the forces on one of its links ({links}):"),
             pair=reaction.pair.name, links=links_of([reaction.on]),
         )  # fmt: skip
-        acting = part.here.acting([reaction.on], {})
-        own = reaction_symbol(reaction.by, reaction.on)
-        symbols = [one.symbol for one in acting if not one.couple and one.symbol != own]
-        yield Equation(vector_sum([*((s, 2) for s in symbols), (own, 0)]))
+        yield _polygon(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
         yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))
     for reaction in inner:
-        size = abs(complex(reaction.force[part.here.k]))
-        yield read(reaction_symbol(reaction.by, reaction.on), size, _("N"))
-
-
-def _place(equation: MomentEquation) -> Iterable[Block]:
-    """Where the reaction of a guide acts."""
-    assert equation.sought is not None
-    found, symbol = by_moments(equation), equation.sought.symbol
-    if found is None:
-        text = _("No other force has a moment about the point {point} ({links}), so {symbol} goes through this point.")
-    elif equation.found is not None and equation.found.acting.couple:
-        text = _("The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
-                 "beside the reaction {symbol}:")  # fmt: skip
-    else:
-        text = _("The equation of moments about the point {point} ({links}) gives the distance from it to the line "
-                 "of action of the reaction {symbol}:")  # fmt: skip
-    yield said(text, point=equation.about, links=links_of(equation.links), symbol=symbol)
-    if found is not None:
-        yield from (Equation(moments(equation)), found)
+        yield read(reaction_symbol(reaction.by, reaction.on), part.size(reaction), _("N"))
 
 
 def _balance(part: Part) -> Iterable[Block]:

@@ -29,4 +29,4 @@ def links_of(names: Sequence[str]) -> str:
 def at_position(subject: Subject, k: int) -> str:
     """Which position, and where the driver stands."""
     place = with_degrees(place_of_driver(subject.results, float(subject.motion.q[k]), 4))
-    return _("position {number}, {place}").format(number=subject.number(k), place=place)
+    return _("position {number}, {place}").format(number=subject.called(k), place=place)

@@ -73,7 +73,6 @@ class _Writer:
                 self._figure(block)
             case blocks.Contents():
                 self._contents()
-            case blocks.NewPage():
                 self.document.add_page_break()
             case blocks.Title():
                 title_page(self.document, block)

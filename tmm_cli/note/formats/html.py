@@ -80,8 +80,6 @@ class Writer:
                 return self.figure(block)
             case blocks.Contents():
                 return self.contents()
-            case blocks.NewPage():
-                return '<div class="page"></div>'
             case blocks.Title():
                 return title(block)
             case blocks.Sources(sources):
@@ -147,7 +145,7 @@ class Writer:
             f'<p class="level{heading.level}"><a href="#h{number}">{number} {data(heading.text)}</a></p>'
             for number, heading in self.note.headings()
         ]
-        return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>'
+        return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>\n<div class="page"></div>'
 
     def place(self, key: str) -> str:
         """The name of what is referred to."""

@@ -215,7 +215,7 @@ def place_here(here: Here) -> Block:
     if driver.kind == "turn":
         text = _("In position {number} the driving link is at the angle {phi} = {angle}° to the axis x.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
-        return said(text, number=here.subject.number(here.k), phi=Symbol("φ", driver.link), angle=angle)
+        return said(text, number=here.subject.called(here.k), phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the driving link is at {run} = {place} m.")
-    number = here.subject.number(here.k)
+    number = here.subject.called(here.k)
     return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))
