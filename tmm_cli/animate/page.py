@@ -39,21 +39,17 @@ def _page(results: Results, count: int) -> str:
     assert whole.motion is not None
     picture = picture_of(whole, whole.motion)
     names = list(picture.bodies)
-    style, script = _part("page.css"), _part("page.js")
     bodies = "\n".join(
         f'<g data-body="{names.index(name)}">{"".join(element(mark, 0.0) for mark in marks)}</g>'
         for name, marks in picture.layers()
     )
-    return Template(_part("page.html")).substitute(
-        lang=language(),
-        policy=f"default-src 'none';style-src '{digest(style)}';script-src '{digest(script)}'",
+    return filled(
+        "",
         title=escape(results.problem.title),
-        style=style,
         view=" ".join(f"{side:.1f}" for side in view(picture)),
         paths="".join(_path(way) for way in paths(picture)),
         bodies=bodies,
         data=data_text(content(results, whole, picture)),
-        script=script,
         hint=escape(_("Space: play or stop. Left and right: step. Up and down: speed. Drag in a diagram to go there.")),
         back="" if results.turns else escape(_("The way back is played backwards: all is shown as on the way there.")),
         play=escape(_("play or stop")),
@@ -61,6 +57,14 @@ def _page(results: Results, count: int) -> str:
         speed=escape(_("speed")),
         ways=escape(_("trajectories")),
     )
+
+
+def filled(folder: str, **texts: str) -> str:
+    """The page in a folder here, with its style and its script, which alone its policy allows, and with these texts."""
+    own = files("tmm_cli.animate")
+    whole, style, script = (own.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js"))
+    policy = f"default-src 'none';style-src '{_digest(style)}';script-src '{_digest(script)}'"
+    return Template(whole).substitute(texts, lang=language(), policy=policy, style=style, script=script)
 
 
 def data_text(data: Any) -> str:
@@ -72,10 +76,6 @@ def _path(way: Iterable[Iterable[float]]) -> str:
     return f'<polyline points="{" ".join(",".join(f"{x:g}" for x in place) for place in way)}"/>'
 
 
-def _part(name: str) -> str:
-    return files("tmm_cli.animate").joinpath(name).read_text(encoding="utf-8")
-
-
-def digest(text: str) -> str:
+def _digest(text: str) -> str:
     """How a policy names a text that it allows."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

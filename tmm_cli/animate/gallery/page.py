@@ -8,22 +8,19 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
-from importlib.resources import files
-from string import Template
 from typing import Any
 
 from tmm_cli.animate.gallery.card import Card
 from tmm_cli.animate.gallery.purposes import PURPOSES
 from tmm_cli.animate.gallery.turning import PLACE, TURN
-from tmm_cli.animate.page import data_text, digest
+from tmm_cli.animate.page import data_text, filled
 from tmm_cli.draw.formats.svg import NOT_XML
-from tmm_cli.language import LANGUAGES, _, language, translated
+from tmm_cli.language import LANGUAGES, _, translated
 from tmm_cli.structure.assur import ROMAN
 
 
 def page(cards: Sequence[Card]) -> str:
     """The page of so many mechanisms, in their order."""
-    style, script = _part("page.css"), _part("page.js")
     groups = Counter(group for card in cards for group in card.groups)
     numbers = Counter(card.number for card in cards if card.number)
     purposes = Counter(purpose for card in cards for purpose in card.purposes)
@@ -37,12 +34,9 @@ def page(cards: Sequence[Card]) -> str:
         "hint": _("Press a picture to stop it or let it turn, a tag to find others like it; / goes to the search. "
                   "Numbers of properties are compared in the units of each card."),
     }  # fmt: skip
-    return Template(_part("page.html")).substitute(
-        {name: _text(word) for name, word in words.items()},
-        lang=language(),
-        policy=f"default-src 'none';style-src '{digest(style)}';script-src '{digest(script)}'",
-        style=style,
-        script=script,
+    return filled(
+        "gallery/",
+        **{name: _text(word) for name, word in words.items()},
         numbers=_options({number: number for number in sorted(numbers, key=ROMAN.index)}, numbers),
         groups=_options({group: group for group in sorted(groups)}, groups),
         purposes=_options({key: translated(words) for key, words in PURPOSES.items() if purposes[key]}, purposes),
@@ -101,17 +95,11 @@ def _tag(field: str, value: str, words: str) -> str:
 
 
 def _options(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
-    return "".join(_option(value, f"{told} ({counts[value]})") for value, told in words.items())
-
-
-def _option(value: str, told: str) -> str:
-    return f'<option value="{_text(value)}">{_text(told)}</option>'
+    return "".join(
+        f'<option value="{_text(value)}">{_text(told)} ({counts[value]})</option>' for value, told in words.items()
+    )
 
 
 def _text(text: str) -> str:
     """As data of the page: no markup, and no signs that a page may not have."""
     return escape(text.translate(NOT_XML).encode(errors="replace").decode())
-
-
-def _part(name: str) -> str:
-    return files("tmm_cli.animate.gallery").joinpath(name).read_text(encoding="utf-8")

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.analysis.balancing import Balancing
+import numpy as np
+
+from tmm_cli.analysis.balancing import Balancing, steadily
 from tmm_cli.language import _
-from tmm_cli.note.balancing import counterweights, shaft, shaking
-from tmm_cli.note.blocks import Block, Heading
+from tmm_cli.note.balancing import counterweights, shaft
+from tmm_cli.note.blocks import Block, Heading, Inline, said
 from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
 from tmm_cli.note.tables import rows_of
+from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports import walk
+from tmm_cli.tolerances import NO_VECTOR
+
+FORCE, MOMENT = Symbol("F"), Symbol("M")
+X, Y = Symbol("F", "x"), Symbol("F", "y")
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
@@ -27,9 +35,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
 
 def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
     yield Heading(_("Shaking force and moment"), 2)
-    yield from shaking.explained(found)
+    yield from _explained(found)
     for k in subject.detail:
-        yield from shaking.position(subject, found, k)
+        yield from _position(subject, found, k)
     if found.cycle.counterweights:
         yield Heading(_("Counterweights"), 2)
         yield from counterweights.blocks(subject, found.cycle, found.task)
@@ -38,3 +46,49 @@ def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
         text = _("The hodographs of the shaking force before and after balancing are shown in figure {figure}.")
     yield from subject.figures("shaking", text, _("Hodograph of the shaking force"))
     yield from (rows_of(subject, table) for table in walk(subject.results, ("shaking",)))
+
+
+def _explained(found: Balancing) -> Iterable[Block]:
+    """What is summed up."""
+    pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
+    yield said(
+        _("At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
+          "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its centre of "
+          "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
+          "{epsilon} the angular acceleration."),
+        F=FORCE, M=MOMENT, pivot=pivot, m=Symbol("m"), a=Symbol("a", "S"), x=Symbol("x", "S"), y=Symbol("y", "S"),
+        J=Symbol("J", "S"), epsilon=Symbol("ε"),
+    )  # fmt: skip
+
+
+def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
+    """Parts of the force, its size, and the moment."""
+    results = subject.results
+    motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
+    about, moments = found.before.about, list[Expression]()
+    terms: tuple[list[Expression], list[Expression]] = ([], [])
+    largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, mass = motion.centre(name), float(np.ravel(link.mass)[0])
+        a, r = complex(centre.a[0]), complex(centre.x[0]) - about
+        if mass and abs(a) > NO_VECTOR * largest:
+            m = Leaf(Symbol("m", name), mass)
+            parts = [Leaf(Symbol("a", f"S{name}{axis}"), value) for axis, value in (("x", a.real), ("y", a.imag))]
+            arms = [Leaf(Symbol(axis, f"S{name}"), value) for axis, value in (("x", r.real), ("y", r.imag))]
+            for own, part in zip(terms, parts, strict=True):
+                own.append(m * part)
+            turned = arms[0] * parts[1] - arms[1] * parts[0]
+            moments.append(m * turned)
+        inertia, epsilon = float(np.ravel(link.inertia)[0]), float(np.broadcast_to(motion.link(name).epsilon, 1)[0])
+        if inertia and epsilon:
+            moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
+    if not moments:
+        return
+    yield said(_("Position {number}:"), number=subject.called(k))
+    force = complex(found.before.force[k])
+    x, y = Leaf(X, force.real), Leaf(Y, force.imag)
+    for part, own in zip((x, y), terms, strict=True):
+        yield Found(part.symbol, -added(own), part.value, _("N"))
+    yield Found(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
+    yield Found(MOMENT, -added(moments), float(found.before.moment[k]), _("N·m"))

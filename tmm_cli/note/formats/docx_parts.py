@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from docx.enum.style import WD_STYLE_TYPE
 from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_TAB_ALIGNMENT, WD_TAB_LEADER
 from docx.opc.constants import RELATIONSHIP_TYPE
 from docx.opc.packuri import PackURI
 from docx.opc.part import Part
 from docx.oxml import OxmlElement, parse_xml
 from docx.oxml.ns import nsdecls, qn
-from docx.shared import Mm, Pt, RGBColor
+from docx.shared import Length, Mm, Pt, RGBColor
 
 from tmm_cli.draw.formats.emf import emf
 from tmm_cli.draw.paper.drawing import Drawing
@@ -50,25 +51,18 @@ def _styles(document: Any, language: str) -> None:
     styles = document.styles
     normal = _font(styles["Normal"], 12)
     normal.paragraph_format.space_after = Pt(4)
-    defaults = styles.element.find(qn("w:docDefaults")).find(qn("w:rPrDefault")).find(qn("w:rPr"))
-    spoken = defaults.find(qn("w:lang"))
-    spoken = OxmlElement("w:lang") if spoken is None else spoken
+    (spoken,) = styles.element.xpath("w:docDefaults//w:lang")
     for kind in ("val", "eastAsia"):
         spoken.set(qn(f"w:{kind}"), language)
-    if spoken.getparent() is None:
-        defaults.append(spoken)
     for name, size, before, after in (("Heading 1", 16, 18, 8), ("Heading 2", 13, 12, 6), ("Heading 3", 12, 8, 4)):
         heading = _font(styles[name], size, bold=True)
         heading.paragraph_format.space_before, heading.paragraph_format.space_after = Pt(before), Pt(after)
-    caption = _font(styles["Caption"], 11)
-    caption.paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
+    _font(styles["Caption"], 11).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
     _font(styles["Title"], 22, bold=True).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
-    for border in list(styles["Title"].element.iter(qn("w:pBdr"))):
+    for border in styles["Title"].element.xpath(".//w:pBdr"):
         border.getparent().remove(border)
-    for name, base in (("Formula", "Normal"), ("Picture", "Normal"), ("Table Text", "Normal"),
-                       ("Contents Heading", "Normal"), ("TOC 1", "Normal"), ("TOC 2", "Normal")):  # fmt: skip
-        own = styles.add_style(name, 1)
-        own.base_style = styles[base]
+    for name in ("Formula", "Picture", "Table Text", "Contents Heading", "TOC 1", "TOC 2"):
+        styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH).base_style = normal
     formula = styles["Formula"].paragraph_format
     formula.left_indent = Mm(10)
     formula.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT)  # for numbers that a student gives them
@@ -129,19 +123,15 @@ def field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None
 
 def _open(paragraph: Any, code: str, *, dirty: bool) -> None:
     _mark(paragraph, "begin", dirty=dirty)
-    text = OxmlElement("w:instrText")
-    text.set(qn("xml:space"), "preserve")
+    text = OxmlElement("w:instrText", {qn("xml:space"): "preserve"})
     text.text = f" {code} "
     paragraph.add_run()._r.append(text)
     _mark(paragraph, "separate")
 
 
 def _mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
-    mark = OxmlElement("w:fldChar")
-    mark.set(qn("w:fldCharType"), kind)
-    if dirty:
-        mark.set(qn("w:dirty"), "true")
-    paragraph.add_run()._r.append(mark)
+    told = {"w:fldCharType": kind} | ({"w:dirty": "true"} if dirty else {})
+    paragraph.add_run()._r.append(OxmlElement("w:fldChar", {qn(name): value for name, value in told.items()}))
 
 
 class Parts:
@@ -155,12 +145,9 @@ class Parts:
     def marked(self, paragraph: Any, name: str, first: int) -> None:
         """A bookmark about all of a paragraph from its child number `first` on."""
         self.marks += 1
-        start, end = OxmlElement("w:bookmarkStart"), OxmlElement("w:bookmarkEnd")
-        for mark in (start, end):
-            mark.set(qn("w:id"), str(self.marks))
-        start.set(qn("w:name"), name)
-        paragraph._p.insert(first, start)
-        paragraph._p.append(end)
+        own = {qn("w:id"): str(self.marks)}
+        paragraph._p.insert(first, OxmlElement("w:bookmarkStart", own | {qn("w:name"): name}))
+        paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
 
     def picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
         """A drawing at a share of its size; told: what it is, for those who can't see it."""
@@ -204,18 +191,17 @@ def unbroken(row: Any, *, head: bool) -> None:
 
 def title_page(document: Any, block: Title) -> None:
     """From top to bottom of the page."""
-    centre = WD_ALIGN_PARAGRAPH.CENTER
-    first = document.add_paragraph(plain(block.institution))
-    first.alignment = centre
-    heading = document.add_paragraph(plain(block.heading))
-    heading.alignment = centre
-    heading.paragraph_format.space_before = Pt(170)
-    heading.runs[0].font.size = Pt(15)
+
+    def centred(text: str, before: Length | None = None) -> Any:
+        paragraph = document.add_paragraph(plain(text))
+        paragraph.alignment, paragraph.paragraph_format.space_before = WD_ALIGN_PARAGRAPH.CENTER, before
+        return paragraph
+
+    centred(block.institution)
+    centred(block.heading, Pt(170)).runs[0].font.size = Pt(15)
     document.add_paragraph(plain(block.title), style="Title")
     for k, (role, name) in enumerate(block.people):
         line = document.add_paragraph(f"{plain(role)}: {plain(name) or '_' * 30}")
         line.paragraph_format.left_indent = Mm(80)
         line.paragraph_format.space_before = Pt(110 if k == 0 else 4)
-    foot = document.add_paragraph(plain(block.foot))
-    foot.alignment = centre
-    foot.paragraph_format.space_before = Pt(150)
+    centred(block.foot, Pt(150))

@@ -17,8 +17,8 @@ from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula
 from tmm_cli.note.context import figures
 from tmm_cli.note.expression import Found
+from tmm_cli.note.formats.mathml import mathml
 from tmm_cli.note.math import Letter
-from tmm_cli.note.mathml import mathml
 from tmm_cli.plans.record import Symbol
 
 STOPS = ".,;:)"

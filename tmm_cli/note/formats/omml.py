@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from html import escape
 
+from docx.oxml.ns import nsdecls
+
 from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
 from tmm_cli.plans.record import Symbol
 
-SPACES = (
-    'xmlns:w="http://schemas.openxmlformats.org/wordprocessingml/2006/main" '
-    'xmlns:m="http://schemas.openxmlformats.org/officeDocument/2006/math" '
-    'xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"'
-)
+SPACES = nsdecls("w", "m", "r")
 FONT = '<w:rPr><w:rFonts w:ascii="Cambria Math" w:hAnsi="Cambria Math"/></w:rPr>'
-PLAIN, UPRIGHT, ITALIC = (
-    '<m:rPr><m:sty m:val="p"/></m:rPr>',
-    "<m:rPr><m:nor/></m:rPr>",
-    "",
-)  # of figures, words, letters
+PLAIN, UPRIGHT, ITALIC = '<m:rPr><m:sty m:val="p"/></m:rPr>', "<m:rPr><m:nor/></m:rPr>", ""  # figures, words, letters
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE000), 65534, 65535), "�")
 
 
