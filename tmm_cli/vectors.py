@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_cli.double_double import EPS, PI, DoubleDouble
-from tmm_cli.tolerances import CONSTRUCTION_ROUNDINGS
+from tmm_cli.tolerances import CONSTRUCTION_ROUNDINGS, NO_VECTOR
 
 Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
 Vector = NDArray[Any]  # complex arrays, likewise
@@ -22,6 +22,16 @@ def pi(values: Any) -> Any:
     if isinstance(values, DoubleDouble):
         return DoubleDouble.decimal(PI)
     return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
+
+
+def largest(values: Any) -> float:
+    """The size of the largest of them; zero where there is none."""
+    return float(np.nanmax(np.abs(values), initial=0.0))
+
+
+def without_rounding(values: Any, beside: float) -> Real:
+    """With zeros for what only rounding leaves beside a value so large."""
+    return np.where(np.abs(values) <= NO_VECTOR * beside, 0.0, values)
 
 
 def roundoff(values: Any) -> float:

@@ -112,6 +112,11 @@ class Results:
         return () if self.of else self.mechanism.further
 
     @property
+    def swinging(self) -> tuple[Strokes, ...]:
+        """Strokes of outputs that go there and back."""
+        return tuple(one for one in (self.strokes, *self.further) if one is not None and one.strokes)
+
+    @property
     def travels(self) -> tuple[Travel, ...]:
         return () if self.of else self.mechanism.travels
 

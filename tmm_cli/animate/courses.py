@@ -14,8 +14,7 @@ from tmm_cli.draw.sheets.over_cycle import Quantities, balances, output
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, spelt
 from tmm_cli.plans.record import in_letters
-from tmm_cli.tolerances import NO_VECTOR
-from tmm_cli.vectors import Real, Vector
+from tmm_cli.vectors import Real, Vector, largest, without_rounding
 
 PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
 USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
@@ -90,19 +89,15 @@ def charts(results: Results, whole: Results) -> Iterable[Quantities]:
 
 def chart_data(results: Results, quantities: Quantities) -> dict[str, Any]:
     """A diagram in the units of the file."""
-    units = results.problem.units
+
+    def values(si: Real) -> list[float | None]:
+        clean = without_rounding(si, largest(si))
+        return rounded(results.problem.units.from_si(clean, quantities.dimension), 5)
+
     return {
-        "title": with_unit(quantities.words, quantities.dimension, units),
-        "courses": [
-            {"name": course.name, "values": rounded(units.from_si(_clean(course.values), quantities.dimension), 5)}
-            for course in quantities.courses
-        ],
+        "title": with_unit(quantities.words, quantities.dimension, results.problem.units),
+        "courses": [{"name": course.name, "values": values(course.values)} for course in quantities.courses],
     }
-
-
-def _clean(values: Real) -> Real:
-    """Without what is rounding of zero, as at the end of a stroke."""
-    return np.where(np.abs(values) <= NO_VECTOR * np.nanmax(np.abs(values), initial=0.0), 0.0, values)
 
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:

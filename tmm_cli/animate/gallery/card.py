@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.animate.gallery.chains import scheme
-from tmm_cli.animate.gallery.purposes import all_strokes, purposes
+from tmm_cli.animate.gallery.purposes import purposes
 from tmm_cli.animate.gallery.turning import Turning, turning
 from tmm_cli.kinematics.output import Travel
 from tmm_cli.kinematics.strokes import Strokes
@@ -113,7 +113,7 @@ def _facts(results: Results) -> Iterator[Value]:
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
     if structure.redundant:
         yield _("passive constraints"), float(structure.redundant), NUMBER
-    for one in all_strokes(results):
+    for one in results.swinging:
         yield _stroke(linkage, one), one.travel, place_dimension(one.kind)
         yield _("coefficient of change of mean speed k"), one.k, NUMBER
     for travel in results.travels:

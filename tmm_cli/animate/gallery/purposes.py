@@ -9,7 +9,6 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.kinematics.output import output_run
-from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import N_
 
 QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
@@ -36,14 +35,9 @@ def purposes(results: Results) -> tuple[str, ...]:
     return tuple(key for key in PURPOSES if key in found)
 
 
-def all_strokes(results: Results) -> list[Strokes]:
-    """Of outputs that go there and back."""
-    return [one for one in (results.strokes, *results.further) if one is not None and one.strokes]
-
-
 def _purposes(results: Results) -> Iterable[str]:
     outputs, linkage = results.mechanism.outputs, results.linkage
-    back = all_strokes(results)
+    back = results.swinging
     for link in outputs:
         if linkage.output_point(link) is not None:
             yield "point"

@@ -9,14 +9,13 @@ import numpy as np
 from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Line, Ref, Rows, said, several
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import NOTHING
 from tmm_cli.note.forces.words import angle
 from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE, over_positions
 from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.results.reports.cycle import has_flywheel
 from tmm_cli.tolerances import NO_DIFFERENCE
-from tmm_cli.vectors import Real, Vector
+from tmm_cli.vectors import Real, Vector, largest, without_rounding
 
 PAIRS = 4  # reactions in one table
 
@@ -110,12 +109,6 @@ def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
 
 def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
     """Values of all positions; a dash where it cannot move."""
-    values = [_without_rounding(column, k) for k in range(len(subject.results.numbers))]
+    values = without_rounding(column, largest(column))
     there = np.isfinite(values) & subject.motion.moving
-    return [write(subject, value) if known else NONE for value, known in zip(values, there, strict=True)]
-
-
-def _without_rounding(column: Real, k: int) -> float:
-    """A value of a column; zero where it is nothing but rounding beside the largest of them."""
-    value = float(column[k])
-    return 0.0 if abs(value) <= NOTHING * float(np.nanmax(np.abs(column), initial=0.0)) else value
+    return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]

@@ -6,23 +6,10 @@ from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, said
+from tmm_cli.note.kinematics import words
 from tmm_cli.note.kinematics.equations import equations, of_known_link
 from tmm_cli.note.kinematics.on_paper import Here, Vector
 from tmm_cli.note.kinematics.ratios import begun
-from tmm_cli.note.kinematics.words import (
-    direct,
-    equal,
-    further,
-    introduced,
-    not_on_paper,
-    points_of,
-    remaining,
-    scale,
-    solved,
-    sought,
-    turning,
-    turning_as_one,
-)
 from tmm_cli.plans.vector_equations import About, Along, OnGuide, Step, VectorEquation
 
 
@@ -32,16 +19,16 @@ def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
     for step in driving:
         yield from _driving(here, step)
-        known |= points_of(step)
+        known |= words.points_of(step)
     for step in groups:
         yield from _before(here, step, known)
         if step == groups[0]:
             yield from _scale(here, [*driving, step])
         yield from _solved(here, step, known)
-        known |= points_of(step)
+        known |= words.points_of(step)
     if not groups:
         yield from _scale(here, steps)
-    yield from remaining(here, here.a, known)
+    yield from words.remaining(here, here.a, known)
 
 
 def _driving(here: Here, step: Step) -> Iterable[Block]:
@@ -55,7 +42,7 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
         else:
             text = _("The driving link {link} moves uniformly, so that {a} = 0.")
             yield said(text, link=step.links[0], a=a.symbol)
-    turned = further(step)
+    turned = words.further(step)
     if turned and here.first:
         even = _(
             "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
@@ -89,7 +76,7 @@ def _whole(here: Here, about: About) -> Iterable[Block]:
     """The acceleration of a point both of whose parts are known."""
     a = here.a.of(about.point)
     if about.base.fixed and not _part(here, about, "τ").segment:
-        yield equal(a.symbol, _part(here, about, "n").symbol)
+        yield words.equal(a.symbol, _part(here, about, "n").symbol)
     else:
         yield here.a.read(a)
 
@@ -101,7 +88,7 @@ def _coriolis(here: Here, along: Along) -> Block:
 
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
-    return scale(
+    return words.scale(
         here.a, [vector for step in steps for vector in _known(here, step)],
         _("The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
           "factor of the plan is"),
@@ -125,16 +112,16 @@ def _known(here: Here, step: Step) -> Iterable[Vector]:
 
 def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """What is known from velocities and from higher pairs, and the equations."""
-    points, together = sought(step, known), solved(step)
+    points, together = words.sought(step, known), words.solved(step)
     yield from begun(here, step, "ε")
     if here.first and together:
         one = _("Group {group}: the acceleration of point {points} is found from")
         several = _("Group {group}: the accelerations of points {points} are found from")
-        yield introduced(step, points, one, several)
-        yield from equations(here, step, together, "a", {*known, *(about.point.name for about in direct(step))})
+        yield words.introduced(step, points, one, several)
+        yield from equations(here, step, together, "a", {*known, *(about.point.name for about in words.direct(step))})
         if any(_has_known_part(here, equation) for equation in together):
             yield said(_("The velocities give:"))
-    for about in direct(step):
+    for about in words.direct(step):
         yield from _parts(here, about)
     for equation in together:
         if _has_known_part(here, equation):
@@ -151,24 +138,24 @@ def _has_known_part(here: Here, equation: VectorEquation) -> bool:
 
 def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """What the plan gives."""
-    points, together = sought(step, known), solved(step)
-    for about in direct(step):
+    points, together = words.sought(step, known), words.solved(step)
+    for about in words.direct(step):
         yield from _whole(here, about)
     if here.first and together:
-        yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
+        yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for equation in together:
         if not isinstance(equation, OnGuide) and not equation.known:
             yield here.a.read(_part(here, equation, "τ" if isinstance(equation, About) else "r"))
     for spot in points:
         yield here.a.read(here.a.of(spot))
-    yield from turning(
+    yield from words.turning(
         here, together, "ε", lambda about: _part(here, about, "τ"),
         _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}."),
         _("Angular acceleration {epsilon} is {sense}."),
     )  # fmt: skip
-    yield from turning_as_one(here, step, "ε")
-    found = {*known, *points_of(step)}
-    for about in further(step):
+    yield from words.turning_as_one(here, step, "ε")
+    found = {*known, *words.points_of(step)}
+    for about in words.further(step):
         yield from of_known_link(here, about, "a", found - {about.point.name})
         yield from _parts(here, about)
         yield from _whole(here, about)

@@ -41,28 +41,27 @@ def drivers(subject: Subject) -> Iterable[Block]:
 def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
+    text = _("Driving link {link} turns about point {point} {sense} with the angular velocity")
     if driver.law is not None:
         text = _(
             "Driving link {link} turns about point {point} {sense}; its angular velocity is given by a table ({how})."
         )
-        how = between_rows(driver.law)
-        yield said(text, link=driver.link, point=driver.joint, sense=sense(driver.sense), how=how)
-        return
-    fields = {"link": driver.link, "point": driver.joint, "base": driver.base, "sense": sense(driver.sense)}
-    rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
-    if driver.base != FRAME:
+    elif driver.base != FRAME:
         text = _(
             "Driving link {link} turns about point {point} of link {base}, {sense}, with the relative angular velocity"
         )
-        yield said(text, **fields)
     elif rpm:
         text = _("Driving link {link} turns about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
-        yield said(text, **fields, n=Symbol("n", own), speed=subject.text(n, 6))
-    else:
-        yield said(_("Driving link {link} turns about point {point} {sense} with the angular velocity"), **fields)
+    how = "" if driver.law is None else between_rows(driver.law)
+    yield said(
+        text, link=driver.link, point=driver.joint, base=driver.base, sense=sense(driver.sense), how=how,
+        n=Symbol("n", own), speed=subject.text(n, 6),
+    )  # fmt: skip
+    if driver.law is not None:
+        return
     if rpm:
-        product = Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n)
-        yield Found(omega, product / 30, driver.rate, unit("ω"))
+        yield Found(omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n) / 30, driver.rate, unit("ω"))
     else:
         yield _given(subject, omega, driver.rate, unit("ω"))
     if driver.acceleration:
@@ -71,15 +70,14 @@ def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
 
 
 def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
-    point = subject.results.linkage.slide(driver.joint).point
-    own = point if driver.base == FRAME else f"{point}{point}{subject.results.linkage.slide(driver.joint).carrier}"
-    if driver.base == FRAME:
-        yield said(_("Driving link {link} slides along its guide on the frame with the velocity"), link=driver.link)
-    else:
+    slide = subject.results.linkage.slide(driver.joint)
+    own = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
+    text = _("Driving link {link} slides along its guide on the frame with the velocity")
+    if driver.base != FRAME:
         text = _(
             "Driving link {link} is moved along link {base} (a cylinder with its piston) with the relative velocity"
         )
-        yield said(text, link=driver.link, base=driver.base)
+    yield said(text, link=driver.link, base=driver.base)
     yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate, unit("v"))
     if driver.acceleration:
         yield said(_("in position 0 and with the acceleration"))
@@ -128,18 +126,15 @@ def positions(subject: Subject) -> Iterable[Block]:
     results = subject.results
     request, count = results.inputs.request, len(results.asked)
     full = results.driver_range is not None and results.driver_range.full and results.linkage.driver.kind == "turn"
+    text = _("The way of the driving link is studied in {count} positions.")
+    if request.places:
+        text = _("The mechanism is studied in {count} given positions of the driving link.")
+    elif full and request.start == "working stroke":
+        text = _("The cycle is divided into {count} equal parts; position 0 is the beginning of the working stroke.")
+    elif full:
+        text = _("The cycle is divided into {count} equal parts.")
     if count > 1:
-        if request.places:
-            yield said(_("The mechanism is studied in {count} given positions of the driving link."), count=str(count))
-        elif full and request.start == "working stroke":
-            text = _(
-                "The cycle is divided into {count} equal parts; position 0 is the beginning of the working stroke."
-            )
-            yield said(text, count=str(count))
-        elif full:
-            yield said(_("The cycle is divided into {count} equal parts."), count=str(count))
-        else:
-            yield said(_("The way of the driving link is studied in {count} positions."), count=str(count))
+        yield said(text, count=str(count))
     for drawing in subject.drawings("positions").values():
         if isinstance(drawing, Picture) and drawing.mu is not None:
             text = _("The scale factor of the plan of positions is {mu} = {value} m/mm.")
@@ -147,20 +142,13 @@ def positions(subject: Subject) -> Iterable[Block]:
     yield from subject.figures(
         "positions", _("The plan of positions is shown in figure {figure}."), _("Plan of positions of the mechanism")
     )
-    for link, strokes in _strokes(subject):
-        yield from _extremes(subject, link, strokes)
+    for strokes in results.swinging:
+        yield from _extremes(subject, strokes)
     for travel in results.travels:
         yield from _travel(subject, travel)
 
 
-def _strokes(subject: Subject) -> Iterable[tuple[str, Strokes]]:
-    results = subject.results
-    for strokes in (results.strokes, *results.further):
-        if strokes is not None and strokes.strokes:
-            yield strokes.link, strokes
-
-
-def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
+def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     """Where the output turns back, how far it goes, and how long each way takes."""
     places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
@@ -172,7 +160,7 @@ def _extremes(subject: Subject, link: str, strokes: Strokes) -> Iterable[Block]:
         text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
                  "link; its stroke between them is {size}.")  # fmt: skip
     yield said(
-        text, output=output(subject, link), phi=Symbol("φ"), places=places, size=row(*shown),
+        text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown),
     )  # fmt: skip
     if not np.isfinite(strokes.k):
         return
@@ -211,11 +199,10 @@ def output(subject: Subject, link: str) -> str:
 
 def place_here(here: Here) -> Block:
     """Where the driving link is in a position."""
-    driver, q = here.motion.linkage.driver, float(here.motion.q[here.k])
+    driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.called(here.k)
     if driver.kind == "turn":
         text = _("In position {number} the driving link is at the angle {phi} = {angle}° to the axis x.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
-        return said(text, number=here.subject.called(here.k), phi=Symbol("φ", driver.link), angle=angle)
+        return said(text, number=number, phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the driving link is at {run} = {place} m.")
-    number = here.subject.called(here.k)
     return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))

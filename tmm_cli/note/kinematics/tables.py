@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,17 +15,12 @@ from tmm_cli.note.tables import over_positions
 from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.cycle import output_motion, states
 from tmm_cli.tolerances import NO_VECTOR
-from tmm_cli.vectors import Real
+from tmm_cli.vectors import Real, largest, without_rounding
 
 BESIDE = 6  # columns of what links turn with in one table
 
 
-@dataclass(frozen=True)
-class Column:
-    """A quantity in all positions, in the unit of its head."""
-
-    head: Line
-    values: Real
+Column = tuple[Line, Real]  # head, values of a quantity in all positions in the unit of its head
 
 
 def tables(subject: Subject) -> Iterable[Block]:
@@ -37,9 +31,8 @@ def tables(subject: Subject) -> Iterable[Block]:
         units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
         columns = []
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
-            largest = float(np.nanmax(np.abs(values), initial=0.0))
-            own = np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, np.degrees(values) if per == "°" else values)
-            columns.append(Column((Symbol(letter, link), f", {per}"), own))
+            own = without_rounding(values, largest(values))
+            columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
         key = f"output-{link}"
         yield said(_("The motion of the output in all positions is given in table {table}."), table=Ref(key))
         yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
@@ -74,32 +67,27 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
     """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
     motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
-    largest = max((float(np.nanmax(np.abs(values), initial=0.0)) for values in every.values()), default=0.0)
+    most = max(map(largest, every.values()), default=0.0)
     together: list[tuple[list[str], Real]] = []
     for link, values in every.items():
-        if not np.nanmax(np.abs(values), initial=0.0) > NO_VECTOR * largest:
+        if not largest(values) > NO_VECTOR * most:
             continue
-        own = next((links for links, one in together if _differs(values - one) <= NO_VECTOR * largest), None)
+        own = next((links for links, one in together if largest(values - one) <= NO_VECTOR * most), None)
         if own is None:
-            together.append(([link], np.where(np.abs(values) <= NO_VECTOR * largest, 0.0, values)))
+            together.append(([link], without_rounding(values, most)))
         else:
             own.append(link)
-    varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * largest]
-    return [Column(_head(letter, links), values) for links, values in varied]
-
-
-def _differs(values: Real) -> float:
-    return float(np.nanmax(np.abs(values), initial=0.0))
-
-
-def _head(letter: str, links: Sequence[str]) -> Line:
-    return (*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}")
+    varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * most]
+    return [
+        ((*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}"), values)
+        for links, values in varied
+    ]
 
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
     every, told = (*_places(subject), *columns), states(subject.results)
-    texts = [(column.head, [_cell(subject, float(value)) for value in column.values]) for column in every]
+    texts = [(head, [_cell(subject, float(value)) for value in values]) for head, values in every]
     return over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
 
 
@@ -111,10 +99,10 @@ def _places(subject: Subject) -> Iterable[Column]:
         value = np.asarray(subject.motion.drives[driver.link].value, float)
         link = driver.link if several else ""
         if driver.kind == "slide":
-            yield Column((Symbol("s", link or driver.link), f", {_('m')}"), value)
+            yield ((Symbol("s", link or driver.link), f", {_('m')}"), value)
             continue
         full = results.driver_range is not None and results.driver_range.full
-        yield Column((Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
+        yield ((Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
 
 
 def _cell(subject: Subject, value: float) -> str:

@@ -6,24 +6,10 @@ from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, listed, said
+from tmm_cli.note.kinematics import words
 from tmm_cli.note.kinematics.equations import equations, of_known_link
 from tmm_cli.note.kinematics.on_paper import Here, Vector
 from tmm_cli.note.kinematics.ratios import begun
-from tmm_cli.note.kinematics.words import (
-    direct,
-    further,
-    introduced,
-    name_of,
-    not_on_paper,
-    not_turning,
-    points_of,
-    remaining,
-    scale,
-    solved,
-    sought,
-    turning,
-    turning_as_one,
-)
 from tmm_cli.plans.vector_equations import About, OnGuide, Step
 
 
@@ -33,8 +19,8 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     for step in steps:
         if step.group is None:
             yield from _driving(here, step)
-            known |= points_of(step)
-    yield from scale(
+            known |= words.points_of(step)
+    yield from words.scale(
         here.v, [vector for step in steps for vector in _known(here, step)],
         _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
           "of the plan is"),
@@ -43,22 +29,21 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     for step in steps:
         if step.group is not None:
             yield from _group(here, step, known)
-            known |= points_of(step)
-    yield from remaining(here, here.v, known)
+            known |= words.points_of(step)
+    yield from words.remaining(here, here.v, known)
 
 
 def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
-    turned = further(step)
+    turned = words.further(step)
     if here.first and turned:
         one = _("The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
                 "rotation:")  # fmt: skip
         several = _("The velocities of points {points} of the driving link are perpendicular to their radii, in the "
                     "sense of its rotation:")  # fmt: skip
         line = turned[0].base.at + turned[0].point.at
-        yield said(
-            one if len(turned) == 1 else several, points=listed(name_of(about.point) for about in turned), line=line
-        )
+        points = listed(words.name_of(about.point) for about in turned)
+        yield said(one if len(turned) == 1 else several, points=points, line=line)
     elif here.first and step.equations:
         text = _("Link {link} does not turn: all its points move with the given velocity {v}.")
         yield said(text, link=step.links[0], v=here.v.of(step.equations[0].point).symbol)
@@ -83,29 +68,29 @@ def _known(here: Here, step: Step) -> Iterable[Vector]:
 
 def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     """Ratios, equations, what they give, further points."""
-    points, together, found = sought(step, known), solved(step), {*known}
+    points, together, found = words.sought(step, known), words.solved(step), {*known}
     yield from begun(here, step, "ω")
-    for about in direct(step):
+    for about in words.direct(step):
         yield from _known_about(here, about, found)
         found.add(about.point.name)
     if here.first and together:
         one = _("Group {group}: the velocity of point {points} is found from")
         several = _("Group {group}: the velocities of points {points} are found from")
-        yield introduced(step, points, one, several)
+        yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "v", found)
-        yield from not_turning(together)
-        yield said(_("The plan gives:")) if step.on_paper else not_on_paper()
+        yield from words.not_turning(together)
+        yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))
     for equation in together:
         if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
-    yield from turning(
+    yield from words.turning(
         here, together, "ω", lambda about: here.v.relative(about.point, about.base),
         _("Vector {v}, carried over to point {point}, turns link {link} {sense}."), _("Link {link} turns {sense}."),
     )  # fmt: skip
-    yield from turning_as_one(here, step, "ω")
-    for about in further(step):
+    yield from words.turning_as_one(here, step, "ω")
+    for about in words.further(step):
         yield from _known_about(here, about, found)
 
 
