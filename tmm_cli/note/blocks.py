@@ -182,6 +182,12 @@ def said(sentence: str, **parts: Inline | Line) -> Paragraph:
     return Paragraph(filled(sentence, **parts))
 
 
+def tabled(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
+    """A sentence that refers to a table by {table}, and the table."""
+    yield said(sentence, table=Ref(rows.key), **parts)
+    yield rows
+
+
 def _is_number(cell: Line) -> bool:
     text = "".join(part if isinstance(part, str) else "x" for part in cell)
     return not text.strip("0123456789.,−-–— ·⁰¹²³⁴⁵⁶⁷⁸⁹⁻")

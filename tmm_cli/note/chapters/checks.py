@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Heading, Items, Ref, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, Items, paragraph, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import rows_of
 from tmm_cli.results.reports import walk
@@ -21,10 +21,8 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Checks"))
     for table in tables:
-        yield said(
-            _("The results are checked: table {table} compares each quantity with its limit."), table=Ref("checks")
-        )
-        yield rows_of(subject, table, _("Checks"), "checks")
+        text = _("The results are checked: table {table} compares each quantity with its limit.")
+        yield from tabled(text, rows_of(subject, table, _("Checks"), "checks"))
     if told:
         yield paragraph(_("The following deserves attention:"))
         yield Items(tuple((with_degrees(text),) for text in told))

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Equation, Heading, Ref, paragraph, said
+from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.dynamics import driving, flywheel, reduced
 from tmm_cli.note.dynamics.flywheel import OFFSETS, speed_of
@@ -69,8 +69,8 @@ def tables(subject: Subject) -> Iterable[Block]:
     found = list(walk(subject.results, TABLES))
     sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(found, sentences, strict=True):
-        yield said(sentence, table=Ref(table.name))
-        yield rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")
+        rows = rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")
+        yield from tabled(sentence, rows)
 
 
 def _energy_at_start(here: Here) -> Iterable[Block]:

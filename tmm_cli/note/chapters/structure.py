@@ -7,7 +7,21 @@ from collections.abc import Iterable
 from tmm_cli.draw.sheets.structure import counted, parts
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Link, Ref, Rows, cells, paragraph, said, several
+from tmm_cli.note.blocks import (
+    Block,
+    Equation,
+    Figure,
+    Heading,
+    Line,
+    Link,
+    Ref,
+    Rows,
+    cells,
+    paragraph,
+    said,
+    several,
+    tabled,
+)
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
@@ -93,14 +107,13 @@ def chebyshev(n: int, lower: int, higher: int) -> Expression:
 def _groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
-        yield said(
-            _("When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
-              "mobility of each of them is zero."),
-            table=Ref("groups"),
-        )  # fmt: skip
         head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
         rows = tuple(_group(group) for group in structure.groups)
-        yield Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups")
+        yield from tabled(
+            _("When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
+              "mobility of each of them is zero."),
+            Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups"),
+        )  # fmt: skip
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")

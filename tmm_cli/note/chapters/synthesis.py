@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.language import _, translated
-from tmm_cli.note.blocks import Block, Heading, Ref, paragraph, said
+from tmm_cli.note.blocks import Block, Heading, paragraph, said, tabled
 from tmm_cli.note.context import Subject, by_hand
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.tables import rows_of
@@ -34,16 +34,16 @@ def blocks(subject: Subject) -> Iterable[Block]:
     if asked is None:
         yield paragraph(_("The sizes of the mechanism are found from its requirements."))
     else:
-        yield said(_("The sizes of the mechanism are found from its requirements (table {table})."), table=Ref("asked"))
-        yield rows_of(subject, asked, _("Requirements"), "asked", FOUND)
+        rows = rows_of(subject, asked, _("Requirements"), "asked", FOUND)
+        yield from tabled(_("The sizes of the mechanism are found from its requirements (table {table})."), rows)
     source = by_hand(translated(task.outcome.source).rstrip("."))
     yield paragraph(_("Method of solution: {source}.").format(source=source))
     yield from _formulas(task)
     found = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
     if found is not None:
-        yield said(_("The results are given in table {table}."), table=Ref("found"))
-        yield rows_of(subject, found, _("Results of the synthesis"), "found", FOUND)
+        rows = rows_of(subject, found, _("Results of the synthesis"), "found", FOUND)
+        yield from tabled(_("The results are given in table {table}."), rows)
         yield from (paragraph(by_hand(translated(note))) for note in task.outcome.notes)
     yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
     diagrams = [drawn for drawn in task.outcome.drawings if isinstance(drawn, Diagram)]
@@ -57,11 +57,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
     sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
-        yield said(
-            _("The same quantities, measured on the mechanism with these sizes, are given in table {table}."),
-            table=Ref("measured"),
-        )  # fmt: skip
-        yield rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
+        text = _("The same quantities, measured on the mechanism with these sizes, are given in table {table}.")
+        rows = rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
+        yield from tabled(text, rows)
 
 
 def _formulas(task: Synthesised) -> Iterable[Block]:
@@ -72,7 +70,9 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
     if "k" in values:
         theta = float(theta_of(values["k"]))
         yield said(_("The angle {theta} follows from the coefficient {k} of change of mean speed:"), theta=THETA, k=K)
-        yield _theta(values["k"], theta)
+        ratio = Leaf(K, values["k"])
+        share = (ratio - 1) / (ratio + 1)
+        yield Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)
         half = Function("sin", Leaf(THETA, theta, angle=True) / 2)
         if task.task == "shaper":
             length = Leaf(H, values["stroke"]) / (2 * half)
@@ -80,9 +80,3 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
         if task.task in ("shaper", "slotted-lever"):
             crank = Leaf(Symbol("l", "OC"), values["OC"]) * half
             yield Found(Symbol("l", "OA"), crank, values["OA"], "m")
-
-
-def _theta(k: float, theta: float) -> Found:
-    ratio = Leaf(K, k)
-    share = (ratio - 1) / (ratio + 1)
-    return Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)

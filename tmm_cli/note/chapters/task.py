@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Link, Load
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
 from tmm_cli.plans.bodies import named
@@ -37,28 +37,24 @@ def blocks(subject: Subject) -> Iterable[Block]:
         sentence = _(
             "The sizes of the links are given in table {table}; those that the task leaves open are found by synthesis."
         )
-    yield said(sentence, table=Ref("sizes"))
-    yield _sizes(subject)
+    yield from tabled(sentence, _sizes(subject))
     sentence = _("The coordinates of the fixed points are given in table {table}.")
     if _guided(subject):
         sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
-    yield said(sentence, table=Ref("fixed"))
-    yield _fixed(subject)
+    yield from tabled(sentence, _fixed(subject))
     for driver in linkage.drivers:
         yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
-        yield said(
+        yield from tabled(
             _("Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres of mass "
               "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
               "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
               "the link on which it slides."),
-            m=Symbol("m"), J=Symbol("J", "S"), table=Ref("masses"), sizes=Ref("sizes"),
+            _masses(subject), m=Symbol("m"), J=Symbol("J", "S"), sizes=Ref("sizes"),
         )  # fmt: skip
-        yield _masses(subject)
         yield from _gravity(subject)
     if linkage.loads:
-        yield said(_("The loads are given in table {table}."), table=Ref("loads"))
-        yield _loads(subject)
+        yield from tabled(_("The loads are given in table {table}."), _loads(subject))
     further = [
         table for table in given(problem)
         if (table.name in FURTHER or table.name.startswith("load_table"))

@@ -12,7 +12,7 @@ from tmm_cli.forces.plan import react
 from tmm_cli.forces.springs import twisted
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Spring
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, cells, listed, said
+from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
 from tmm_cli.note.forces.words import direction
@@ -179,12 +179,9 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             told = f"{subject.shown(abs(moment))} {_('N·m')}"
             rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
-        yield said(
-            _("Table {table} lists everything that acts on the links in this position except the reactions."),
-            table=Ref(f"loads-{k}"),
-        )
+        text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
         head = cells(_("acts"), _("on link"), _("size"), _("angle from x, or sense"))
-        yield Rows(caption, head, tuple(rows), f"loads-{k}")
+        yield from tabled(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
 
 
 def losses(subject: Subject) -> Iterable[Block]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _, filled
-from tmm_cli.note.blocks import Block, Line, Ref, Rows, said, several
+from tmm_cli.note.blocks import Block, Line, Rows, said, several, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces.words import angle
 from tmm_cli.note.math import Letter, row
@@ -84,12 +84,11 @@ def balancing(subject: Subject) -> Iterable[Block]:
         percent = 100 * lever.difference
         head.append((_("difference, %"),))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
-    one, more = _("Balancing load of the driving link"), _("Balancing loads of the driven links")
-    caption = more if several else one
+    caption = _("Balancing loads of the driven links") if several else _("Balancing load of the driving link")
     yield from _signs(subject, of_all)
-    yield said(_("The balancing load found in both ways is given in table {table}."), table=Ref("balance"))
     texts = [_texts(subject, column, Subject.shown) for column in columns]
-    yield over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
+    rows = over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
+    yield from tabled(_("The balancing load found in both ways is given in table {table}."), rows)
     if has_flywheel(results) and balances[0].moment is not None:
         yield said(
             _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),

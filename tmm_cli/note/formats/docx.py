@@ -79,8 +79,7 @@ class _Writer:
                 self.document.add_page_break()
             case blocks.Sources(sources):
                 for source in sources:
-                    paragraph = self._paragraph("ListNumber")
-                    self._line(paragraph, (source.text,))
+                    self._line(self._paragraph("ListNumber"), (source.text,))
 
     def _paragraph(self, style: str = "") -> Any:
         """style: its identifier; to find it by its name takes longer than all the rest."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from dataclasses import dataclass
 from functools import partial
 from html import escape
 from importlib.resources import files
@@ -47,14 +46,11 @@ def data(text: str) -> str:
     return escape(text.translate(NOT_XML))
 
 
-@dataclass
 class Writer:
     """Blocks as elements; headings come in their order."""
 
-    note: Note
-
-    def __post_init__(self) -> None:
-        self.numbers, self.headings = self.note.numbers(), iter(self.note.headings())
+    def __init__(self, note: Note) -> None:
+        self.note, self.numbers, self.headings = note, note.numbers(), iter(note.headings())
         self.places = {key: f"n{place}" for place, key in enumerate(self.numbers)}
         self.tables = self.figures = 0
 

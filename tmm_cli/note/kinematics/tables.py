@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, listed, said
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, listed, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.kinematics.driver import output
 from tmm_cli.note.kinematics.on_paper import unit
@@ -33,9 +33,9 @@ def tables(subject: Subject) -> Iterable[Block]:
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
             own = without_rounding(values, largest(values))
             columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
-        key = f"output-{link}"
-        yield said(_("The motion of the output in all positions is given in table {table}."), table=Ref(key))
-        yield _table(subject, _("Motion of the output, {output}").format(output=output(subject, link)), columns, key)
+        caption = _("Motion of the output, {output}").format(output=output(subject, link))
+        text = _("The motion of the output in all positions is given in table {table}.")
+        yield from tabled(text, _table(subject, caption, columns, f"output-{link}"))
     yield from _turning(subject)
     for stem, drawing in subject.drawings("diagrams").items():
         if stem.startswith("diagrams"):
@@ -51,16 +51,15 @@ def _turning(subject: Subject) -> Iterable[Block]:
     velocities, accelerations = _rates(subject, "ω", "omega"), _rates(subject, "ε", "epsilon")
     if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
         text = _("The angular velocities and accelerations of the links are given in table {table}.")
-        yield said(text, table=Ref("rates"))
         caption = _("Angular velocities and accelerations of the links")
-        yield _table(subject, caption, [*velocities, *accelerations], "rates")
+        yield from tabled(text, _table(subject, caption, [*velocities, *accelerations], "rates"))
         return
     if velocities:
-        yield said(_("The angular velocities of the links are given in table {table}."), table=Ref("omega"))
-        yield _table(subject, _("Angular velocities of the links"), velocities, "omega")
+        rows = _table(subject, _("Angular velocities of the links"), velocities, "omega")
+        yield from tabled(_("The angular velocities of the links are given in table {table}."), rows)
     if accelerations:
-        yield said(_("The angular accelerations of the links are given in table {table}."), table=Ref("epsilon"))
-        yield _table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
+        rows = _table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
+        yield from tabled(_("The angular accelerations of the links are given in table {table}."), rows)
 
 
 def _rates(subject: Subject, letter: str, what: str) -> list[Column]:

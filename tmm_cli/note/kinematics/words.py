@@ -31,18 +31,16 @@ def direct(step: Step) -> list[About]:
 
 def solved(step: Step) -> list[VectorEquation]:
     """What is solved together; not what a higher pair gives, nor what follows by itself."""
-    given = [e for e in step.equations if isinstance(e, OnGuide) and e.known]
     alone = direct(step)
-    return [e for e in step.equations if e not in given and e not in alone]
+    return [e for e in step.equations if e not in alone and not (isinstance(e, OnGuide) and e.known)]
 
 
 def sought(step: Step, known: Collection[str]) -> list[Spot]:
     """Points that the equations give, but for those that move as others."""
-    own = {about.point.name for about in direct(step)}
-    own |= {e.point.name for e in step.equations if isinstance(e, OnGuide) and e.known}
-    idle = {e.point.name for e in step.equations if isinstance(e, About) and e.idle}
-    spots = [s for e in solved(step) for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])]
-    taken = {*known, *own, *idle}
+    together = solved(step)
+    others = [e for e in step.equations if e not in together or (isinstance(e, About) and e.idle)]
+    spots = [s for e in together for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])]
+    taken = {*known, *(e.point.name for e in others)}
     return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
 
 
