@@ -137,7 +137,6 @@ TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grad
 TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
     "draw/formats/*", "animate/page.py", "animate/courses.py", "grading/exports/tables_csv.py", "cli/bench/*",
     "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
-    "note/forces/words.py",
 }  # fmt: skip
 
 

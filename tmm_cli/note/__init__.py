@@ -23,7 +23,7 @@ PARTS = {"law_of_motion": "steady", "single_run": "single", "balancing": "balanc
 
 def note(results: Results, *, drawn: bool = True) -> Note:
     """The note of a problem that was computed, in the language that is spoken; drawn: with drawings."""
-    subject = Subject(results, language(), drawn)
+    subject = Subject(results, drawn)
     there = [name for name in CHAPTERS if name not in PARTS or getattr(results, PARTS[name]) is not None]
     chapters = [import_module(f"{__name__}.chapters.{name}") for name in there]
     return Note(results.problem.title, language(), tuple(chain.from_iterable(c.blocks(subject) for c in chapters)))

@@ -21,7 +21,7 @@ from tmm_cli.draw.sheets.force_plans import forces
 from tmm_cli.draw.sheets.group_loads import group_loads
 from tmm_cli.draw.sheets.groups import all_groups
 from tmm_cli.draw.sheets.lever import lever
-from tmm_cli.draw.sheets.mechanism import Position, position
+from tmm_cli.draw.sheets.mechanism import Position, place_of_driver, position
 from tmm_cli.draw.sheets.motion_plans import motion_plans
 from tmm_cli.draw.sheets.positions import all_positions
 from tmm_cli.draw.sheets.single_run import single_run
@@ -30,7 +30,7 @@ from tmm_cli.draw.sheets.synthesis import synthesised
 from tmm_cli.forces.lever import Lever
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
-from tmm_cli.language import signed, typeset
+from tmm_cli.language import _, language, numeral, signed, typeset
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
 from tmm_cli.plans.record import subscript
@@ -59,7 +59,6 @@ class Subject:
     """What a note is about. drawn: whether it has drawings; without them a note is there in no time."""
 
     results: Results
-    language: str = "en"
     drawn: bool = True
     _drawings: dict[Any, dict[str, Drawing]] = field(default_factory=dict, repr=False)
 
@@ -94,6 +93,11 @@ class Subject:
         """The number of a position."""
         return str(self.results.numbers[k])
 
+    def at_position(self, k: int) -> str:
+        """Which position, and where the driver stands."""
+        place = with_degrees(place_of_driver(self.results, float(self.motion.q[k]), 4))
+        return _("position {number}, {place}").format(number=self.called(k), place=place)
+
     def rate(self, k: int) -> float:
         """How fast the first driver moves in a position, SI."""
         return float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[k])
@@ -123,9 +127,17 @@ class Subject:
         """A result, with all figures that it has."""
         return self.figures_of(fixed(value, FIGURES))
 
+    def angle(self, radians: float) -> str:
+        """Of a vector from x, 0 to 360, in degrees without their sign."""
+        return numeral(round(float(np.degrees(radians)), 1) % 360, ".1f")
+
+    def direction(self, vector: complex) -> str:
+        """The angle of a vector, with the sign."""
+        return f"{self.angle(float(np.angle(vector)))}°"
+
     def figures_of(self, text: str) -> str:
-        """The same of figures that are there already."""
-        return figures(text, self.language)
+        """Of figures that are there already."""
+        return figures(text, language())
 
     def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
@@ -162,10 +174,10 @@ def edged(drawing: Drawing) -> Drawing:
     return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
-def figures(text: str, language: str) -> str:
+def figures(text: str, spoken: str) -> str:
     """Figures with the decimal mark, the minus and the power of ten of a language."""
     text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
-    return text.replace("-", "−") if language == "en" else text.replace(".", ",").replace("-", "−")
+    return text.replace("-", "−") if spoken == "en" else text.replace(".", ",").replace("-", "−")
 
 
 def with_degrees(text: str) -> str:

@@ -9,7 +9,6 @@ from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces import lever, loads, sections, tables
 from tmm_cli.note.forces.parts import parts_of
-from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.record import Symbol
 
 
@@ -50,7 +49,7 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
     yield from loads.inertia(subject, k, explained=first)
     yield from loads.springs(subject, k)
     yield from loads.friction(subject, k, explained=first)
-    yield from loads.table(subject, k, _("Loads, {position}").format(position=at_position(subject, k)))
+    yield from loads.table(subject, k, _("Loads, {position}").format(position=subject.at_position(k)))
     for number, part in enumerate(parts_of(subject, k)):
         if part.forces is not None:
             text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")

@@ -12,7 +12,6 @@ from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
-from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.lever import LeverPlan, lever_plan
 from tmm_cli.plans.record import Symbol, balance_symbol
@@ -32,7 +31,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     yield from _couples(subject, plan, k)
     yield from subject.figures(
         "lever", _("The lever is shown in figure {figure}."),
-        _("Zhukovsky lever, {position}").format(position=at_position(subject, k)), k,
+        _("Zhukovsky lever, {position}").format(position=subject.at_position(k)), k,
     )  # fmt: skip
     yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
@@ -75,20 +74,18 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
         yield Found(pair.symbol, couple / apart, size, _("N"))
     acting = {one.symbol: one for one in plan.acting if one.couple}
-    bearing = [load for load in subject.results.loads if load.moment[k] != 0]  # a weight has a couple's letter too
-    loads = [load for load in bearing if load_symbols(load)[1].primed in acting]
-    turned = [(load, acting[load_symbols(load)[1].primed].size) for load in loads]
+    # a weight has a couple's letter too
+    bearing = [(load, load_symbols(load)[1]) for load in subject.results.loads if load.moment[k] != 0]
+    turned = [(load, symbol) for load, symbol in bearing if symbol.primed in acting]
     if turned:
         yield said(
             _("The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
               "of the driving link:"),
             M=Symbol("M").primed,
         )  # fmt: skip
-    for load, size in turned:
-        symbol = load_symbols(load)[1]
-        couple = Leaf(symbol, abs(float(load.moment[k])))
-        own = Product((couple, *_ratio(subject, load, k)))
-        yield Found(symbol.primed, own, size, _("N·m") if turns_of(subject) else _("N"))
+    for load, symbol in turned:
+        own = Product((Leaf(symbol, abs(float(load.moment[k]))), *_ratio(subject, load, k)))
+        yield Found(symbol.primed, own, acting[symbol.primed].size, _("N·m") if turns_of(subject) else _("N"))
 
 
 def turns_of(subject: Subject) -> bool:

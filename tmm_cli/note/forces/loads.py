@@ -15,7 +15,6 @@ from tmm_cli.linkage import Friction, Spring
 from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
-from tmm_cli.note.forces.words import direction
 from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
@@ -174,7 +173,7 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
             told = f"{subject.shown(abs(push))} {_('N')}"
-            rows.append(cells(force, load.link, told, direction(subject, push)))
+            rows.append(cells(force, load.link, told, subject.direction(push)))
         if abs(moment) > still:
             told = f"{subject.shown(abs(moment))} {_('N·m')}"
             rows.append(cells(couple, load.link, told, sense(moment)))

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from tmm_cli.draw.paper.sheet import safe
 from tmm_cli.forces.plan import GroupForces, Reaction
 from tmm_cli.note.context import Subject
-from tmm_cli.note.forces.words import at_position
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.forces import ForcePlan, force_plans
 from tmm_cli.plans.moments import LoadedPart, loaded_parts
@@ -92,7 +91,7 @@ class Part:
     @property
     def caption(self) -> str:
         """Of its position."""
-        return at_position(self.subject, self.here.k)
+        return self.subject.at_position(self.here.k)
 
     @property
     def vectors(self) -> list[NamedVector]:

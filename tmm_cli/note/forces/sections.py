@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 
 from tmm_cli.forces.plan import Reaction
@@ -11,7 +11,6 @@ from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_b
 from tmm_cli.note.expression import Found, Function, Leaf, read
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, vector_sum
 from tmm_cli.note.forces.parts import Part
-from tmm_cli.note.forces.words import direction, links_of
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.plans.bodies import DRIVE, Acting
 from tmm_cli.plans.leads import Lead, leads_of
@@ -27,7 +26,7 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
     """All of a section. first: of the note, which says how to read the sum of vectors."""
     yield Heading(heading, 2)
     if not part.loaded.acting:
-        yield said(_("Nothing acts here ({links}): all reactions are zero."), links=links_of(part.links))
+        yield said(_("Nothing acts here ({links}): all reactions are zero."), links=_links(part.links))
         return
     yield from _taken_apart(part)
     if part.at_once:
@@ -52,6 +51,11 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
         if equation.sought is not None and equation.sought.arm:
             yield from _moments(equation)
     yield from _balance(part)
+
+
+def _links(names: Sequence[str]) -> str:
+    """Link 4; links 4, 5."""
+    return (_("links {links}") if len(names) > 1 else _("link {links}")).format(links=", ".join(names))
 
 
 def _projections(forces: ForceSum) -> Iterable[Block]:
@@ -82,7 +86,7 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     yield from part.subject.figures(
         "group-loads", _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to "
                          "scale."),
-        _("Loads and reactions: {links}; {position}").format(links=links_of(part.links), position=part.caption),
+        _("Loads and reactions: {links}; {position}").format(links=_links(part.links), position=part.caption),
         part.here.k, part.stem("group-loads"), further=_("The other arms are shown in figure {figure}."),
     )  # fmt: skip
 
@@ -136,7 +140,7 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
                  "moments about it ({links}) gives {symbol}:")  # fmt: skip
     else:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
-    yield said(text, point=equation.about, links=links_of(equation.links), symbol=sought.symbol)
+    yield said(text, point=equation.about, links=_links(equation.links), symbol=sought.symbol)
     if found is not None:
         yield from (Equation(moments(equation)), found)
     elif not sought.arm:
@@ -159,7 +163,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     yield Equation(vector_sum([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors]))
     yield from part.subject.figures(
         "forces", _("The force plan is drawn to scale in figure {figure}."),
-        _("Force plan: {links}; {position}").format(links=links_of(part.links), position=part.caption),
+        _("Force plan: {links}; {position}").format(links=_links(part.links), position=part.caption),
         part.here.k, part.stem("forces"),
     )  # fmt: skip
     unknown = [v for v in vectors if v.symbol not in known]
@@ -200,7 +204,7 @@ def _guide_between(part: Part) -> Iterable[Block]:
     yield said(
         _("The reaction in the inner pair {pair} is perpendicular to this guide, so only two magnitudes are unknown "
           "in the polygon of the forces on one link ({links}), and it gives them:"),
-        pair=inner.pair.name, links=links_of([link]),
+        pair=inner.pair.name, links=_links([link]),
     )  # fmt: skip
     sought = {own: inner, reaction_symbol(outer.by, link): outer}
     yield _polygon(part, link, dict.fromkeys(sought, 1))
@@ -222,7 +226,7 @@ def _inner(part: Part) -> Iterable[Block]:
         (reaction,) = inner
         yield said(
             _("The reaction in the inner pair {pair} closes the polygon of the forces on one of its links ({links}):"),
-            pair=reaction.pair.name, links=links_of([reaction.on]),
+            pair=reaction.pair.name, links=_links([reaction.on]),
         )  # fmt: skip
         yield _polygon(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
@@ -235,6 +239,6 @@ def _balance(part: Part) -> Iterable[Block]:
     """Which way what balances a driver acts."""
     for one in part.loaded.acting:
         if one.pair == DRIVE:
-            way = sense(one.moment) if one.couple else direction(part.subject, one.force)
+            way = sense(one.moment) if one.couple else part.subject.direction(one.force)
             text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} from the axis x.")
             yield said(text, symbol=one.symbol, way=way)

@@ -9,7 +9,6 @@ import numpy as np
 from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Line, Rows, said, several, tabled
 from tmm_cli.note.context import Subject
-from tmm_cli.note.forces.words import angle
 from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE, over_positions
 from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
@@ -59,7 +58,7 @@ def _sized(
             way, size = np.angle(force) if told is None else told, np.abs(force)
             size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
             columns.append(((symbol, ", ", _("N")), _texts(subject, size, Subject.shown)))
-            columns.append(((_("angle, °"),), _texts(subject, way, angle)))
+            columns.append(((_("angle, °"),), _texts(subject, way, Subject.angle)))
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
         yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
 
@@ -85,7 +84,10 @@ def balancing(subject: Subject) -> Iterable[Block]:
         head.append((_("difference, %"),))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
     caption = _("Balancing loads of the driven links") if several else _("Balancing load of the driving link")
-    yield from _signs(subject, of_all)
+    text = _("{balance} is positive counterclockwise, however the driving link turns.")
+    if results.linkage.driver.kind == "slide":
+        text = _("{balance} is positive along the guide of the driving link, however this link moves.")
+    yield said(text, balance=of_all)
     texts = [_texts(subject, column, Subject.shown) for column in columns]
     rows = over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
     yield from tabled(_("The balancing load found in both ways is given in table {table}."), rows)
@@ -96,14 +98,6 @@ def balancing(subject: Subject) -> Iterable[Block]:
                 Letter(Lettered("M_d")), "=", Letter(of_all), "+", Letter(Lettered("J_f")), "·", Letter(Symbol("ε")),
             ),
         )  # fmt: skip
-
-
-def _signs(subject: Subject, balance: Symbol) -> Iterable[Block]:
-    """What is positive."""
-    slides = subject.results.linkage.driver.kind == "slide"
-    along = _("{balance} is positive along the guide of the driving link, however this link moves.")
-    turning = _("{balance} is positive counterclockwise, however the driving link turns.")
-    yield said(along if slides else turning, balance=balance)
 
 
 def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:

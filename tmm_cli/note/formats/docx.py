@@ -44,7 +44,7 @@ class _Writer:
     def __init__(self, note: Note) -> None:
         self.note = note
         self.numbers = note.numbers()
-        self.figures = partial(figures, language=note.language)
+        self.figures = partial(figures, spoken=note.language)
         self.document: Any = Document()
         prepared(self.document, note.title, note.language)
         self.parts = Parts(self.document)

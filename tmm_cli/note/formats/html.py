@@ -68,7 +68,7 @@ class Writer:
             case blocks.Equation(node):
                 return f'<div class="equation">{mathml(node, display=True)}</div>'
             case Found():
-                shown = formula(block, partial(figures, language=self.note.language))
+                shown = formula(block, partial(figures, spoken=self.note.language))
                 return f'<div class="equation found">{mathml(shown, display=True)}</div>'
             case blocks.Rows():
                 return self.table(block)
