@@ -10,7 +10,8 @@ from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, P
 LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
 SMALL = 0.75  # size of indices and exponents
 SHORT = 9.0  # what is no wider, a name, has no line of its own
-TERMS = ("+", "−")
+TERMS = (Sign("+"), Sign("−"))
+BREAKS = (Sign("="), *TERMS)
 OPEN, CLOSE = Sign("("), Sign(")")
 OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
 
@@ -71,14 +72,10 @@ def _evened(lines: list[Node], most: float) -> list[Node]:
     if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
         return lines
     nodes = lines[-2].nodes
-    breaks = [k for k, node in enumerate(nodes) if k > 1 and _breaks(node) and nodes[k - 1] not in OPENING]
+    breaks = [k for k, node in enumerate(nodes) if k > 1 and node in BREAKS and nodes[k - 1] not in OPENING]
     if not breaks or width(end := row(*nodes[breaks[-1] :], lines[-1])) > most:
         return lines
     return [*lines[:-2], row(*nodes[: breaks[-1]]), end]
-
-
-def _breaks(node: Node) -> bool:
-    return isinstance(node, Sign) and node.text in ("=", *TERMS)
 
 
 def _in_terms(node: Node, most: float) -> list[Node]:
@@ -107,7 +104,7 @@ def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
     """Parts of a row, each with its sign before it."""
     terms: list[list[Node]] = [[]]
     for node in nodes:
-        if isinstance(node, Sign) and node.text in TERMS and terms[-1] and terms[-1][-1] not in OPENING:
+        if node in TERMS and terms[-1] and terms[-1][-1] not in OPENING:
             terms.append([])
         terms[-1].append(node)
     return terms

@@ -276,13 +276,16 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             shown: list[paper.Node | str] = []
             for factor in factors:
                 shown += ["·"] if shown else []
-                shown.append(_inside(factor, of(factor)))
+                several = isinstance(factor, Sum) and len(factor.terms) > 1
+                shown.append(paper.Brackets(of(factor)) if several else of(factor))
             return paper.row(*shown)
         case Quotient(over, under):
             return paper.Fraction(of(over), of(under))
         case Raised(base, over, under):
-            power = paper.Number(str(over))
-            return _power(of(base), power if under == 1 else paper.Fraction(power, paper.Number(str(under))))
+            node, power = of(base), paper.Number(str(over))
+            if not isinstance(node, paper.Number | paper.Letter | paper.Brackets):
+                node = paper.Brackets(node)
+            return paper.Power(node, power if under == 1 else paper.Fraction(power, paper.Number(str(under))))
         case Function(name, argument):
             node = of(argument)
             if name == "sqrt":
@@ -290,15 +293,6 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             if name == "abs":
                 return paper.Brackets(node, bars=True)
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
-
-
-def _power(base: paper.Node, exponent: paper.Node) -> paper.Node:
-    simple = isinstance(base, paper.Number | paper.Letter | paper.Brackets)
-    return paper.Power(base if simple else paper.Brackets(base), exponent)
-
-
-def _inside(factor: Expression, node: paper.Node) -> paper.Node:
-    return paper.Brackets(node) if isinstance(factor, Sum) and len(factor.terms) > 1 else node
 
 
 def rounded(value: float, figures: int) -> float:

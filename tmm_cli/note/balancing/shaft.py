@@ -43,8 +43,7 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
             whole = whole - Leaf(Symbol("D", f"{PLANES[1]}{axis}"), float(take(corrections[1])))
         parts.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(found))))
         yield Found(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
-    root = Function("sqrt", added(part**2 for part in parts))
-    yield Found(own, root, abs(found), _("kg·m"))
+    yield Found(own, Function("sqrt", added(part**2 for part in parts)), abs(found), _("kg·m"))
     if abs(found):
         direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
         yield said(_("Its angle is {angle}°."), angle=direction)

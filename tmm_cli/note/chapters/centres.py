@@ -9,7 +9,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Leaf
+from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.tables import rows_of
 from tmm_cli.plans.record import Symbol, subscript
 from tmm_cli.results.reports import walk
@@ -32,8 +32,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
     )  # fmt: skip
     count = len(results.linkage.links)
     own = Leaf(LINKS, float(count))
-    pairs = own * (own - 1) / 2
-    yield Found(ALL, pairs, count * (count - 1) / 2, whole=True)
+    yield Found(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
     yield said(
         _("The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
           "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
@@ -51,20 +50,15 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _speeds(subject: Subject) -> Iterable[Block]:
     results = subject.results
     assert results.centres is not None
-    first = True
+    text = _("The centre of a link and the driving one has the same velocity on both, so that distances between "
+             "centres give the angular velocities of links, and the velocities of those that do not turn. "
+             "Position {number}:")  # fmt: skip
     for k, found in results.centres.items():
         told = list(_of_position(subject, k, {centre.links: centre for centre in found}))
-        if told and first:
-            yield said(
-                _("The centre of a link and the driving one has the same velocity on both, so that distances between "
-                  "centres give the angular velocities of links, and the velocities of those that do not turn. "
-                  "Position {number}:"),
-                number=subject.called(k),
-            )  # fmt: skip
-        elif told:
-            yield said(_("Position {number}:"), number=subject.called(k))
-        yield from told
-        first = first and not told
+        if told:
+            yield said(text, number=subject.called(k))
+            yield from told
+            text = _("Position {number}:")
 
 
 def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Found]:
@@ -79,8 +73,7 @@ def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Ite
         both = found[(driver, link) if (driver, link) in found else (link, driver)]
         if both.place is None:
             continue
-        arm = _distance(pivot, both)
-        reached: Expression = rate * arm
+        reached = rate * _distance(pivot, both)
         if here.place is None and here.direction is not None:
             speed = abs(complex(motion.point(link, 0j).v[k]))
             yield Found(Symbol("v", link), reached, speed, _("m/s"))

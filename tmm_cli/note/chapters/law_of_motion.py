@@ -84,15 +84,12 @@ def _energy_at_start(here: Here) -> Iterable[Block]:
 
 def _position(here: Here, *, explained: bool) -> Iterable[Block]:
     """Speed and acceleration there."""
+    text = _("Position {number}:")
     if explained:
-        yield said(
-            _("The speed of the driving link follows from the kinetic energy, and its acceleration from the equation "
-              "of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle of the "
-              "driving link. Position {number}:"),
-            slope=SLOPE, number=here.number,
-        )  # fmt: skip
-    else:
-        yield said(_("Position {number}:"), number=here.number)
+        text = _("The speed of the driving link follows from the kinetic energy, and its acceleration from the "
+                 "equation of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle "
+                 "of the driving link. Position {number}:")  # fmt: skip
+    yield said(text, slope=SLOPE, number=here.number)
     steady, link = here.steady, here.motion.linkage.driver.link
     law, speed = steady.law, here.speed
     inertia = Leaf(INERTIA, here.of(steady.machine.inertia))

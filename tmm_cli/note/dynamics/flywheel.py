@@ -58,15 +58,13 @@ def by_tangents(here: Here) -> Iterable[Block]:
     """Its inertia from what they cut off."""
     steady = here.steady
     upper, lower = here.tangents
-    if steady.task.delta is not None and steady.task.motor is not None:
-        yield said(
-            _("The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that of "
-              "the machine with it. Its moment of inertia, reduced to the driving link:")
-        )  # fmt: skip
-    elif steady.task.delta is not None:
-        yield said(_("The moment of inertia of the flywheel, reduced to the driving link:"))
-    else:
-        yield said(_("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:"))
+    text = _("The moment of inertia of the flywheel, reduced to the driving link:")
+    if steady.task.delta is None:
+        text = _("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:")
+    elif steady.task.motor is not None:
+        text = _("The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that "
+                 "of the machine with it. Its moment of inertia, reduced to the driving link:")  # fmt: skip
+    yield said(text)
     cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
     squares = speed_of(upper, LARGEST) ** 2 - speed_of(lower, LEAST) ** 2
     yield Found(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))

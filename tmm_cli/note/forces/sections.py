@@ -12,7 +12,7 @@ from tmm_cli.note.expression import Found, Function, Leaf, read
 from tmm_cli.note.forces.equations import along_guide, by_moments, moments, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.kinematics.words import sense
-from tmm_cli.plans.bodies import DRIVE, Acting
+from tmm_cli.plans.bodies import DRIVE
 from tmm_cli.plans.leads import Lead, leads_of
 from tmm_cli.plans.moments import MomentEquation
 from tmm_cli.plans.projections import ForceSum
@@ -81,7 +81,9 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     yield said(text, group=group, given=given or _("nothing"))
     leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
-    drives = [_drive(one) for one in part.loaded.acting if one.pair == DRIVE]
+    moment, force = _("the balancing moment {symbol}"), _("the balancing force {symbol}")
+    balances = [one for one in part.loaded.acting if one.pair == DRIVE]
+    drives = [filled(moment if one.couple else force, symbol=one.symbol) for one in balances]
     yield listed_below((*unknown, *drives))
     yield from part.subject.figures(
         "group-loads", _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to "
@@ -111,12 +113,6 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     whole, n, t = (reaction_symbol(reaction.by, reaction.on, part) for part in ("", "n", "τ"))
     places = {"guide": pair.name, "pair": pair.name, "point": pair.point, "link": reaction.on, "line": line}
     return filled(text, **places, R=whole, n=n, t=t)
-
-
-def _drive(one: Acting) -> Line:
-    """What balances a driver."""
-    text = _("the balancing moment {symbol}") if one.couple else _("the balancing force {symbol}")
-    return filled(text, symbol=one.symbol)
 
 
 def _moments(equation: MomentEquation) -> Iterable[Block]:

@@ -72,7 +72,9 @@ class _Writer:
             case blocks.Figure():
                 self._figure(block)
             case blocks.Contents():
-                self._contents()
+                self._paragraph("ContentsHeading").add_run(_("Contents"))
+                headings = self.note.headings()
+                self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in headings)
                 self.document.add_page_break()
             case blocks.Title():
                 title_page(self.document, block)
@@ -165,10 +167,6 @@ class _Writer:
         self.parts.picture(paragraph, block.drawing, share, block.caption)
         caption = self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
         caption.paragraph_format.space_after = Pt(12)
-
-    def _contents(self) -> None:
-        self._paragraph("ContentsHeading").add_run(_("Contents"))
-        self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in self.note.headings())
 
 
 def _with_next(number: int, rows: int) -> bool:

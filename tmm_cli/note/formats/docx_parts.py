@@ -104,9 +104,7 @@ def _numbers(document: Any) -> None:
         f"{levels}</w:abstractNum>"
     )
     numbering.insert(0, abstract)
-    numbering.append(parse_xml(
-        f'<w:num {nsdecls("w")} w:numId="{own}"><w:abstractNumId w:val="{own}"/></w:num>'
-    ))  # fmt: skip
+    numbering.append(parse_xml(f'<w:num {nsdecls("w")} w:numId="{own}"><w:abstractNumId w:val="{own}"/></w:num>'))
     for k in range(3):
         properties = document.styles[f"Heading {k + 1}"].element.get_or_add_pPr()
         numbered = properties.get_or_add_numPr()

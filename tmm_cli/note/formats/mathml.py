@@ -18,7 +18,8 @@ def _of(node: Node) -> str:
         case Number(text):
             return f"<mn>{escape(text)}</mn>"
         case Letter(symbol, vector, lines):
-            return _underlined(_symbol(symbol, vector), lines)
+            shown = _symbol(symbol, vector)
+            return f'<mrow class="lines{lines}">{shown}</mrow>' if lines else shown  # lines under it, as long as it is
         case Sign(text):
             return f"<mo>{escape(text)}</mo>"
         case Words(text):
@@ -51,8 +52,3 @@ def _symbol(symbol: Symbol, vector: bool) -> str:
     if symbol.below:
         return f"<msub>{letter}{below}</msub>"
     return f"<msup>{letter}{above}</msup>" if symbol.above else letter
-
-
-def _underlined(shown: str, lines: int) -> str:
-    """Lines under a vector are a matter of style: characters under it are as short as they are."""
-    return f'<mrow class="lines{lines}">{shown}</mrow>' if lines else shown

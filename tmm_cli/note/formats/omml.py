@@ -37,8 +37,7 @@ def display(node: Node) -> list[str]:
 
 def _begun(line: Node) -> Node:
     """A line that begins with a sign of equality, with nothing before it: some programs want two sides."""
-    equals = isinstance(line, Row) and line.nodes[0] == Sign("=")
-    return Row((Words("\u200b"), *line.nodes)) if equals and isinstance(line, Row) else line
+    return Row((Words("\u200b"), *line.nodes)) if isinstance(line, Row) and line.nodes[0] == Sign("=") else line
 
 
 def _of(node: Node) -> str:

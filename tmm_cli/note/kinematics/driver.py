@@ -13,7 +13,7 @@ from tmm_cli.language import _, symbol
 from tmm_cli.linkage import FRAME, Driver
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Constant, Found, Function, Leaf, Quotient
+from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, Number, Words, row
@@ -63,10 +63,10 @@ def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
     if rpm:
         yield Found(omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n) / 30, driver.rate, unit("ω"))
     else:
-        yield _given(subject, omega, driver.rate, unit("ω"))
+        yield _given(subject, omega, driver.rate)
     if driver.acceleration:
         yield said(_("in position 0 and with the angular acceleration"))
-        yield _given(subject, Symbol("ε", own), driver.acceleration, unit("ε"))
+        yield _given(subject, Symbol("ε", own), driver.acceleration)
 
 
 def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
@@ -78,47 +78,39 @@ def _sliding(subject: Subject, driver: Driver) -> Iterable[Block]:
             "Driving link {link} is moved along link {base} (a cylinder with its piston) with the relative velocity"
         )
     yield said(text, link=driver.link, base=driver.base)
-    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate, unit("v"))
+    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
     if driver.acceleration:
         yield said(_("in position 0 and with the acceleration"))
-        yield _given(subject, Symbol("a", own), driver.acceleration, unit("a"))
+        yield _given(subject, Symbol("a", own), driver.acceleration)
 
 
-def _given(subject: Subject, name: Symbol, value: float, per: str) -> Block:
-    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {per}")))
+def _given(subject: Subject, name: Symbol, value: float) -> Block:
+    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {unit(name.letter)}")))
 
 
 def speed_here(here: Here) -> Iterable[Block]:
     """The speed in a position of a first driver that does not keep it."""
-    results, driver = here.subject.results, here.motion.linkage.driver
+    results, motion = here.subject.results, here.motion
+    driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
         yield said(_("By the law of motion its speed and its acceleration are here"))
-        yield from _by_law(here)
+        for letter, values in zip("ωε" if turns else "va", (motion.rate, motion.acceleration), strict=True):
+            value = float(np.broadcast_to(values, motion.q.shape)[here.k])
+            yield _given(here.subject, Symbol(letter, driver.link), value)
         return
     if not driver.acceleration:
         return
-    turns = driver.kind == "turn"
     letter, rate, way = ("ω", "ε", "φ") if turns else ("v", "a", "s")
     begins = results.linkage.sketch.at if results.linkage.others else results.start
-    gone = driver.sense * (float(here.motion.q[here.k]) - begins)
-    first = Symbol(letter, driver.link)
+    gone = driver.sense * (float(motion.q[here.k]) - begins)
+    run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
     yield said(
         _("Since position 0 the driving link has gone through {gone}; its speed {speed} follows from the even "
           "acceleration:"),
-        gone=Symbol(f"Δ{way}"), speed=first,
+        gone=run.symbol, speed=now,
     )  # fmt: skip
-    more = 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * Leaf(Symbol(f"Δ{way}"), gone)
-    start = Leaf(Symbol(letter, "0"), driver.rate) ** 2
-    root = Function("sqrt", start + more)
-    yield Found(first, root, abs(float(here.motion.rate[here.k])), unit(letter))
-
-
-def _by_law(here: Here) -> Iterable[Block]:
-    motion, k = here.motion, here.k
-    own, letters = motion.linkage.driver.link, "ωε" if motion.linkage.driver.kind == "turn" else "va"
-    for letter, values in zip(letters, (motion.rate, motion.acceleration), strict=True):
-        value = float(np.broadcast_to(values, motion.q.shape)[k])
-        yield _given(here.subject, Symbol(letter, own), value, unit(letter))
+    root = Function("sqrt", start**2 + 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * run)
+    yield Found(now, root, abs(float(motion.rate[here.k])), unit(letter))
 
 
 def positions(subject: Subject) -> Iterable[Block]:
@@ -159,9 +151,7 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     if slides:
         text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
                  "link; its stroke between them is {size}.")  # fmt: skip
-    yield said(
-        text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown),
-    )  # fmt: skip
+    yield said(text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown))
     if not np.isfinite(strokes.k):
         return
     working = sum(s.length for s in strokes.working)
@@ -171,11 +161,9 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     if len(strokes.strokes) > 2:
         text = _("During the working strokes of a cycle the driving link turns through {working} in all, during the "
                  "idle ones through {idle}; the coefficient of change of mean speed is {k}:")  # fmt: skip
-    yield said(
-        text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")),
-    )  # fmt: skip
-    angles = Leaf(Symbol("φ", symbol("w")), working, angle=True), Leaf(Symbol("φ", symbol("i")), idle, angle=True)
-    yield Found(Symbol("k"), Quotient(*angles), strokes.k)
+    yield said(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
+    ratio = Leaf(Symbol("φ", symbol("w")), working, angle=True) / Leaf(Symbol("φ", symbol("i")), idle, angle=True)
+    yield Found(Symbol("k"), ratio, strokes.k)
 
 
 def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:

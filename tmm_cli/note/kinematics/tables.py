@@ -86,7 +86,10 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
     every, told = (*_places(subject), *columns), states(subject.results)
-    texts = [(head, [_cell(subject, float(value)) for value in values]) for head, values in every]
+    texts = [
+        (head, [subject.shown(float(value)) if np.isfinite(value) else "–" for value in values])
+        for head, values in every
+    ]
     return over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
 
 
@@ -102,7 +105,3 @@ def _places(subject: Subject) -> Iterable[Column]:
             continue
         full = results.driver_range is not None and results.driver_range.full
         yield ((Symbol("φ", link), ", °"), np.degrees(np.mod(value, cycle) if full else value))
-
-
-def _cell(subject: Subject, value: float) -> str:
-    return subject.shown(value) if np.isfinite(value) else "–"

@@ -78,7 +78,8 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         several = _("Group {group}: the velocities of points {points} are found from")
         yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "v", found)
-        yield from words.not_turning(together)
+        for link in dict.fromkeys(e.link for e in together if isinstance(e, About) and e.idle):
+            yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
         yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))

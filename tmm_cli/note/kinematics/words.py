@@ -132,12 +132,6 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
         yield plan.read(vector) if twin is None else equal(vector.symbol, plan.of(twin).symbol)
 
 
-def not_turning(chosen: Iterable[VectorEquation]) -> Iterable[Block]:
-    """Of links all of whose points move as one."""
-    for link in dict.fromkeys(e.link for e in chosen if isinstance(e, About) and e.idle):
-        yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
-
-
 def not_on_paper() -> Block:
     """Of a group that no polygon solves."""
     return said(
