@@ -17,18 +17,7 @@ import numpy as np
 
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.smooth_way import SmoothWay
-from tmm_cli.groups.state import (
-    Accel,
-    Accels,
-    Drives,
-    GroupReactions,
-    Placement,
-    Pose,
-    Poses,
-    Rate,
-    Rates,
-    Wrench,
-)
+from tmm_cli.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Pose, Poses, Rate, Rates, Wrench
 from tmm_cli.groups.unwrapped_angles import Winding
 from tmm_cli.linkage import Linkage
 from tmm_cli.structure.assur import Group, Pair

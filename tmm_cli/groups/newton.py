@@ -19,16 +19,7 @@ from tmm_cli.double_double import DoubleDouble, exactly, rounded
 from tmm_cli.groups.base import Accels, Kernel, Poses, Rates, reach, spread
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import least_over_largest, signed_determinant, solve
-from tmm_cli.groups.state import (
-    Accel,
-    Drives,
-    GroupReactions,
-    Placement,
-    Pose,
-    Rate,
-    State,
-    Wrench,
-)
+from tmm_cli.groups.state import Accel, Drives, GroupReactions, Placement, Pose, Rate, State, Wrench
 from tmm_cli.linkage import Linkage
 from tmm_cli.pairs import PAIRS
 from tmm_cli.pairs.base import Constraint, JacobianRow
@@ -70,8 +61,8 @@ class Newton(Kernel):
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Newton:
         """The group with its numbers, which may be arrays, not yet assembled."""
-        pairs = tuple(PAIRS[pair.kind].of(pair, linkage) for pair in (*group.outer, *group.inner))
-        drives = tuple(Driven.by(driver, linkage) for driver in group.drivers)
+        pairs = tuple(PAIRS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
+        drives = tuple(Driven.of(driver, linkage) for driver in group.drivers)
         size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *group.known})])
         size = size if np.any(size > 0) else reach(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
@@ -196,15 +187,12 @@ class Newton(Kernel):
         """States from which Newton's method begins, and how far q is beyond where the group goes (see BranchTrace)."""
         if self.trace is not None:
             start, residual = self.trace.start(q)
-            start = State(
-                start.x, np.where((residual > 0)[..., None], np.nan, start.unwrapped)
-            )  # nothing is there to be found
-        else:
-            assert self.start is not None
-            shape = (*np.shape(q), len(self.group.links))
-            start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
-            residual = np.full(np.shape(q), -1.0)
-        return start, residual
+            nothing = (residual > 0)[..., None]  # is there to be found
+            return State(start.x, np.where(nothing, np.nan, start.unwrapped)), residual
+        assert self.start is not None
+        shape = (*np.shape(q), len(self.group.links))
+        start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
+        return start, np.full(np.shape(q), -1.0)
 
     def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
         start, residual = self.begun(poses, q, drives)

@@ -14,9 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
 from tmm_cli.linkage import Linkage, Mesh
-from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector, cross
 
 JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
@@ -29,11 +30,6 @@ class Constraint(ABC):
     name: str
 
     kind: ClassVar[str]
-
-    @classmethod
-    @abstractmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Constraint:
-        """The pair with its numbers."""
 
     @property
     @abstractmethod
@@ -78,12 +74,44 @@ class Constraint(ABC):
         return None
 
 
-def opposed(mesh: Mesh, poses: Poses, point: Vector, along: Vector) -> Mapping[str, Sequence[JacobianRow]]:
-    """Parts of a row for a force along a direction at a point (m) of link j, and its opposite on link i."""
-    return {
-        mesh.i: ((-along, -cross(point - poses[mesh.i].x, along)),),
-        mesh.j: ((along, cross(point - poses[mesh.j].x, along)),),
-    }
+@dataclass(frozen=True)
+class HigherPair(Constraint):
+    """One row for links that touch, i and j of the mesh; their carrier gets nothing but through its hinges."""
+
+    mesh: Mesh
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return self.mesh.i, self.mesh.j, self.mesh.carrier
+
+    @abstractmethod
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
+        """The point (m) at which i pushes j, and the direction in which a multiplier above zero does."""
+
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
+        point, along = self.contact(poses)
+        i, j = self.mesh.i, self.mesh.j
+        return {
+            i: ((-along, -cross(point - poses[i].x, along)),),
+            j: ((along, cross(point - poses[j].x, along)),),
+        }
+
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
+        point, along = self.contact(poses)
+        push, apart = along * multipliers[0], self.apart(poses, multipliers)
+        return PairReaction(push if apart is None else push + apart[1], at=point)
+
+
+@dataclass(frozen=True)
+class Teeth(HigherPair):
+    """They touch in the pitch point, where both links have one velocity, and push j away from the axis of i besides."""
+
+    away: ClassVar[complex]  # where that is from the direction of contact, at a ratio above zero
+
+    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
+        point, along = self.contact(poses)
+        away = self.away * along * np.sign(self.mesh.ratio)
+        return point, away * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)
 
 
 def axis(linkage: Linkage, wheel: str, carrier: str) -> complex:

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
-from tmm_cli.linkage import FRAME, Linkage, Mesh, Slide
-from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
+from tmm_cli.linkage import FRAME, Linkage, Slide
+from tmm_cli.pairs.base import HigherPair, JacobianRow, axis
 from tmm_cli.pairs.sliding import Guided
 from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector, dot, unit
 
 
 @dataclass(frozen=True)
-class Cam(Constraint):
+class Cam(HigherPair):
     """Row: run (or angle) of the follower on the frame less offset and the law of the cam's angle.
 
     The law does not say where cam and follower touch. A sliding follower is taken as flat-faced: it touches the cam
@@ -24,7 +24,6 @@ class Cam(Constraint):
     a couple and the cam by the couple of the same power.
     """
 
-    mesh: Mesh
     slide: Slide | None
     axis: complex  # of the cam, on the frame, m
 
@@ -36,10 +35,6 @@ class Cam(Constraint):
         assert mesh is not None
         slide = linkage.slide(mesh.slide) if mesh.slide else None
         return cls(pair.name, mesh, slide, axis(linkage, mesh.i, FRAME))
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        return self.mesh.i, self.mesh.j, FRAME
 
     @property
     def lengths(self) -> tuple[bool, ...]:
@@ -72,7 +67,7 @@ class Cam(Constraint):
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)) + bend,)
 
-    def touch(self, poses: Poses) -> tuple[Vector, Vector]:
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """Where a flat-faced follower touches, and the direction in which its run grows."""
         assert self.slide is not None
         here = Guided.at(self.slide, poses)
@@ -80,14 +75,10 @@ class Cam(Constraint):
         return self.axis - 1j * self._law(poses)[1] * forward, forward
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        if self.slide is None:
-            return self.jacobian_rows(poses)
-        point, along = self.touch(poses)
-        return opposed(self.mesh, poses, point, along)
+        return self.jacobian_rows(poses) if self.slide is None else super().pushes(poses)
 
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
+        if self.slide is not None:
+            return super().reaction(poses, multipliers)
         n = multipliers[0]
-        if self.slide is None:
-            return PairReaction(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
-        point, along = self.touch(poses)
-        return PairReaction(along * n, at=point)
+        return PairReaction(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])

@@ -12,7 +12,6 @@ from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
 from tmm_cli.linkage import Driver, Linkage, Slide
 from tmm_cli.pairs.base import Constraint, JacobianRow
 from tmm_cli.pairs.sliding import Guided
-from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, dot, unit
 
 
@@ -26,12 +25,7 @@ class Driven(Constraint):
     kind = "D"
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Driven:
-        driver = next(d for d in linkage.drivers if d.joint == pair.name)
-        return cls.by(driver, linkage)
-
-    @classmethod
-    def by(cls, driver: Driver, linkage: Linkage) -> Driven:
+    def of(cls, driver: Driver, linkage: Linkage) -> Driven:
         """The row of a driver."""
         return cls(driver.link, driver, linkage.slide(driver.joint) if driver.kind == "slide" else None)
 

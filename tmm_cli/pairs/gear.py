@@ -8,36 +8,34 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
-from tmm_cli.linkage import Linkage, Mesh
-from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
+from tmm_cli.groups.state import Drives, Poses, Rates
+from tmm_cli.linkage import Linkage
+from tmm_cli.pairs.base import JacobianRow, Teeth, axis
 from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector
 
 
 @dataclass(frozen=True)
-class Gear(Constraint):
+class Gear(Teeth):
     """Row: angle of j from the carrier less offset and ratio times that of i.
 
     The teeth push at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the wheels i and j, where
-    both wheels have one velocity; across the line of axes first, the part along it (`pressure`) afterwards.
+    both wheels have one velocity; across the line of axes first, the part along it (`pressure`) afterwards. That pushes
+    an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one. So the force on j is from
+    axis i to axis j in an outer mesh and the other way in an inner one, whichever is the smaller.
     """
 
-    mesh: Mesh
     axis_i: complex  # on the carrier, m
     axis_j: complex
 
     kind = "G"
+    away = 1j
 
     @classmethod
     def of(cls, pair: Pair, linkage: Linkage) -> Gear:
         mesh = pair.mesh
         assert mesh is not None
         return cls(pair.name, mesh, axis(linkage, mesh.i, mesh.carrier), axis(linkage, mesh.j, mesh.carrier))
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        return self.mesh.i, self.mesh.j, self.mesh.carrier
 
     @property
     def lengths(self) -> tuple[bool, ...]:
@@ -66,29 +64,8 @@ class Gear(Constraint):
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         return (np.zeros(np.shape(rates[self.mesh.i].w)),)
 
-    def pitch(self, poses: Poses) -> tuple[Vector, Vector]:
-        """The pitch point, and the direction from axis i to axis j."""
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         ratio, carrier = self.mesh.ratio, poses[self.mesh.carrier]
         here = (self.axis_i - ratio * self.axis_j) / (1 - ratio)
         line = (self.axis_j - self.axis_i) / abs(self.axis_j - self.axis_i)
-        return carrier.at(here), line * carrier.z
-
-    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Wheel on wheel at the pitch point; the carrier gets nothing but through its hinges."""
-        point, line = self.pitch(poses)
-        return opposed(self.mesh, poses, point, 1j * line)
-
-    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        point, line = self.pitch(poses)
-        _, radial = self.apart(poses, multipliers)
-        return PairReaction(1j * line * multipliers[0] + radial, at=point)
-
-    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
-        """Teeth push an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one.
-
-        So the force on j is from axis i to axis j in an outer mesh and the other way in an inner one, whichever is the
-        smaller.
-        """
-        point, line = self.pitch(poses)
-        sense = -np.sign(self.mesh.ratio)
-        return point, sense * line * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)
+        return carrier.at(here), 1j * (line * carrier.z)

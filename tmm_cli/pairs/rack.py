@@ -5,39 +5,33 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from tmm_cli.groups.state import Drives, PairReaction, Poses, Rates
-from tmm_cli.linkage import Linkage, Mesh, Slide
-from tmm_cli.pairs.base import Constraint, JacobianRow, axis, opposed
+from tmm_cli.groups.state import Drives, Poses, Rates
+from tmm_cli.linkage import Linkage, Slide
+from tmm_cli.pairs.base import JacobianRow, Teeth, axis
 from tmm_cli.pairs.sliding import Guided
 from tmm_cli.structure.assur import Pair
 from tmm_cli.vectors import Real, Vector, dot
 
 
 @dataclass(frozen=True)
-class Rack(Constraint):
+class Rack(Teeth):
     """Row: run of the rack on the carrier less offset and ratio (m a radian) times the angle of the wheel from it.
 
     The slide may have the rack as its runner or as its carrier. The teeth push at the pitch point, where wheel and rack
     have one velocity: the wheel's radius |ratio| away from its axis, square to the guide.
     """
 
-    mesh: Mesh
     slide: Slide
     axis: complex  # of the wheel, on the carrier, m
 
     kind = "K"
+    away = -1j
 
     @classmethod
     def of(cls, pair: Pair, linkage: Linkage) -> Rack:
         mesh = pair.mesh
         assert mesh is not None
         return cls(pair.name, mesh, linkage.slide(mesh.slide), axis(linkage, mesh.i, mesh.carrier))
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        return self.mesh.i, self.mesh.j, self.mesh.carrier
 
     @property
     def lengths(self) -> tuple[bool, ...]:
@@ -59,23 +53,8 @@ class Rack(Constraint):
         here = Guided.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)),)
 
-    def pitch(self, poses: Poses) -> tuple[Vector, Vector]:
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """The pitch point, and the direction in which the rack's run grows."""
         here = Guided.at(self.slide, poses)
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
-
-    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        point, along = self.pitch(poses)
-        return opposed(self.mesh, poses, point, along)
-
-    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        point, along = self.pitch(poses)
-        _, radial = self.apart(poses, multipliers)
-        return PairReaction(along * multipliers[0] + radial, at=point)
-
-    def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
-        """Teeth push the rack away from the wheel's axis."""
-        point, along = self.pitch(poses)
-        away = -1j * along * np.sign(self.mesh.ratio)
-        return point, away * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)

@@ -135,7 +135,7 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
             continue
         one = axis(linkage, mesh.i, mesh.carrier)
         if mesh.kind == "gear":
-            place = Gear(mesh.name, mesh, one, axis(linkage, mesh.j, mesh.carrier)).pitch(motion.poses)[0]
+            place = Gear(mesh.name, mesh, one, axis(linkage, mesh.j, mesh.carrier)).contact(motion.poses)[0]
         else:
-            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), one).pitch(motion.poses)[0]
+            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), one).contact(motion.poses)[0]
         yield mesh.name, mesh.j if mesh.i == FRAME else mesh.i, complex(np.broadcast_to(place, motion.q.shape)[k])

@@ -33,8 +33,8 @@ class Rows:
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """What each pair, and the driver, asks of its links."""
-        found = tuple(PAIRS[pair.kind].of(pair, self.linkage) for pair in self.pairs)
-        return (*found, Driven.by(self.linkage.driver, self.linkage)) if self.driven else found
+        found = tuple(PAIRS[pair.kind](pair, self.linkage) for pair in self.pairs)
+        return (*found, Driven.of(self.linkage.driver, self.linkage)) if self.driven else found
 
     @cached_property
     def scale(self) -> Real:
