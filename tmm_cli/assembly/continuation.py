@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.assembly.corrector import CORRECTION, PATIENCE, Corrector, places_ahead
 from tmm_cli.assembly.crossing import EDGE, Crossings, alive
-from tmm_cli.assembly.nodes import Node, Source
+from tmm_cli.assembly.nodes import Node, Source, joined
 from tmm_cli.groups.branch_trace import BranchTrace
 from tmm_cli.groups.linear import solve
 from tmm_cli.groups.newton import Newton
@@ -262,14 +262,10 @@ def _traced(
     limits: tuple[bool, bool] = (False, False),
     lost: tuple[bool, bool] = (False, False),
 ) -> BranchTrace:
-    def stacked(part: str) -> State:
-        states = [getattr(node, part) for node in nodes]
-        return State(np.concatenate([s.x for s in states]), np.concatenate([s.unwrapped for s in states]))
-
-    first, second = stacked("first"), stacked("second")
+    states, first, second = (joined(getattr(node, part) for node in nodes) for part in ("state", "first", "second"))
     dead = np.array([n.q for n in nodes if n.dead])
     flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
     return BranchTrace(
-        np.array([n.q for n in nodes]), stacked("state"), first, second, closed, open_ends, limits, lost,
+        np.array([n.q for n in nodes]), states, first, second, closed, open_ends, limits, lost,
         dead=dead, flips=flips,
     )  # fmt: skip

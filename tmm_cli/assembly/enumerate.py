@@ -210,7 +210,7 @@ def _searched(
     number = len(start.x)
     if not number:
         return [], "polynomial", most
-    known = {name: Pose(np.broadcast_to(p.x, number), np.broadcast_to(p.z, number)) for name, p in placed.items()}
+    known = {name: pose.spread((number,)) for name, pose in placed.items()}
     residuals = np.max(np.abs(kernel.residuals({**known, **kernel.poses_of(start)}, drives)), axis=-1)
     near, closed = close_from_afar(kernel, placed, drives, start)
     # exactly in a dead position Newton's method has no next step, but the root is there

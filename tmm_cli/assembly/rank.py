@@ -41,8 +41,8 @@ def by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
     state, poses = found
     matrix = kernel.matrix({**poses, **kernel.poses_of(state)})[0]
     undriven = matrix[: len(matrix) - wanted]
-    rank = _rank(undriven)
-    if matrix.shape[1] - rank != wanted or _rank(matrix) != matrix.shape[1] or not _moves(kernel, linkage, state):
+    rank, whole = (int(np.linalg.matrix_rank(rows, rtol=REDUNDANT)) for rows in (undriven, matrix))
+    if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _moves(kernel, linkage, state):
         return None
     return _without_passive(linkage, structure, kernel, undriven, len(undriven) - rank)
 
@@ -66,11 +66,6 @@ def _closed(kernel: Newton, linkage: Linkage) -> tuple[State, Mapping[str, Pose]
         return None
     k = int(np.argmax(closed))
     return state.part(slice(k, k + 1)), poses
-
-
-def _rank(matrix: Real) -> int:
-    values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > REDUNDANT * values[0]))
 
 
 def _moves(kernel: Newton, linkage: Linkage, state: State) -> bool:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from tmm_cli.groups.smooth_way import again
 from tmm_cli.groups.state import State
 from tmm_cli.vectors import Real, Vector
 
@@ -66,9 +67,7 @@ class BranchTrace:
     def dead_within(self, low: float, high: float) -> Real:
         """Dead positions that are passed between two places, in growing order."""
         cycle = self.q[-1] - self.q[0]
-        turns = np.arange(np.floor((low - self.q[-1]) / cycle), np.ceil((high - self.q[0]) / cycle) + 1)
-        found = (self.dead[:, None] + cycle * (turns if self.closed else np.zeros(1))).ravel()
-        return np.sort(found[(found >= low) & (found < high)])
+        return again(self.dead, float(self.q[0]), float(cycle) if self.closed else None, low, high)
 
     def start(self, q: Real) -> tuple[State, Real]:
         """A state near that at each place q, from the nearest node, and the residual: how far q is beyond the trace's
@@ -85,11 +84,7 @@ class BranchTrace:
         from_left = bend[left] * (within - self.q[left]) ** 2 <= bend[right] * (within - self.q[right]) ** 2
         node = np.where(from_left, left, right)
         step = (within - self.q[node])[..., None]
-        turns = (
-            self.states.unwrapped[-1] - self.states.unwrapped[0]
-            if self.closed
-            else np.zeros(self.states.unwrapped.shape[-1])
-        )
+        turns = self.states.unwrapped[-1] - self.states.unwrapped[0]
         near_limit = (self.limits[0] & (left == 0)) | (self.limits[1] & (right == len(self.q) - 1))
         limit = np.where(left == 0, 0, len(self.q) - 1)
         inner = np.where(left == 0, right, left)

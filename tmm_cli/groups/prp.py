@@ -45,10 +45,7 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
         C, u, v = self._frame(at, poses)
         ra, rb = rates[a.known], rates[b.known]
         vC = slide_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
-        return (
-            Rate.through(vC, ra.w, c.there * at.a.z),
-            Rate.through(vC, rb.w, c.here * at.b.z),
-        )
+        return Rate.through(vC, ra.w, c.there * at.a.z), Rate.through(vC, rb.w, c.here * at.b.z)
 
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
@@ -60,10 +57,7 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
         by_b = slide_acceleration(C, vC, (poses[b.known].x, v, rates[b.known], accels[b.known]))
         aC = slide_rate(by_a, u, by_b, v, at.det)
         (wa, ea), (wb, eb) = ((rates[k].w, accels[k].e) for k in (a.known, b.known))
-        return (
-            Accel.through(aC, ea, wa, c.there * at.a.z),
-            Accel.through(aC, eb, wb, c.here * at.b.z),
-        )
+        return Accel.through(aC, ea, wa, c.there * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """The polygon gives both guides' forces, moments of each link about C their couples."""

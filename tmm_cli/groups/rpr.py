@@ -77,10 +77,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         aA, aB = a.acceleration(poses, rates, accels), b.acceleration(poses, rates, accels)
         # aB - aA = (i e - w^2) (x + i h) u + 2 i w sliding u + (sliding)' u
         e = (cross(u, aB - aA) + w * w * h - 2 * w * sliding) / at.det
-        return (
-            Accel.through(aA, e, w, a.here * at.a.z),
-            Accel.through(aB, e, w, b.here * at.b.z),
-        )
+        return Accel.through(aA, e, w, a.here * at.a.z), Accel.through(aB, e, w, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """b along the guide, moments of the whole group about A, then the polygons of each link."""

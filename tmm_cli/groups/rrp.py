@@ -81,10 +81,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         ea = cross(u, w) / at.det
         aC = carried - u * (dot(w, ra) / at.det)
         eb = accels[b.known].e
-        return (
-            Accel.through(aA, ea, wa, a.here * at.a.z),
-            Accel.through(aC, eb, wb, c.here * at.b.z),
-        )
+        return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""

@@ -81,10 +81,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         aB = b.acceleration(poses, rates, accels)
         w = (aB - wb * wb * rb) - (aA - wa * wa * ra)
         ea, eb = dot(w, rb) / at.det, dot(w, ra) / at.det
-        return (
-            Accel.through(aA, ea, wa, a.here * at.a.z),
-            Accel.through(aB, eb, wb, b.here * at.b.z),
-        )
+        return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aB, eb, wb, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """Moments of each link about its outer hinge give the reaction in C, the polygon of each link the outer ones.

@@ -27,12 +27,7 @@ class SmoothWay:
 
     def within(self, low: float, high: float) -> Real:
         """Those from one place to another, in growing order."""
-        if self.cycle is None:
-            found = self.places
-        else:
-            turns = np.arange(np.floor((low - self.start) / self.cycle), np.ceil((high - self.start) / self.cycle) + 1)
-            found = np.sort((self.places[:, None] + self.cycle * turns).ravel())
-        return found[(found >= low) & (found < high)]
+        return again(self.places, self.start, self.cycle, low, high)
 
     def _passed(self, q: Real) -> Real:
         """How many there are from the start to places q."""
@@ -41,3 +36,12 @@ class SmoothWay:
         inside = within - whole * (self.cycle or 0.0)
         passed: Real = whole * len(self.places) + np.searchsorted(self.places, inside)
         return passed
+
+
+def again(places: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
+    """Places of a cycle that begins at `start`, as often as they come between two others; None: they come once."""
+    turns = np.zeros(1)
+    if cycle is not None:
+        turns = np.arange(np.floor((low - start) / cycle) - 1, np.ceil((high - start) / cycle) + 1)
+    found = np.sort((places[:, None] + (cycle or 0.0) * turns).ravel())
+    return found[(found >= low) & (found < high)]

@@ -72,11 +72,9 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
     stroke = linkage.driver.stroke
     if stroke is None:
         return driver_range
-    low, high = (
-        (stroke[0], stroke[1])
-        if driver_range.full
-        else (max(driver_range.start, stroke[0]), min(driver_range.end, stroke[1]))
-    )
+    low, high = stroke
+    if not driver_range.full:
+        low, high = max(driver_range.start, low), min(driver_range.end, high)
     kept = tuple(limit for limit in driver_range.limits if low <= limit.place <= high)
     return DriverRange(low, high, False, kept, inclusive=(low, high) == stroke)
 
@@ -218,7 +216,6 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, nu
         np.flatnonzero((inner >= residual[:-2]) & (inner > residual[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     )
     step = scan.q[1] - scan.q[0]
-
     upto = towards(kernels, kernels[number].group.links)
 
     def slack(q: Real) -> Real:
@@ -249,13 +246,12 @@ def limit_from(
     None when they go on to the end of what was looked at.
     """
     at, cycle = about
-    if int(blocked[-1 if known.place > at else 0]) in (0, len(steps) - 1):
+    sense = -1 if known.place > at else 1
+    index = int(blocked[-1 if known.place > at else 0])
+    if index in (0, len(steps) - 1):
         return None
-    if known.place > at:
-        other = limit(int(blocked[-1]), -1)
-        return DriverLimit(other.place - cycle, other.group)
-    other = limit(int(blocked[0]), 1)
-    return DriverLimit(other.place + cycle, other.group)
+    other = limit(index, sense)
+    return DriverLimit(other.place + sense * cycle, other.group)
 
 
 def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange) -> tuple[DeadPosition, ...]:

@@ -250,10 +250,7 @@ def _stacked(blocks: Iterable[Real], columns: int) -> Real:
 
 
 def _rank(matrix: Real) -> int:
-    if not matrix.size:
-        return 0
-    values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > DEPENDENT * values[0]))
+    return int(np.linalg.matrix_rank(matrix, rtol=DEPENDENT)) if matrix.size else 0
 
 
 def _independent(matrix: Real) -> bool:
