@@ -17,13 +17,12 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Leaf, added, evaluate, signed
+from tmm_cli.note.expression import EXACT, Expression, Found, Leaf, added, evaluate, signed
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import cross, dot
 
 ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
 SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found
-EXACT = 15  # figures of what is put in, where the two are compared
 
 MOMENT, SHARE = Symbol("D"), Symbol("k")
 
