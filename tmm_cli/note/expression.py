@@ -18,6 +18,7 @@ from tmm_cli.plans.record import Symbol
 
 FIGURES = 4  # of a result, and of what is put in if that does
 MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
+EXACT = 15  # of what is compared, not printed
 WHOLE = 7  # figures before the point that are written out
 NOTHING = 1e-9  # of the largest term: a sum that is less is zero
 

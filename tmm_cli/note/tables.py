@@ -25,7 +25,7 @@ def rows_of(
 
     zeros: at the end of a number are kept, so that all of a column have as many figures.
     """
-    units, every = subject.results.problem.units, range(table.rows)
+    units = subject.results.problem.units
     columns = [
         (by_hand(on_paper(c.heading(units))), _texts(replace(_on_paper(c), digits=digits), units, zeros), c.dimension)
         for c in table.columns
@@ -36,9 +36,8 @@ def rows_of(
         for __, texts, dimension in kept
     ]
     _told_apart(table, shown)
-    head: Sequence[Line] = [(text,) for text, *__ in kept]
-    rows = tuple(tuple((texts[k],) for texts in shown) for k in every)
-    return Rows(caption or table.title, tuple(head), rows, key)
+    rows = tuple(cells(*row) for row in zip(*shown, strict=True))
+    return Rows(caption or table.title, cells(*(head for head, *__ in kept)), rows, key)
 
 
 def over_positions(subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str) -> Rows:

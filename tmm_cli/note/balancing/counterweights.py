@@ -17,13 +17,12 @@ from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Expression, Found, Leaf, added, evaluate, signed
+from tmm_cli.note.expression import EXACT, Expression, Found, Leaf, added, evaluate, signed
 from tmm_cli.plans.record import Symbol
 from tmm_cli.vectors import cross, dot
 
 ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
 SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found
-EXACT = 15  # figures of what is put in, where the two are compared
 
 MOMENT, SHARE = Symbol("D"), Symbol("k")
 
@@ -46,15 +45,13 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
             D=MOMENT,
         )  # fmt: skip
     for weight in found.counterweights:
-        angle = subject.text(float(np.degrees(weight.angle)))
-        yield said(
-            _("Link {link}: {D} = {size} kg·m, {angle}° from the x axis of the link."),
-            link=weight.place.link, D=Symbol("D", weight.place.link), size=subject.text(weight.size), angle=angle,
-        )  # fmt: skip
+        link, own = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
+        size, angle = subject.text(weight.size), subject.text(float(np.degrees(weight.angle)))
+        text = _("Link {link}: {D} = {size} kg·m, {angle}° from the x axis of the link.")
+        yield said(text, link=link, D=own.symbol, size=size, angle=angle)
         if weight.mass is not None and weight.size:
-            own = Leaf(Symbol("D", weight.place.link), weight.size)
-            mass = own / Leaf(Symbol("r", weight.place.link), weight.place.radius)
-            yield Found(Symbol("m", f"c{weight.place.link}"), mass, weight.mass, _("kg"))
+            mass = own / Leaf(Symbol("r", link), weight.place.radius)
+            yield Found(Symbol("m", f"c{link}"), mass, weight.mass, _("kg"))
     before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
     if found.left < ON_LINE:
         yield said(_("They leave no shaking force: the common centre of mass of the links does not move."))

@@ -65,8 +65,7 @@ def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
     """Parts of the force, its size, and the moment."""
     results = subject.results
     motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
-    about, moments = found.before.about, list[Expression]()
-    terms: tuple[list[Expression], list[Expression]] = ([], [])
+    about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
     largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
@@ -74,12 +73,11 @@ def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
         a, r = complex(centre.a[0]), complex(centre.x[0]) - about
         if mass and abs(a) > NO_VECTOR * largest:
             m = Leaf(Symbol("m", name), mass)
-            parts = [Leaf(Symbol("a", f"S{name}{axis}"), value) for axis, value in (("x", a.real), ("y", a.imag))]
-            arms = [Leaf(Symbol(axis, f"S{name}"), value) for axis, value in (("x", r.real), ("y", r.imag))]
-            for own, part in zip(terms, parts, strict=True):
-                own.append(m * part)
-            turned = arms[0] * parts[1] - arms[1] * parts[0]
-            moments.append(m * turned)
+            ax, ay = Leaf(Symbol("a", f"S{name}x"), a.real), Leaf(Symbol("a", f"S{name}y"), a.imag)
+            x, y = Leaf(Symbol("x", f"S{name}"), r.real), Leaf(Symbol("y", f"S{name}"), r.imag)
+            along.append(m * ax)
+            across.append(m * ay)
+            moments.append(m * (x * ay - y * ax))
         inertia, epsilon = float(np.ravel(link.inertia)[0]), float(np.broadcast_to(motion.link(name).epsilon, 1)[0])
         if inertia and epsilon:
             moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
@@ -88,7 +86,7 @@ def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
     yield said(_("Position {number}:"), number=subject.called(k))
     force = complex(found.before.force[k])
     x, y = Leaf(X, force.real), Leaf(Y, force.imag)
-    for part, own in zip((x, y), terms, strict=True):
-        yield Found(part.symbol, -added(own), part.value, _("N"))
+    yield Found(X, -added(along), x.value, _("N"))
+    yield Found(Y, -added(across), y.value, _("N"))
     yield Found(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
     yield Found(MOMENT, -added(moments), float(found.before.moment[k]), _("N·m"))

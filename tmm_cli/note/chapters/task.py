@@ -112,18 +112,17 @@ def _lengths(subject: Subject, link: Link) -> Line:
 
 
 def _fixed(subject: Subject) -> Rows:
-    linkage = subject.results.linkage
-    points = linkage.links[FRAME].points.items()
-    rows = [cells(point, *_place(subject, place), NONE) for point, place in points]
+    """The last column is that of the directions of guides."""
+    linkage, unit = subject.results.linkage, subject.unit(LENGTH)
+    rows = [cells(point, *_place(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
     for slide in linkage.slides:
         if slide.carrier == FRAME:
             angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE)
             rows.append(cells(_("guide {name}").format(name=slide.name), *_place(subject, slide.through), angle))
-    unit = subject.unit(LENGTH)
     head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
-    shown = tuple(row if any(r[3] != (NONE,) for r in rows) else row[:3] for row in rows)
-    caption = _("Fixed points and guides") if _guided(subject) else _("Fixed points")
-    return Rows(caption, head[: len(shown[0]) if shown else 3], shown, "fixed")
+    if _guided(subject):
+        return Rows(_("Fixed points and guides"), head, tuple(rows), "fixed")
+    return Rows(_("Fixed points"), head[:-1], tuple(row[:-1] for row in rows), "fixed")
 
 
 def _guided(subject: Subject) -> bool:
@@ -136,21 +135,19 @@ def _place(subject: Subject, place: complex) -> tuple[str, str]:
 
 
 def _masses(subject: Subject) -> Rows:
-    linkage = subject.results.linkage
+    linkage, unit = subject.results.linkage, subject.unit
     rows = []
     for name in heavy(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
         own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
         rows.append(cells(name, *own, *_place(subject, link.centre)))
-    head = (
-        (_("link"),), (Symbol("m"), f", {subject.unit(MASS)}"),
-        (Symbol("J", "S"), f", {subject.unit(INERTIA)}"),
-        (Symbol("x", "S"), f", {subject.unit(LENGTH)}"), (Symbol("y", "S"), f", {subject.unit(LENGTH)}"),
+    quantities = (
+        (Symbol("m"), MASS), (Symbol("J", "S"), INERTIA), (Symbol("x", "S"), LENGTH), (Symbol("y", "S"), LENGTH),
     )  # fmt: skip
-    return Rows(
-        _("Masses, moments of inertia, and centres of mass in the axes of each link"), head, tuple(rows), "masses"
-    )
+    head = cells(_("link"), *((symbol, f", {unit(dimension)}") for symbol, dimension in quantities))
+    caption = _("Masses, moments of inertia, and centres of mass in the axes of each link")
+    return Rows(caption, head, tuple(rows), "masses")
 
 
 def _loads(subject: Subject) -> Rows:

@@ -10,12 +10,10 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.words import INERTIA, MOMENT, Here
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Sum, added, signed
+from tmm_cli.note.expression import EXACT, Expression, Found, Function, Leaf, Sum, added, evaluate, signed
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol
 from tmm_cli.tolerances import NO_VECTOR
-
-Term = tuple[Expression, float]  # how it is written, its size
 
 
 def explained(here: Here) -> Iterable[Block]:
@@ -43,18 +41,13 @@ def inertia(here: Here) -> Iterable[Block]:
     yield Found(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²"))
 
 
-def _of_link(here: Here, name: str) -> Iterable[Term]:
+def _of_link(here: Here, name: str) -> Iterable[Expression]:
     motion, link, omega = here.motion, here.motion.linkage.links[name], here.speed
-    for mass, letter, symbol, speed in (
-        (link.mass, Symbol("m", name), Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k]))),
-        (link.inertia, Symbol("J", f"S{name}"), Symbol("ω", name), abs(float(motion.link(name).omega[here.k]))),
-    ):
-        own = Leaf(letter, float(np.ravel(mass)[0]))
-        size = own.value * (speed / omega.value) ** 2
-        if symbol == omega.symbol:
-            yield own, size
-        else:
-            yield own * (Leaf(symbol, speed) / omega) ** 2, size
+    speed = Leaf(Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k])))
+    turned = Leaf(Symbol("ω", name), abs(float(motion.link(name).omega[here.k])))
+    yield Leaf(Symbol("m", name), float(np.ravel(link.mass)[0])) * (speed / omega) ** 2
+    inertia = Leaf(Symbol("J", f"S{name}"), float(np.ravel(link.inertia)[0]))
+    yield inertia if turned.symbol == omega.symbol else inertia * (turned / omega) ** 2
 
 
 def moment(here: Here) -> Iterable[Block]:
@@ -71,28 +64,27 @@ def moment(here: Here) -> Iterable[Block]:
     yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
 
 
-def _of_load(here: Here, load: Applied) -> Iterable[Term]:
+def _of_load(here: Here, load: Applied) -> Iterable[Expression]:
     k, motion = here.k, here.motion
     force, couple = load_symbols(load)
     pull, turned = complex(load.force[k]), float(load.moment[k])
     speed = complex(motion.point(load.link, load.at).v[k])
-    power = (pull * speed.conjugate()).real
     if pull and speed:
         in_centre = load.kind == "weight"
         own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
         angle, factors = abs(float(np.angle(pull / speed))), Leaf(force, abs(pull)) * own
         if min(angle, np.pi - angle) < NO_VECTOR:
-            yield signed(1 - angle, factors), abs(power)
+            yield signed(1 - angle, factors)
         else:
             cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
-            yield factors * cosine, abs(power)
+            yield factors * cosine
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
         own = Leaf(Symbol("ω", load.link), abs(omega))
-        yield signed(turned * omega, Leaf(couple, abs(turned)) * own), abs(turned * omega)
+        yield signed(turned * omega, Leaf(couple, abs(turned)) * own)
 
 
-def _sum(terms: list[Term]) -> Sum:
+def _sum(terms: list[Expression]) -> Sum:
     """Without terms that are nothing beside the others."""
-    largest = max(size for __, size in terms)
-    return added(term for term, size in terms if size > NO_VECTOR * largest)
+    sizes = [abs(evaluate(term, EXACT)) for term in terms]
+    return added(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))

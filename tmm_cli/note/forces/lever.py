@@ -24,10 +24,9 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     if not plan.equation.terms:
         return
     yield Heading(heading, 2)
-    turns = turns_of(subject)
-    unit = _("N·m") if turns else _("N")
+    unit = _("N·m") if turns_of(subject) else _("N")
     if explained:
-        yield _explained(turns=turns)
+        yield _explained(turns=turns_of(subject))
     yield from _couples(subject, plan, k)
     yield from subject.figures(
         "lever", _("The lever is shown in figure {figure}."),
@@ -35,15 +34,14 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     )  # fmt: skip
     yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
-    if plan.equation.sought is None and found is not None:
-        yield found
-        yield from _of_several(subject, k, unit)
-        return
     if found is None:
         yield said(_("Nothing has a moment about the pole: nothing has to be balanced."))
-        return
-    yield from (Equation(moments(plan.equation)), found)
-    yield from _compared(subject, k)
+    elif plan.equation.sought is None:
+        yield found
+        yield from _of_several(subject, k, unit)
+    else:
+        yield from (Equation(moments(plan.equation)), found)
+        yield from _compared(subject, k)
 
 
 def _explained(*, turns: bool) -> Block:

@@ -36,20 +36,17 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
         )  # fmt: skip
     ready, later = part.sums
     equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
-    for equation in (e for e in equations if not e.special):
-        yield from _moments(equation)
+    yield from chain.from_iterable(map(_moments, (e for e in equations if not e.special)))
     yield from chain.from_iterable(map(_projections, ready))
-    for equation in (e for e in equations if e.special):  # what the sums give has moments there
-        yield from _moments(equation)
+    # what the sums give has moments there
+    yield from chain.from_iterable(map(_moments, (e for e in equations if e.special)))
     if part.inner_first:
         yield from _guide_between(part)
     yield from _force_plan(part, explained=first)
     if not part.inner_first:
         yield from _inner(part)
     yield from chain.from_iterable(map(_projections, later))
-    for equation in part.loaded.equations:
-        if equation.sought is not None and equation.sought.arm:
-            yield from _moments(equation)
+    yield from chain.from_iterable(map(_moments, (e for e in part.loaded.equations if e.sought and e.sought.arm)))
     yield from _balance(part)
 
 

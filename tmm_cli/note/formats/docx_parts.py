@@ -99,15 +99,12 @@ def _numbers(document: Any) -> None:
         f'<w:pPr><w:ind w:left="0" w:firstLine="0"/></w:pPr></w:lvl>'
         for k in range(3)
     )
-    abstract = parse_xml(
-        f'<w:abstractNum {nsdecls("w")} w:abstractNumId="{own}"><w:multiLevelType w:val="multilevel"/>'
-        f"{levels}</w:abstractNum>"
-    )
-    numbering.insert(0, abstract)
+    kind = '<w:multiLevelType w:val="multilevel"/>'
+    abstract = f'<w:abstractNum {nsdecls("w")} w:abstractNumId="{own}">{kind}{levels}</w:abstractNum>'
+    numbering.insert(0, parse_xml(abstract))
     numbering.append(parse_xml(f'<w:num {nsdecls("w")} w:numId="{own}"><w:abstractNumId w:val="{own}"/></w:num>'))
     for k in range(3):
-        properties = document.styles[f"Heading {k + 1}"].element.get_or_add_pPr()
-        numbered = properties.get_or_add_numPr()
+        numbered = document.styles[f"Heading {k + 1}"].element.get_or_add_pPr().get_or_add_numPr()
         numbered.get_or_add_ilvl().val = k
         numbered.get_or_add_numId().val = int(own)
 

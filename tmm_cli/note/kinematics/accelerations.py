@@ -35,13 +35,10 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
     for equation in step.equations:
         a = here.a.of(equation.point)
+        text = _("The driving link {link} moves uniformly, so that {a} = 0.")
         if a.segment:
-            yield said(
-                _("All points of link {link} have the acceleration {a} of the drive."), link=step.links[0], a=a.symbol
-            )
-        else:
-            text = _("The driving link {link} moves uniformly, so that {a} = 0.")
-            yield said(text, link=step.links[0], a=a.symbol)
+            text = _("All points of link {link} have the acceleration {a} of the drive.")
+        yield said(text, link=step.links[0], a=a.symbol)
     turned = words.further(step)
     if turned and here.first:
         even = _(
