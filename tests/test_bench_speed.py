@@ -12,7 +12,7 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.bench import measured, speed
 from tmm_cli.bench.by_hand import MECHANISMS
 from tmm_cli.bench.chains import chain

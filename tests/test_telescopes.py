@@ -16,7 +16,7 @@ from tmm_cli import load, solve
 from tmm_cli.accuracy.data import widened
 from tmm_cli.assembly.choose import assemble
 from tmm_cli.assembly.enumerate import find_assemblies
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.double_double import EPS, exactly
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import react

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.errors import LinkageError, MissingStrokesError, NoCycleError, SettingError
 from tmm_cli.groups.sequence import LawOfMotion
 from tmm_cli.kinematics.intermittent import Intermittent, Part, Ride, parts_of, rides_of_turns, rides_there_and_back

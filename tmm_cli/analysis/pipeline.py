@@ -17,7 +17,7 @@ from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
 from tmm_cli.analysis.requirements import refuse_unmet
 from tmm_cli.analysis.selection import carriers, check
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.double_double import exactly
 from tmm_cli.errors import UnknownPositionError
 from tmm_cli.forces.applied import Applied

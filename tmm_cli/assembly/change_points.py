@@ -6,6 +6,8 @@ on which velocities are continuous, that changes.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from tmm_cli.groups.base import Closed, Kernel, reach
@@ -53,14 +55,11 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
 
 def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float) -> float | None:
     """A change point near a place, to the last bit; None where the group has room to spare or cannot pass."""
-
-    def slack(q: Real) -> Real:
-        return -link_states(linkage, upto, q, 0).placements[-1].residual
-
-    closer = slack(place + step * np.linspace(-1, 1, CLOSER))
+    to_spare = partial(slack, linkage, upto)
+    closer = to_spare(place + step * np.linspace(-1, 1, CLOSER))
     if not np.all(np.isfinite(closer)) or np.abs(np.min(closer)) > 2 * np.max(np.abs(np.diff(closer))):
         return None
-    best = pinned(linkage, upto, least(slack, place - step, place + step)[0], step)
+    best = pinned(linkage, upto, least(to_spare, place - step, place + step)[0], step)
     beside = best + step * BESIDE * np.array([-2, -1, 0, 1, 2])
     states = link_states(linkage, upto, beside, 0, blank=False)
     at = states.placements[-1]
@@ -68,6 +67,11 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float
     if not at.dead[2] or not np.all(states.placed) or det[0] > SIMPLE * det[1] or det[4] > SIMPLE * det[3]:
         return None
     return best
+
+
+def slack(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+    """How much the last group has to spare before it cannot be assembled."""
+    return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
 def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:

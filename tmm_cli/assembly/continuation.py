@@ -34,6 +34,8 @@ LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it 
 AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
 SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
 
+End = Literal["reached", "limit", "lost", "boundary"]
+
 
 class Walker:
     """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
@@ -44,7 +46,7 @@ class Walker:
         self.at = 0.0
         self.crossings = Crossings(kernel, source, self.corrector.node, scale)
 
-    def trace(self, start: Node, end: float) -> tuple[list[Node], Literal["reached", "limit", "lost", "boundary"]]:
+    def trace(self, start: Node, end: float) -> tuple[list[Node], End]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node. boundary: `end` is dead."""
         nodes: list[Node] = []
         here, failures, largest = start, 0, 0.0
@@ -230,24 +232,18 @@ class Walker:
                 break
         nodes = whole
         if turns and above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
-            return _traced(nodes, True)
+            return _traced(nodes)
         for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
             if turns and above == "reached":
                 more, above = self.trace(nodes[-1], last + 2 * half * turn)
                 nodes += more
                 if above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
-                    return _traced(nodes, True)
+                    return _traced(nodes)
         for turn in range(1, TURNS):
             if turns and below == "reached" and above != "reached":
                 more, below = self.trace(nodes[0], first - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        return _traced(
-            nodes,
-            False,
-            (below == "reached", above == "reached"),
-            (below == "limit", above == "limit"),
-            (below in ("lost", "boundary"), above in ("lost", "boundary")),
-        )
+        return _traced(nodes, (below, above))
 
 
 def _flat(state: State, size: float) -> Real:
@@ -255,17 +251,16 @@ def _flat(state: State, size: float) -> Real:
     return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
 
 
-def _traced(
-    nodes: list[Node],
-    closed: bool,
-    open_ends: tuple[bool, bool] = (False, False),
-    limits: tuple[bool, bool] = (False, False),
-    lost: tuple[bool, bool] = (False, False),
-) -> BranchTrace:
+def _traced(nodes: list[Node], ends: tuple[End, End] | None = None) -> BranchTrace:
+    """The trace of nodes in growing order; ends: how it ended below and above, None: it is closed."""
+
+    def ended(*ways: End) -> tuple[bool, bool]:
+        return (ends[0] in ways, ends[1] in ways) if ends else (False, False)
+
     states, first, second = (joined(getattr(node, part) for node in nodes) for part in ("state", "first", "second"))
     dead = np.array([n.q for n in nodes if n.dead])
     flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
     return BranchTrace(
-        np.array([n.q for n in nodes]), states, first, second, closed, open_ends, limits, lost,
-        dead=dead, flips=flips,
+        np.array([n.q for n in nodes]), states, first, second, ends is None, ended("reached"), ended("limit"),
+        ended("lost", "boundary"), dead=dead, flips=flips,
     )  # fmt: skip

@@ -15,6 +15,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from tmm_cli.assembly.search import close_from_afar, placed_by_angles, sketched_angles
+from tmm_cli.errors import MobilityError
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import drives_at, frame_state
 from tmm_cli.groups.state import Pose, State
@@ -27,6 +28,15 @@ from tmm_cli.vectors import Real
 STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both ways
 MOST_TRIES = 3000
 STARTS = 200
+
+
+def mobile(linkage: Linkage) -> Structure:
+    """The groups of a linkage whose drivers move all of it, by the count or the rank. Raises MobilityError."""
+    structure = analyse(linkage)
+    moving = structure if structure.sound else by_rank(linkage, structure)
+    if moving is None:
+        raise MobilityError(structure)
+    return moving
 
 
 def by_rank(linkage: Linkage, structure: Structure) -> Structure | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from tmm_cli.analysis.quantities import quantities
 from tmm_cli.analysis.quantities.base import Quantity
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.grading.block import AnswerRule, Blocks, Grading
 from tmm_cli.language import _
 from tmm_cli.library import problem_of

@@ -7,7 +7,6 @@ Machinery (1886).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -46,7 +45,9 @@ def centres(states: LinkStates, structure: Structure, k: int) -> list[Centre]:
     """All centres in a position: those of pairs, then the others in the order in which Kennedy's lines find them."""
     names = (FRAME, *states.linkage.moving)
     size = _size(states, k)
-    places = {links: _place(states, *links, k, size) for links in combinations(names, 2)}
+    motion = {name: _about(states, name, k) for name in names}
+    least = STILL * max(max(abs(v), abs(w) * size) for v, w in motion.values())
+    places = {(i, j): _place(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
     pairs = {_pair(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"}  # a cam shows no centre
     for links, pair in pairs.items():
         places[links] = _of_pair(states, pair, k) or places[links]
@@ -83,11 +84,9 @@ def _size(states: LinkStates, k: int) -> float:
     return max(abs(p - points[0]) for p in points) or 1.0
 
 
-def _place(states: LinkStates, i: str, j: str, k: int, size: float) -> Place:
-    """Place, or direction at infinity."""
-    one, other = (_about(states, name, k) for name in (i, j))
+def _place(one: tuple[complex, float], other: tuple[complex, float], size: float, least: float) -> Place:
+    """Place, or direction at infinity, of two links by their motions; least: what one that stands has."""
     slip, turn = one[0] - other[0], one[1] - other[1]
-    least = STILL * max(abs(part) for name in states.linkage.moving for part in _sizes(states, name, k, size))
     if abs(turn) * size <= max(least, abs(slip) / FAR):
         return None, None if abs(slip) <= least else 1j * slip / abs(slip)
     return 1j * slip / turn, None
@@ -100,11 +99,6 @@ def _about(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
     pose, rate = states.poses[name], states.first[name]
     v, w, x = (np.broadcast_to(part, np.shape(states.q))[k] for part in (rate.v, rate.w, pose.x))
     return complex(v - 1j * w * x), float(w)
-
-
-def _sizes(states: LinkStates, name: str, k: int, size: float) -> Iterator[float]:
-    v, w = _about(states, name, k)
-    yield from (abs(v), abs(w) * size)
 
 
 def _crossing(

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.assembly.change_points import pinned
+from tmm_cli.assembly.change_points import pinned, slack
 from tmm_cli.groups.base import Closed, Kernel, reach
 from tmm_cli.groups.sequence import DriverMotion, LinkStates, link_states, towards
 from tmm_cli.groups.unwrapped_angles import Winding
@@ -216,12 +216,8 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, nu
         np.flatnonzero((inner >= residual[:-2]) & (inner > residual[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     )
     step = scan.q[1] - scan.q[0]
-    upto = towards(kernels, kernels[number].group.links)
-
-    def slack(q: Real) -> Real:
-        return -link_states(linkage, upto, q, 0).placements[-1].residual
-
-    narrow: Real = least(slack, scan.q[close] - step, scan.q[close] + step)[0]
+    to_spare = partial(slack, linkage, towards(kernels, kernels[number].group.links))
+    narrow: Real = least(to_spare, scan.q[close] - step, scan.q[close] + step)[0]
     return narrow
 
 

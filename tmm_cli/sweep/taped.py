@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import link_states

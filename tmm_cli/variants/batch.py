@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_cli.analysis.selection import values
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.forces.friction import solve_friction
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, react

@@ -15,7 +15,7 @@ import numpy as np
 
 from tmm_cli.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.errors import LinkageError
 from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.groups.base import Kernel
 from tmm_cli.kinematics.driver_range import cycle_of
 from tmm_cli.linkage import Linkage, Sketch

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.solvable import mobile
+from tmm_cli.assembly.rank import mobile
 from tmm_cli.errors import LinkageError
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.kinematics.motion import Motion
