@@ -68,12 +68,6 @@ class SliderEnd:
         return self.here * own.z if self.runs_here else poses[self.known].at(self.there) - own.x
 
 
-def hinge_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd:
-    """An outer (or inner) hinge as its link `own` sees it."""
-    known = pair.other(own)
-    return HingeEnd(known, linkage.local(known, pair.point), linkage.local(own, pair.point))
-
-
 def slider_end(pair: Pair, own: str) -> SliderEnd:
     """A sliding pair as its link `own` sees it."""
     slide = pair.slide
@@ -85,7 +79,10 @@ def slider_end(pair: Pair, own: str) -> SliderEnd:
 
 def seen(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
     """A lower pair as its link `own` sees it."""
-    return hinge_end(pair, own, linkage) if pair.kind == "R" else slider_end(pair, own)
+    if pair.kind == "P":
+        return slider_end(pair, own)
+    known = pair.other(own)
+    return HingeEnd(known, linkage.local(known, pair.point), linkage.local(own, pair.point))
 
 
 @dataclass(frozen=True)

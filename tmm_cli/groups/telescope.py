@@ -239,7 +239,9 @@ class Telescope(Closed):
         on_arm = joint if chain.dyad.links[1] == chain.arm else joint.opposite
         back = on_arm.opposite
         force = on_n.force + back.force
-        moment = on_n.about(point - n.x) + cross(self._joint_at(pose) - point, back.force)
+        guide = chain.joint.slide
+        joint_at = n.at(self.pin) if guide is None else pose[guide.runner].at(guide.at)
+        moment = on_n.about(point - n.x) + cross(joint_at - point, back.force)
         moment = moment if back.couple is None else moment + back.couple
         sense = -1.0 if slide.runner == chain.n else 1.0  # what holds n, on the runner
         push, across = sense * dot(u, force), sense * dot(1j * u, force)
@@ -251,8 +253,3 @@ class Telescope(Closed):
             tuple(outer[pair.name] for pair in self.group.outer), tuple(inner[pair.name] for pair in self.group.inner),
             {self.driver.link: push},
         )  # fmt: skip
-
-    def _joint_at(self, pose: Poses) -> Vector:
-        """Where the reaction of n's joint with the arm acts."""
-        slide = self.chain.joint.slide
-        return pose[self.chain.n].at(self.pin) if slide is None else pose[slide.runner].at(slide.at)
