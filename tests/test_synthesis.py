@@ -10,10 +10,11 @@ import pytest
 from test_commands import ROOT, tmm
 from test_synthesis_crank_slider import LINKAGE, MET
 
-from tmm_cli import load
+from tmm_cli import load, solve
 from tmm_cli.draw.sheets.synthesis import diagram
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.record import TaskProblem
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.synthesis import TASKS
 from tmm_cli.synthesis.construction import Diagram, Line
@@ -192,6 +193,18 @@ def test_numbers_of_what_is_found_are_numbers_in_the_table_and_texts_are_no_form
 def test_explain_says_where_parameters_come_from():
     told = tmm("explain", ROOT / "problems" / "press-synthesis.yaml").stdout
     assert "Parameters found by synthesis" in told and "Asked: crank-slider" in told
+
+
+def test_a_task_is_solved_when_its_problem_is_first_asked_for_a_number_and_only_then():
+    # A stone whose slot hinges on C has theta between its ends: OA = OC sin(theta/2), theta = pi (k - 1)/(k + 1).
+    problem = load(str(ROOT / "problems" / "slotted-lever-synthesis.yaml"))
+    assert isinstance(problem, TaskProblem) and "whole" not in vars(problem)
+    assert sorted(set(problem.linkage.links) - {"0"}) == ["1", "2", "3"]
+    assert (problem.request.count, problem.request.start, problem.request.detail) == (12, "working stroke", (3,))
+    found = {value.name: value.value for value in problem.synthesis.outcome.found if value.name}
+    assert problem.synthesis.task == "slotted-lever" and set(found) == set(problem.synthesis.names)
+    assert found["OA"] == pytest.approx(0.4 * np.sin(np.pi * 0.6 / 2.6 / 2), rel=1e-12)
+    assert problem.linkage is problem.whole.linkage and solve(problem).problem is problem.whole
 
 
 def test_a_file_without_a_synthesis_imports_nothing_of_it():
