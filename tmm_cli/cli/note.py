@@ -21,7 +21,7 @@ from tmm_cli.results.warnings import warnings
 
 def note(
     files: Files,
-    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help="html, docx: with commas.")] = "html",
+    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help=f"{', '.join(FORMATS)}: with commas.")] = "html",
     out: Folder = Path("outputs"),
     settings: Settings = None,
     variants: Variants = None,

@@ -15,6 +15,7 @@ from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.draw import remarks
+from tmm_cli.draw.formats import FORMATS
 from tmm_cli.draw.layout.files import files_of_sheets, formats_of
 from tmm_cli.results.warnings import warnings
 
@@ -22,9 +23,7 @@ from tmm_cli.results.warnings import warnings
 def sheets(
     files: Files,
     paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Of the paper.")] = "A1",
-    formats: Annotated[
-        str, typer.Option("--as", metavar="KINDS", help="pdf, dxf, svg, png, emf: with commas.")
-    ] = "pdf",
+    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help=f"{', '.join(FORMATS)}: with commas.")] = "pdf",
     out: Folder = Path("outputs"),
     positions: Annotated[
         Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")

@@ -15,7 +15,13 @@ from tmm_cli.draw.paper.drawing import Drawing
 from tmm_cli.draw.paper.fonts import lacking
 from tmm_cli.language import _
 
-FORMATS: dict[str, Callable[[Drawing], bytes]] = {"png": png, "svg": svg, "pdf": pdf, "dxf": dxf, "emf": emf}
+FORMATS: dict[str, Callable[[Drawing], bytes]] = {
+    "pdf": pdf,
+    "dxf": dxf,
+    "svg": svg,
+    "png": png,
+    "emf": emf,
+}
 WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
