@@ -20,8 +20,8 @@ from tmm_cli.results.reports.structure import ROLES, called
 from tmm_cli.results.stages import heavy, link_name
 from tmm_cli.results.understood import motion
 
-# tables of `tmm explain` that are the file's own data
-FURTHER = ("drivers", "meshes", "cams", "springs", "friction", "machine", "drive")
+# tables of `tmm explain` that the note has in words of its own; the others it has as they are
+IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")
 SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
 
 
@@ -57,8 +57,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield from tabled(_("The loads are given in table {table}."), _loads(subject))
     further = [
         table for table in given(problem)
-        if (table.name in FURTHER or table.name.startswith("load_table"))
-        and not (table.name == "drivers" and not linkage.others)
+        if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
     ]  # fmt: skip
     if further:
         yield several(
