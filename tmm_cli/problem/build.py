@@ -18,7 +18,7 @@ from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_requ
 from tmm_cli.problem.build_links import build_links, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.build_meshes import build_meshes
-from tmm_cli.problem.build_springs import build_friction, build_springs
+from tmm_cli.problem.build_springs import with_springs
 from tmm_cli.problem.errors import ProblemError, placed_in, under
 from tmm_cli.problem.expressions import resolve_parameters
 from tmm_cli.problem.extended import ExtendedUnits
@@ -103,9 +103,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     )  # fmt: skip
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
-    if shape.springs or shape.friction is not None:
-        linkage = replace(linkage, springs=build_springs(linkage, shape, values))
-        linkage = replace(linkage, friction=build_friction(linkage, shape, values))
+    linkage = with_springs(linkage, shape, values)
     checks = Part(shape.checks, ("checks",), values)
     refuse_tables(shape)
     limit = checks.positive("lever", NUMBER, zero=True)

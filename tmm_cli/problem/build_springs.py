@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from tmm_cli.language import _
 from tmm_cli.linkage import Friction, Linkage, Spring
@@ -12,8 +13,14 @@ from tmm_cli.quantities import ANGLE, DAMPING, FORCE, LENGTH, MOMENT, NUMBER, ST
 from tmm_cli.structure.assur import analyse
 
 
-def build_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[Spring, ...]:
-    """The springs, in the order of the file."""
+def with_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
+    """The linkage with its springs and friction."""
+    springs, friction = _springs(linkage, shape, values), _friction(linkage, shape, values)
+    return replace(linkage, springs=springs, friction=friction)
+
+
+def _springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[Spring, ...]:
+    """In the order of the file."""
     found = []
     for name, given in shape.springs.items():
         check_name(name, ("springs", name), "load", shape.loads)
@@ -56,8 +63,8 @@ def _spring(name: str, given: schema_springs.Spring, linkage: Linkage, part: Par
     return Spring(name, i, j, ends[0], ends[1], twists, rate, free, preload, damping)
 
 
-def build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[Friction, ...]:
-    """Friction pair by pair; none without its block."""
+def _friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[Friction, ...]:
+    """Pair by pair; none without its block."""
     given = shape.friction
     if given is None:
         return ()
