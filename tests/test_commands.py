@@ -310,6 +310,17 @@ def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     assert "inertia couples of links 3" in told
 
 
+def test_a_spring_alone_is_no_mechanism_without_forces(tmp_path):
+    file = tmp_path / "sprung.yaml"
+    spring = "springs: {return: {between: [0, 3], at: [[300, 0], B], rate: 2 N/mm, free: 80}}\ngravity: 0\n"
+    whole = (ROOT / "problems" / "crank-slider.yaml").read_text(encoding="utf-8")
+    bare = re.sub(r"(?m)^(masses|loads):.*\n(?:[ ].*\n)*", "", whole)
+    file.write_text(bare + "gravity: 0\n", encoding="utf-8")
+    assert "all forces are zero" in tmm("explain", file).stdout
+    file.write_text(bare + spring, encoding="utf-8")
+    assert "all forces are zero" not in tmm("explain", file).stdout
+
+
 def test_no_line_of_help_is_cut():
     for words, names in (((), COMMANDS), (("bench",), MEASUREMENTS)):
         told = tmm(*words, "--help").stdout

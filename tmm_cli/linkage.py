@@ -238,6 +238,25 @@ class Linkage:
         """Drivers that stand on the frame: their links need no group."""
         return tuple(d for d in self.drivers if d.base == FRAME)
 
+    @property
+    def acting(self) -> tuple[str, ...]:
+        """Names of the loads and springs."""
+        return (*(load.name for load in self.loads), *(spring.name for spring in self.springs))
+
+    @property
+    def by_strokes(self) -> bool:
+        """Whether loads may hang on the strokes: they act in working ones only, or by a table."""
+        return any(load.working_stroke_only or load.table is not None for load in self.loads)
+
+    @property
+    def by_speed(self) -> tuple[str, ...] | None:
+        """The first thing, by its keys in a file, whose force hangs on how fast the mechanism runs; friction does by
+        the reactions."""
+        damped = next((spring.name for spring in self.springs if spring.damping), None)
+        if damped is not None:
+            return ("springs", damped, "damping")
+        return ("friction",) if self.friction else None
+
     def slide(self, name: str) -> Slide:
         """A sliding pair by its name."""
         return next(s for s in self.slides if s.name == name)

@@ -247,7 +247,7 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
     motion = results.motion
     assert motion is not None
-    strokes = results.strokes if any(x.working_stroke_only or x.table for x in results.linkage.loads) else None
+    strokes = results.strokes if results.linkage.by_strokes else None
     loads = applied(motion, strokes)
     reactions = react(motion, results.structure, loads)
     if motion.finer is not None and motion.where is not None:

@@ -40,10 +40,9 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
     linkage = mechanism.linkage
     if linkage.others:
         raise NoCycleError
-    damped = [spring.name for spring in linkage.springs if spring.damping]
-    if linkage.friction or damped:
-        raise BySpeedError(("springs", damped[0], "damping") if damped else ("friction",))
-    strokes = mechanism.strokes if any(x.working_stroke_only or x.table for x in linkage.loads) else None
+    if linkage.by_speed is not None:
+        raise BySpeedError(linkage.by_speed)
+    strokes = mechanism.strokes if linkage.by_strokes else None
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
         motion = move(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))

@@ -81,4 +81,4 @@ def _told(linkage: Linkage) -> str:
 def _counted(linkage: Linkage) -> tuple[int, int, int]:
     """Moving links, points on them, loads and springs."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
-    return len(linkage.moving), points, len(linkage.loads) + len(linkage.springs)
+    return len(linkage.moving), points, len(linkage.acting)

@@ -136,8 +136,7 @@ def _inertia(linkage: Linkage) -> str:
 
 
 def _acting(linkage: Linkage) -> str:
-    names = [load.name for load in linkage.loads] + [spring.name for spring in linkage.springs]
-    loads = ", ".join(names)
+    loads = ", ".join(linkage.acting)
     return _("loads {loads}").format(loads=loads) if loads else _("no loads")
 
 
@@ -163,7 +162,7 @@ def _skipped(problem: Problem) -> Iterable[tuple[str, str]]:
     if spinless:
         what = _("inertia couples of links {links}").format(links=", ".join(spinless))
         yield what, _("no moments of inertia are given for them")
-    if not linkage.loads and len(light) == len(linkage.moving):
+    if not linkage.acting and len(light) == len(linkage.moving):
         yield _("all forces are zero"), _("neither masses nor loads are given")
     if linkage.gravity == 0:
         yield _("weights"), _("gravity is zero")

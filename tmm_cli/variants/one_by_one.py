@@ -41,7 +41,7 @@ class OneByOne:
         self.structure = mobile(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
         self.turns = cycle_of(self.linkage, self.kernels) or 1
-        self.by_strokes = forces and any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
+        self.by_strokes = forces and self.linkage.by_strokes
         self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
         self.names = tuple(self._one(tuple(first), Places(np.zeros(1), np.zeros(0))))
 

@@ -40,8 +40,7 @@ class Taped:
         self.linkage = self.variant.linkage
         self.structure = mobile(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
-        by_stroke = any(x.working_stroke_only or x.table is not None for x in self.linkage.loads)
-        if self.linkage.friction or (forces and by_stroke):
+        if self.linkage.friction or (forces and self.linkage.by_strokes):
             raise NoTapeError
         self.lines = _straight(self.linkage, self.kernels)
         self.turns = cycle_of(self.linkage, self.kernels) or 1

@@ -42,7 +42,7 @@ def pylinkage(results: Results) -> tuple[str, list[str]]:
             }  # fmt: skip
         made.append(link)
     data = {"name": results.problem.title, "joints": joints, "links": made, "ground": "ground"}
-    left = [_("masses and loads")] if linkage.loads or any(np.any(x.mass) for x in linkage.links.values()) else []
+    left = [_("masses and loads")] if linkage.acting or any(np.any(x.mass) for x in linkage.links.values()) else []
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n", left
 
 

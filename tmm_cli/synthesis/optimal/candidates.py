@@ -73,7 +73,7 @@ class Candidates:
         self.ends = float(ranges.low[0, 0]), float(ranges.low[0, 0] + ranges.span[0, 0])
         self.turns = max(1, round(self.cycle / (2 * np.pi))) if self.closed else 1
         self.count, self.scan = max(self.task.positions, EACH * self.turns), max(SCAN, SCAN_EACH * self.turns)
-        rough = bool(self.linkage.friction) or any(x.working_stroke_only or x.table for x in self.linkage.loads)
+        rough = bool(self.linkage.friction) or self.linkage.by_strokes
         self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
         self.overs = tuple(
             Over(
