@@ -163,7 +163,8 @@ def test_the_flow_trap_is_hinted_at() -> None:
 @pytest.mark.usefixtures("parser")
 def test_hostile_shapes_are_bounded() -> None:
     deep = "f:1:23: a[0][0]: nested too deeply\n  allowed: at most 20 levels"
-    assert refused("a: " + "[" * 100_000) == deep
+    assert refused("a: " + "[" * 500) == deep
+    assert "nested too deeply" in refused("a: " + "[" * 100_000)  # the parser may refuse it before the composer does
     assert "nested too deeply" in refused("a: " + "{a: " * 100_000)
     assert "nested too deeply" in refused("- " * 100_000)
     assert "nested too deeply" in refused("\n".join(" " * level + "a:" for level in range(200)))

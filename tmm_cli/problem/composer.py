@@ -11,10 +11,9 @@ import yaml
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.scalars import HIDDEN, Scalar, comma_error, plain_value, split_number
-from tmm_cli.problem.tree import Mark, Path
+from tmm_cli.problem.tree import MAX_DEPTH, Mark, Path
 from tmm_cli.problem.yaml_errors import syntax_error
 
-MAX_DEPTH: Final = 20
 MAX_NODES: Final = 50_000
 
 LONGEST_CALL: Final = 100  # so far the end of a call that was cut is looked for

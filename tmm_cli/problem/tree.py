@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePath
-from typing import Any, Self
+from typing import Any, Final, Self
+
+MAX_DEPTH: Final = 20  # lists and mappings of a file within each other
 
 Path = tuple[str | int, ...]
 """Where a value stands in a file: keys as written (str) and list indices from 0 (int)."""

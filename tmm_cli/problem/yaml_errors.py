@@ -6,7 +6,7 @@ import yaml
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.tree import Mark
+from tmm_cli.problem.tree import MAX_DEPTH, Mark
 
 
 def tab_error(file: str, mark: Mark) -> ProblemError:
@@ -41,6 +41,7 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
             _("a list item '-' where none can be"), _("each '- item' in a line of its own"), shown
         ),
         "node content": (_("a value is missing"), _("a value"), shown),
+        "nesting depth": (_("nested too deeply"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
     }  # fmt: skip
     problem = f"{error.problem} {error.context}"
     plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
