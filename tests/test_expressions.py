@@ -11,7 +11,22 @@ from hypothesis import strategies as st
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.expressions import evaluate, evaluate_quantity, resolve_parameters
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
-from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, KINDS, LENGTH, MASS, MOMENT, NUMBER, SPEED, TIME, Dimension
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    KINDS,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    PRESSURE,
+    SPEED,
+    TIME,
+    Dimension,
+)
 
 UNITS = UnitSystem()
 GIVEN = {
@@ -55,6 +70,14 @@ GIVEN = {
         ("max(1, 2, 3 mm)", LENGTH, 0.003),
         ("5 m*s", Dimension(length=1, time=1), 5),  # written together it is a unit,
         ("5 m * s", Dimension(length=1, time=1), 10),  # set apart a parameter
+        ("1.9·10³ Н", FORCE, 1900), ("1.9*10^3", NUMBER, 1900), ("2.1×10⁵ МПа", PRESSURE, 2.1e11),
+        ("5/2·10^3 N", FORCE, 2500),  # the unit is that of the power, and what stands before divides and multiplies it
+        ("8·10⁻³ кг·м²", INERTIA, 0.008), ("2·OA", LENGTH, 0.22), ("-10^3 N", FORCE, -1000),
+        ("1 900 N", FORCE, 1900), ("12\u2009500.5 мм", LENGTH, 12.5005), ("1\u202f234\xa0567", NUMBER, 1234567),
+        ("8 с-1", ANGULAR_SPEED, 8), ("82 мин-1", ANGULAR_SPEED, 82 * math.pi / 30), ("2 m·s-2", ACCELERATION, 2),
+        ("10 mm-1", LENGTH, 0.009),  # of other units it is a difference
+        ("5 кгс", FORCE, 5 * 9.80665), ("2 тс", FORCE, 2 * 9806.65), ("6 кгс/см²", PRESSURE, 6 * 98066.5),
+        ("1.5 кгс·м", MOMENT, 1.5 * 9.80665), ("0.2 кгс·м·с²", INERTIA, 0.2 * 9.80665),
     ],
 )  # fmt: skip
 def test_values(source: str | float, want: Dimension, value: float) -> None:
@@ -106,7 +129,17 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("ОА", LENGTH, "there is no such parameter\n  found:   'ОА'" + NAMES + ""
          "\n  did you mean 'OA' in Latin letters?"),
         ("5 rmp", ANGULAR_SPEED, "unknown unit\n  found:   'rmp'" + UNIT_NAMES + "\n  did you mean 'rpm'?"),
-        ("mm", LENGTH, "a unit without a number before it\n  found:   'mm'\n  allowed: e.g. 1 mm"),
+        ("mm", LENGTH, "there is no parameter mm, and a unit follows a number: 1 mm\n  found:   'mm'" + NAMES
+         + "\n  did you mean 'm'?"),
+        ("0.05*H", LENGTH, "there is no parameter H, and a unit follows a number: 1 H\n  found:   'H'" + NAMES),
+        ("1 900,5 mm", LENGTH, "decimal comma: write 1 900.5 mm\n  found:   '1 900,5 mm'"
+         "\n  allowed: a decimal point; a list is written [1 900, 5 mm]"),
+        ("1 90", LENGTH, "this is not arithmetic\n  found:   '1 90', at '90'" + ARITHMETIC),
+        ("CD/OA", NUMBER, "parameter OA has no unit: write OA: 110 mm\n  found:   'CD/OA'"),
+        ("asin(OA/CD)", ANGLE, "parameter OA has no unit: write OA: 110 mm\n  found:   'asin(OA/CD)'"),
+        ("CD*phi", SPEED, "parameter phi has no unit: write phi: 30 rpm or 30 rad/s\n  found:   'CD*phi'"),
+        ("CD/phi", MASS, "a mass is wanted here\n  found:   'CD/phi', a length (21.6667 mm)"
+         "\n  allowed: a mass, e.g. 22 kg"),
         ("2 OA", LENGTH, "a * is missing before OA\n  found:   '2 OA', at 'OA'" + ARITHMETIC),
         ("2m2", MASS, "a * is missing before m2\n  found:   '2m2', at 'm2'" + ARITHMETIC),
         ("1 +", LENGTH, "a number is missing\n  found:   '1 +'" + ARITHMETIC),
@@ -193,6 +226,8 @@ def test_long_chains_of_parameters() -> None:
         ({"sin": 1}, "sin: this name is taken by arithmetic\n  found:   'sin'"),
         ({"1a": 1}, "1a: this cannot be the name of a parameter\n  found:   '1a'"
          "\n  allowed: letters, figures and _, a letter first"),
+        ({"BC": 220, "OA": "110 mm", "a": "asin(OA/BC)"}, "a: parameter BC has no unit: write BC: 220 mm"
+         "\n  found:   'asin(OA/BC)'"),
         ({"a": False}, "a: a number is wanted here\n  found:   false"
          "\n  allowed: a number, a unit, arithmetic"),
     ],

@@ -10,17 +10,20 @@ from typing import Final
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote, unknown_name
 from tmm_cli.problem.scalars import comma_error
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit
+from tmm_cli.problem.units import PER_TIME, PhysicalValue, UnitSystem, dotted_unit, parse_unit, symbol, unknown_unit
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension
 
 MAX_DEPTH: Final = 30
+MOST_POWER: Final = 20
 
-_NUMBER = re.compile(r"\s*([0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?)")
+_GROUPED = r"[0-9]{1,3}(?: [0-9]{3})+(?![0-9])"  # thousands set apart by spaces, 12 500
+_NUMBER = re.compile(rf"\s*((?:{_GROUPED}|[0-9]+)\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?)")
+_POWER = re.compile(r"\s*([+-]?[0-9]+)(?![0-9.eE])(?!\s*(?:\^|\*\*))")  # a whole number, not the base of a power
 _COMMA = re.compile(r",([0-9]+(?:\s*(?:[^\W\d]\S*|[°%]))?)")
 _NAME = re.compile(r"\s*([^\W\d]\w*)")
-_SIGN = re.compile(r"\s*(\*\*|[-+*/^(),])")
+_SIGN = re.compile(r"\s*(\*\*|[-+*/^(),·])")
 # A unit right after a number: symbols with powers, joined by * · / or a space.
-_FACTOR = r"(?:[^\W\d_]+|°|%)(?:\^\s*-?\d+|[²³]|\d)?"
+_FACTOR = rf"(?:{PER_TIME}|(?:[^\W\d_]+|°|%)(?:\^\s*-?\d+|[²³]|\d)?)"
 _UNIT = re.compile(rf"\s*((?:1\s*/\s*)?{_FACTOR}(?:(?:\s*[*·/]\s*|\s+){_FACTOR})*)")
 _DOTTED = re.compile(r"\s*((?:[^\W\d_]+\s*[./]\s*)*[^\W\d_]+\.(?:\s*/?\s*[^\W\d_]+)*\.?)")  # об.мин, r.p.m.
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
@@ -78,7 +81,7 @@ class Parser:
 
     def fault(self, message: str) -> ProblemError:
         rest = self.text[self.at :].strip()
-        whole = re.search(r"[0-9]+$", self.text[: self.at])
+        whole = re.search(rf"(?:{_GROUPED}|[0-9]+)$", self.text[: self.at])
         if whole and (comma := _COMMA.match(rest)):
             return comma_error(whole[0], comma[1])
         found = quote(self.text) + (
@@ -110,12 +113,12 @@ class Parser:
 
     def product(self) -> PhysicalValue:
         left = self.signed()
-        while sign := self.sign("*", "/"):
+        while sign := self.sign("*", "·", "/"):
             right = self.signed()
             if sign == "/" and right.value == 0:
                 raise self.fault(_("division by zero"))
-            value = left.value * right.value if sign == "*" else left.value / right.value
-            left = self.finite(value, self.joined(left, right, 1 if sign == "*" else -1))
+            value = left.value / right.value if sign == "/" else left.value * right.value
+            left = self.finite(value, self.joined(left, right, -1 if sign == "/" else 1))
         return left
 
     def signed(self) -> PhysicalValue:
@@ -126,13 +129,18 @@ class Parser:
         return PhysicalValue(-found.value, found.dimension) if minus else found
 
     def power(self) -> PhysicalValue:
+        number = _NUMBER.match(self.text, self.at)
         base = self.atom()
+        literal = number is not None and number.end() == self.at
         if not self.sign("^", "**"):
             return base
+        if literal and (whole := _POWER.match(self.text, self.at)) and abs(int(whole[1][:4])) <= MOST_POWER:
+            self.at = whole.end()  # the unit of 10^3 N belongs to the power
+            return self.with_unit(self.real("this power", lambda: base.value ** int(whole[1])))
         self.deeper()
         exponent = self.signed()
         self.depth -= 1
-        if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= 20:
+        if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MOST_POWER:
             raise self.fault(_("an exponent is a small bare number"))
         dimension = base.dimension
         if dimension is not None:
@@ -144,7 +152,7 @@ class Parser:
     def atom(self) -> PhysicalValue:
         if number := _NUMBER.match(self.text, self.at):
             self.at = number.end()
-            return self.with_unit(self.units.number(number[1]))
+            return self.with_unit(self.units.number(number[1].replace(" ", "")))
         if self.sign("("):
             inside = self.sum()
             if not self.sign(")"):
@@ -186,11 +194,12 @@ class Parser:
             return found if found.dimension else PhysicalValue(found.value, self.pi)
         if name in FUNCTIONS:
             return self.call(name)
-        if symbol(name):
-            raise ProblemError(_("a unit without a number before it"), found=quote(name), allowed=f"e.g. 1 {name}")
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
-        raise unknown_name(name, names, _("there is no such parameter"), ", ".join(self.parameters) or "none is given")
+        message = _("there is no such parameter")
+        if symbol(name):
+            message = _("there is no parameter {name}, and a unit follows a number: 1 {name}").format(name=name)
+        raise unknown_name(name, names, message, ", ".join(self.parameters) or "none is given")
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):

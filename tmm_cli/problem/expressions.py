@@ -7,7 +7,7 @@ is a bare result where a dimension is wanted.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
@@ -16,7 +16,7 @@ from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
 from tmm_cli.problem.errors import ProblemError, quote, under
 from tmm_cli.problem.tree import Path, WrittenNumber
 from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem, plain_text
-from tmm_cli.quantities import ANGLE, Dimension
+from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, KINDS, NUMBER, Dimension
 
 MAX_LENGTH: Final = 200
 
@@ -26,13 +26,48 @@ def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: Uni
     try:
         return _fitting(source, evaluate_quantity(source, parameters, units), units, want)
     except ProblemError as error:
-        if not isinstance(source, str) or "pi" not in source:
+        if not isinstance(source, str):
             raise
         first = error
-    try:  # pi is perhaps a ratio, as in pi * OA
-        return _fitting(source, evaluate_quantity(source, parameters, units, pi=None), units, want)
+    try:
+        if "pi" in source:  # perhaps a ratio, as in pi * OA
+            return _fitting(source, evaluate_quantity(source, parameters, units, pi=None), units, want)
     except ProblemError:
-        raise first from None
+        pass
+
+    def fits(others: Mapping[str, PhysicalValue]) -> bool:
+        return taken(evaluate_quantity(source, others, units), want, units) is not None
+
+    raise _missing_unit(source, parameters, units, fits) or first from None
+
+
+def _missing_unit(
+    source: str, parameters: Mapping[str, PhysicalValue], units: UnitSystem,
+    fits: Callable[[Mapping[str, PhysicalValue]], bool],
+) -> ProblemError | None:  # fmt: skip
+    """The refusal of a value whose dimensions do not fit because a parameter in it has no unit, unlike others.
+
+    Each kind of unit is tried on each parameter without one. None if no unit mends the value.
+    """
+    used = dict.fromkeys(Parser(plain_text(source[:MAX_LENGTH]), parameters, units).names())
+    bare = [name for name in used if parameters[name].dimension is None]
+    if len(bare) == len(used):
+        return None
+    for kind in KINDS.values():
+        for name in bare if kind.dimension != NUMBER else ():
+            value = PhysicalValue(units.si(parameters[name].value, kind.dimension), kind.dimension)
+            try:
+                if not fits({**parameters, name: value}):
+                    continue
+            except ProblemError:
+                continue
+            number = f"{parameters[name].value:.6g}"
+            written = f"{number} {units.symbol(kind.dimension)}"
+            if kind.dimension == ANGULAR_SPEED:  # bare, it counts revolutions as often as radians
+                written = _("{a} or {b}").format(a=f"{number} rpm", b=f"{number} rad/s")
+            message = _("parameter {name} has no unit: write {name}: {value}").format(name=name, value=written)
+            return UnitError(message, found=quote(source))
+    return None
 
 
 def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
@@ -97,5 +132,20 @@ def resolve_parameters(
         raise ProblemError(_("parameters go round in a circle"), path=(cycle[0],), found=" -> ".join(cycle)) from None
     for name in order:
         with under(name):
-            found[name] = evaluate_quantity(raw[name], found, units)
+            found[name] = _parameter(raw[name], found, units)
     return {name: found[name] for name in raw}
+
+
+def _parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:
+    """The value of a parameter, whatever it measures."""
+    try:
+        return evaluate_quantity(source, parameters, units)
+    except ProblemError as error:
+        if not isinstance(source, str):
+            raise
+        first = error
+
+    def fits(others: Mapping[str, PhysicalValue]) -> bool:
+        return bool(evaluate_quantity(source, others, units))
+
+    raise _missing_unit(source, parameters, units, fits) or first from None

@@ -100,6 +100,8 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("N Н", FORCE, "1"),
     ("kN кН", FORCE, "1000"),
     ("MN МН", FORCE, "1000000"),
+    ("kgf кгс kp", FORCE, "980665/100000"),
+    ("tf тс", FORCE, "980665/100"),
     ("Nm Нм", MOMENT, "1"),
     ("kNm кНм", MOMENT, "1000"),
     ("Nmm Нмм", MOMENT, "1/1000"),
@@ -121,8 +123,11 @@ _FIRST: Final = {latin(name): names.split()[0] for names, *__ in _ROWS for name 
 _SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
 _LETTERS = re.compile("[^\\W\\d_⁰¹²³⁴-⁹]+|°")
 _FROM_SUPERSCRIPT = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
-_TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2009\u202f\t\r\n", "···*--μ°      ")
+_TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2007\u2009\u202f\t\r\n", "···*--μ°       ")
 _FACTOR = re.compile(r"\s*([·*/]?)\s*([^\W\d_]+|°|%|1(?=\s*/))(?:\^\s*\(?([+-]?\d+)\)?|(\d))?")
+# A power of time without its sign, as in `с-1` and `м·с-2`: of other units a minus is that of a difference.
+PER_TIME: Final = r"(?:s|sec|ms|min|h|с|сек|мс|мин|ч|c)-[1-4](?![\w.])"
+_PER_TIME = re.compile(rf"(?<![^\W\d_]){PER_TIME}")
 
 
 def plain_text(text: str) -> str:
@@ -138,7 +143,13 @@ def symbol(name: str) -> Unit | None:
 
 def in_latin(text: str) -> str:
     """A unit that is known, with the names that are not in ASCII by their first ones: deg for ° and for град."""
+    text = _signed_powers(text)
     return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(latin(name[0]), name[0]), text)
+
+
+def _signed_powers(text: str) -> str:
+    """A unit with `s^-1` for `s-1`."""
+    return _PER_TIME.sub(lambda found: found[0].replace("-", "^-"), text)
 
 
 def parse_unit(text: str) -> Unit:
@@ -146,7 +157,7 @@ def parse_unit(text: str) -> Unit:
 
     Raises UnitError naming the nearest known symbol.
     """
-    source, unit, position, factors = plain_text(text).strip(), Unit(NUMBER), 0, 0
+    source, unit, position, factors = _signed_powers(plain_text(text).strip()), Unit(NUMBER), 0, 0
     names: list[str] = []
     while position < len(source):
         match = _FACTOR.match(source, position)
