@@ -134,3 +134,65 @@ def test_example_16_13_page_589_three_cranks():
     found = running(engine, SteadyTask(300 * RPM, flywheel=1000.0))
     assert -found.moment * 300 * RPM == pytest.approx(157_100, abs=50)  # W
     assert found.delta == pytest.approx(0.001, abs=5e-5)
+
+
+TWO_TRIANGLES = (
+    "loads: {m: {on: 1, moment: {against: crank angle, table: [[0, 0], [90, 100], [270, -100], [360, 0]]}}}\n"
+)
+
+
+def test_the_inertia_of_a_crank_is_subtracted_from_the_first_group_of_mertsalov():
+    """Two triangles of 100 N m gain 50 pi J; at 5 rad/s and delta = 0.02 the first group has 100 pi kg m2."""
+    crank = 300.0
+    found = steady("5 rad/s", f"masses: {{1: {{mass: 0, inertia: {crank}, centre: O}}}}\ndynamics: {{delta: 0.02}}\n" +
+                   TWO_TRIANGLES)  # fmt: skip
+    assert found.machine.constant == pytest.approx(crank, rel=1e-12)
+    assert found.first_group == pytest.approx(100 * np.pi, rel=1e-12)
+    assert found.mertsalov == pytest.approx(100 * np.pi - crank, rel=1e-11)
+    assert found.law.flywheel == pytest.approx(100 * np.pi - crank, rel=1e-11)  # exact too: nothing else moves
+    assert found.errors[1] == pytest.approx(0, abs=1e-10)
+
+
+def test_mertsalov_takes_the_mean_speed_for_the_links_of_variable_ratio_only():
+    """Crank-slider r = 50, l = 150 mm: the energy of rod and slider at 5 rad/s, on a grid; the crank is constant."""
+    crank, rod, rod_inertia, slider, mean, delta = 0.4, 30.0, 0.2, 80.0, 5.0, 0.1
+    found = steady(
+        f"{mean} rad/s",
+        f"masses: {{1: {{mass: 7, inertia: {crank}, centre: O}}, 2: {{mass: {rod}, inertia: {rod_inertia}, centre: A}},"
+        f" 3: {{mass: {slider}, centre: B}}}}\ndynamics: {{delta: {delta}}}\n{TWO_TRIANGLES}",
+    )
+    r, length = 0.05, 0.15
+    phi = np.linspace(0, TURN, 400_001)
+    beta = np.arcsin(r * np.sin(phi) / length)
+    turned = -r * np.cos(phi) / (length * np.cos(beta))  # omega_2 / omega_1
+    slid = -r * np.sin(phi + beta) / np.cos(beta)  # v_B / omega_1
+    second = rod * r**2 + rod_inertia * turned**2 + slider * slid**2
+    moment = np.interp(phi, np.radians([0, 90, 270, 360]), [0, 100, -100, 0])
+    work = np.concatenate([[0], np.cumsum((moment[1:] + moment[:-1]) / 2 * np.diff(phi))])
+    rest = work - second * mean**2 / 2
+    group = np.ptp(rest) / (delta * mean**2)
+    # the rod's mass is at A, but its rotation makes its reduced inertia vary: it is of the second group
+    assert found.machine.constant == pytest.approx(crank, rel=1e-12)
+    assert found.first_group == pytest.approx(group, rel=1e-8)
+    assert found.mertsalov == pytest.approx(group - crank, rel=1e-8)
+    exact = found.law.flywheel
+    assert found.errors[1] == pytest.approx((group - crank) / exact - 1, rel=1e-6)
+    assert abs(found.errors[1]) < 0.1
+
+
+def test_gears_on_the_frame_are_of_the_first_group():
+    """Gear 2 turns half as fast as gear 1: J_c = J_1 + J_2 / 4."""
+    text = """tmm: 1
+units: {length: mm, angle: deg}
+points: {O: [0, 0], C: [90, 0]}
+links: {1: {points: {O: [0, 0], A: [20, 0]}}, 2: {points: {C: [0, 0], D: [30, 0]}}}
+gears: {g: {between: [1, 2], radii: [30, 60]}}
+driver: {link: 1, speed: 5 rad/s, turns: ccw}
+sketch: {at: 0, D: [120, 0]}
+masses: {1: {mass: 0, inertia: 3, centre: O}, 2: {mass: 0, inertia: 8, centre: C}}
+gravity: 0
+dynamics: {delta: 0.02}
+"""
+    found = solve(problem_of(read_text(text + TWO_TRIANGLES, "x.yaml"))).running.steady
+    assert found.machine.constant == pytest.approx(3 + 8 / 4, rel=1e-12)
+    assert found.mertsalov == pytest.approx(100 * np.pi - 5, rel=1e-11)

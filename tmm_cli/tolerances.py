@@ -52,6 +52,7 @@ SAME_STATE = 1e-7  # sizes of the group, rad: states on a branch that are this n
 SAME_POSITION = 1e-12  # sine of half the angle between: half a whole turn more is the same angle
 SEAM = 1e-12  # rad: a place this near to the end of a cycle is at the beginning of the next one
 SEAM_OF_EXTREMES = 1e-7  # rad: the same of an extreme, which is found to half the digits
+CONSTANT_INERTIA = 1e-9  # of a link's largest reduced inertia: a change below that over a cycle is rounding
 SAME_RATIO = 1e-12  # relative: numbers that differ by what arithmetic on a file's numbers rounds (0.1 + 0.2 is not 0.3)
 PARALLEL = 1e-9  # sine: lines that meet under less do not meet
 SAME_PLACES = 1e-9  # of the size: places this near are one, and three this near to a line have no circle

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,12 +13,14 @@ from tmm_cli.dynamics.reduced import Reduced, reduced
 from tmm_cli.dynamics.steady import Steady, steady
 from tmm_cli.dynamics.task import SteadyTask
 from tmm_cli.errors import BySpeedError, NoCycleError
-from tmm_cli.forces.energy import energy
+from tmm_cli.forces.energy import energy, inertias
 from tmm_cli.forces.loads import applied
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
-from tmm_cli.tolerances import SAME_PLACE, SEAM
+from tmm_cli.tolerances import CONSTANT_INERTIA, SAME_PLACE, SEAM
 from tmm_cli.vectors import Real
+
+CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertia of a link is compared
 
 
 def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
@@ -29,7 +31,22 @@ def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
     linkage, whole = mechanism.linkage, mechanism.driver_range
     if linkage.driver.kind != "turn" or not whole.full:
         raise NoCycleError
-    return reduced_between(mechanism, start, linkage.driver.sense, 2 * np.pi * whole.turns)
+    length = 2 * np.pi * whole.turns
+    machine = reduced_between(mechanism, start, linkage.driver.sense, length)
+    return replace(machine, constant=_constant_inertia(mechanism, start, length))
+
+
+def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> float:
+    """Reduced inertia of the links with a constant speed ratio to the driver over a cycle, kg m2.
+
+    A link counts if its reduced inertia does not change: the crank, gears on the frame, links of parallelograms.
+    """
+    q = start + mechanism.linkage.driver.sense * np.linspace(0, length, CONSTANT_SAMPLES, endpoint=False)
+    motion = move(
+        mechanism.linkage, mechanism.kernels, q, DriverMotion(start, 1.0, 0.0, mechanism.linkage.driver.sense)
+    )
+    inertia = [np.broadcast_to(rounded(own), q.shape) for own, _ in inertias(motion).values()]
+    return float(sum(np.mean(own) for own in inertia if np.ptp(own) <= CONSTANT_INERTIA * np.max(own)))
 
 
 def reduced_between(mechanism: Mechanism, start: float, sense: int, length: float) -> Reduced:

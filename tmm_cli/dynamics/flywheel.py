@@ -8,8 +8,12 @@ linear in T0 and Jf, so the flywheel is found without trial:
 
 These are the tangents to the energy-mass diagram (J, E) of slopes w1^2 / 2 and w2^2 / 2: F. Wittenbauer, Graphische
 Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 19. In the course one takes
-w^2 (1 +- delta) for w1^2 and w2^2. N. I. Mertsalov takes the mean speed for the energy of the links: Jf = (largest
-less least of E - J w^2 / 2) / (delta w^2).
+w^2 (1 +- delta) for w1^2 and w2^2.
+
+N. I. Mertsalov divides the machine into a first group, the flywheel and the links with a constant speed ratio to the
+driver (inertia Jc), and a second group, all other links (inertia J - Jc). The energy of the second group is taken at
+the mean speed, so the first group has the inertia J_I = (largest less least of E - (J - Jc) w^2 / 2) / (delta w^2), and
+the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of Mechanisms and Machines (1987).
 """
 
 from __future__ import annotations
@@ -70,7 +74,10 @@ def wittenbauer(machine: Reduced, work: Curve, mean: float, delta: float) -> Fly
 
 
 def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float:
-    """Inertia of the flywheel (kg m2), with the energy of the links at the mean speed."""
+    """Inertia J_I of the first group (kg m2), the flywheel with the links of constant speed ratio.
+
+    The energy of the other links is taken at the mean speed; what is constant in the inertia cancels in the difference.
+    """
     slope = mean**2 / 2
     upper, lower = touching(machine, work, slope, top=True), touching(machine, work, slope, top=False)
     return (upper.offset - lower.offset) / (delta * mean**2)

@@ -20,12 +20,15 @@ class Reduced:
 
     inertia (kg m2, or kg), slope of it by x, moment of all loads but inertia (N m, or N) along the sense, and work of
     these from the beginning on (J). With a slider as driver, speeds are m/s and moments forces.
+    constant: the inertia of the links with a constant speed ratio to the driver, and of the driver itself; with a
+    flywheel they are the first group of N. I. Mertsalov (kg m2).
     """
 
     inertia: Curve
     slope: Curve
     moment: Curve
     work: Curve
+    constant: float = 0.0
 
     @property
     def work_of_cycle(self) -> float:
@@ -37,7 +40,7 @@ class Reduced:
         return self.inertia.length
 
 
-def reduced(sample: Sample, edges: Sequence[float]) -> Reduced:
+def reduced(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> Reduced:
     """Of a machine that can be computed at any place; edges: where loads may jump, the ends of the cycle too."""
     inertia, slope, moment = fitted(sample, edges)
-    return Reduced(inertia, slope, moment, moment.summed())
+    return Reduced(inertia, slope, moment, moment.summed(), constant)

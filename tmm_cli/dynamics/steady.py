@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,8 +38,9 @@ class Steady:
     """moment: mean of what drives over the cycle (N m, or N). own: fluctuation with the given flywheel alone, nan where
     the machine comes to rest then. work: of all moments from the beginning of the cycle (J).
 
-    found: the flywheel by tangents, beside the given one; wittenbauer, mertsalov: inertia (kg m2) as by these; of a
-    motor there are none.
+    found: the flywheel by tangents, beside the given one; wittenbauer: its inertia (kg m2) by the tangents of a course;
+    first_group: inertia J_I by Mertsalov of the flywheel with the links of constant speed ratio (kg m2); of a motor
+    there are none.
     """
 
     task: SteadyTask
@@ -50,7 +51,12 @@ class Steady:
     own: float
     found: Flywheel | None = None
     wittenbauer: float = float("nan")
-    mertsalov: float = float("nan")
+    first_group: float = float("nan")
+
+    @property
+    def mertsalov(self) -> float:
+        """Inertia of the flywheel by Mertsalov, J_I less the links of constant speed ratio (kg m2)."""
+        return self.first_group - self.machine.constant
 
     @property
     def on_shaft(self) -> float:
@@ -102,9 +108,11 @@ class Steady:
 
     @property
     def at_mean(self) -> tuple[Tangent, Tangent]:
-        """By Mertsalov: tangents of the mean speed above the diagram and below it."""
+        """By Mertsalov: tangents of the mean speed above the diagram and below it; the inertia is that of the second
+        group, the links without a constant speed ratio."""
         slope = self.task.mean**2 / 2
-        upper, lower = (touching(self.machine, self.work, slope, top=top) for top in (True, False))
+        tangents = (touching(self.machine, self.work, slope, top=top) for top in (True, False))
+        upper, lower = (replace(line, inertia=line.inertia - self.machine.constant) for line in tangents)
         return upper, lower
 
 

@@ -16,6 +16,7 @@ from tmm_cli.note.math import Letter, row
 from tmm_cli.plans.record import Lettered, Symbol
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
+FIRST_GROUP, CONSTANT = Lettered("J_I"), Lettered("J_c")
 GAIN, ON_SHAFT, RATIO = Symbol("ΔT"), Lettered("J_s"), Symbol("u")
 DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
 DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), Lettered("m_f")
@@ -78,17 +79,39 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
     upper, lower = steady.at_mean
     most, least = Leaf(OFFSETS[0].primed, upper.offset), Leaf(OFFSETS[1].primed, lower.offset)
     square, delta = Leaf(MEAN, steady.task.mean) ** 2, Leaf(DELTA, steady.task.delta or 0.0)
+    constant = steady.machine.constant
+    second = Leaf(INERTIA) - Leaf(CONSTANT) if constant else Leaf(INERTIA)
     yield said(
         _("With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
-          "{found} kg·m². By the method of Mertsalov the energy of the links is taken at the mean speed; then the "
-          "energy of the flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
+          "{found} kg·m²."),
         plus=letters(square * (1 + delta)), minus=letters(square * (1 - delta)),
-        found=here.subject.text(steady.wittenbauer), most=most.symbol, least=least.symbol,
-        rest=letters(Leaf(WORK) - Leaf(INERTIA) * (Leaf(MEAN) ** 2 / 2)),
+        found=here.subject.text(steady.wittenbauer),
     )  # fmt: skip
+    if constant:
+        yield said(
+            _("By the method of Mertsalov the flywheel and the links with a constant speed ratio to the driving link, "
+              "whose moment of inertia is {constant} = {value} kg·m², are the first group. The energy of the other "
+              "links, the second group, is taken at the mean speed; then the energy of the first group changes between "
+              "{most} and {least}, the largest and the least of {rest}:"),
+            constant=CONSTANT, value=here.subject.text(constant), most=most.symbol, least=least.symbol,
+            rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
+        )  # fmt: skip
+    else:
+        yield said(
+            _("By the method of Mertsalov the energy of the links is taken at the mean speed; then the energy of the "
+              "flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
+            most=most.symbol, least=least.symbol, rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
+        )  # fmt: skip
     gain = most.value - least.value
     yield Found(GAIN, most - least, gain, _("J"))
-    yield Found(FLYWHEEL.primed, Leaf(GAIN, gain) / (delta * square), steady.mertsalov, _("kg·m²"))
+    inertia = Leaf(GAIN, gain) / (delta * square)
+    if not constant:
+        yield Found(FLYWHEEL.primed, inertia, steady.mertsalov, _("kg·m²"))
+        return
+    yield Found(FIRST_GROUP, inertia, steady.first_group, _("kg·m²"))
+    yield said(_("Without the links of the first group the flywheel has the moment of inertia"))
+    flywheel = Leaf(FIRST_GROUP, steady.first_group) - Leaf(CONSTANT, constant)
+    yield Found(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 
 
 def on_shaft(here: Here) -> Iterable[Block]:

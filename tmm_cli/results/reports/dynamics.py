@@ -71,6 +71,8 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
         for (name, inertia), error in zip(ways, steady.errors, strict=True):
             yield name, inertia, INERTIA
             yield _("{way}, off by, %").format(way=name), 100 * error, NUMBER
+        yield _("first group J_I by Mertsalov, flywheel included"), steady.first_group, INERTIA
+        yield _("links of constant speed ratio in it"), steady.machine.constant, INERTIA
     if steady.task.ratio != 1:
         yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
     shape = steady.task.size.shape
