@@ -7,10 +7,16 @@ from fuzz import beyond
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, solve
+from tmm_cli.accuracy.digits import judged
+from tmm_cli.grading.task import Task
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.given import given
 from tmm_cli.results.warnings import warnings
+from tmm_cli.sweep.grid import read_axes
+from tmm_cli.sweep.mechanisms import Mechanisms
+from tmm_cli.sweep.run import swept
+from tmm_cli.tolerances import KNOWN_LAW
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -103,3 +109,105 @@ def test_a_law_of_motion_tells_of_a_table_that_does_not_close(last, told):
     results = solve(problem_of(read_text(text, "x.yaml")))
     said = [one for one in warnings(results) if "begins with 500 N and ends with 100 N" in one]
     assert len(said) == told
+
+
+GAS = [("0", 0), ("0.05", 0), ("0.06", 900), ("0.6", 400), ("0.95", 100), ("1", 0)]  # N against shares of the stroke
+
+
+def slider(against, rows, *, more="", turns="cw", between="linear"):
+    """The crank-slider under a table of rows [argument, N], solved."""
+    table = "[" + ", ".join(f"[{argument}, {size}]" for argument, size in rows) + f"], between: {between}"
+    text = CRANK_SLIDER.format(against=against, table=table).replace("turns: cw", f"turns: {turns}")
+    return solve(problem_of(read_text(f"{text}positions: {{count: 37, from: 3}}\n{more}", "x.yaml")))
+
+
+@pytest.mark.parametrize("between", ["linear", "step", "smooth"])
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+@pytest.mark.parametrize("more", ["", "dynamics: {flywheel: {inertia: 20}}\nmasses: {3: {mass: 1}}\n"])
+def test_a_table_in_shares_of_the_stroke_is_the_table_in_its_lengths(between, turns, more):
+    lengths = [(f"{share} * 2 * 50", size) for share, size in GAS]  # the stroke is 2 OA = 100 mm
+    shares = slider("share of stroke", GAS, more=more, turns=turns, between=between)
+    other = slider("stroke", lengths, more=more, turns=turns, between=between)
+    wanted = other.reactions.balance.moment
+    assert shares.reactions.balance.moment == pytest.approx(wanted, abs=1e-10 * np.max(np.abs(wanted)))
+    assert shares.motion.rate == pytest.approx(other.motion.rate, rel=KNOWN_LAW)
+
+
+def test_a_load_in_shares_of_the_stroke_is_that_of_the_run_of_the_slider():
+    results = slider("share of stroke", GAS, turns="ccw")
+    phi = np.radians(3 + 360 / 37 * np.arange(37))
+    place = 50 * np.cos(phi) + np.sqrt(150**2 - (50 * np.sin(phi)) ** 2)
+    forward = results.strokes.strokes[0].run > 0
+    share = (place - 100) / 100 if forward else (200 - place) / 100
+    force = np.interp(share, *np.array(GAS, float).T)
+    (load,) = [one for one in results.loads if one.name == "gas"]
+    assert -load.force.real == pytest.approx(force, abs=1e-9)
+
+
+def test_shares_may_be_in_per_cent_and_of_a_swing():
+    text = (ROOT / "problems/crank-rocker.yaml").read_text("utf-8")
+    rocker = "loads: {M: {on: 3, when: working stroke, moment: {against: AGAINST, table: TABLE}}}\n"
+    text = text[: text.index("loads:")] + rocker + "output: 3\npositions: {count: 24}\n"
+    psi = solve(problem_of(read_text(text.replace("AGAINST", "stroke").replace("TABLE", "[[0, 1], [1, 1]]"), "x")))
+    swing = np.degrees(float(psi.strokes.travel))
+    found = []
+    for against, table in (
+        ("stroke", f"[[0, -20], [{0.25 * float(swing)!r}, -80], [{float(swing)!r}, -50]]"),
+        ("share of stroke", "[[0, -20], [25 %, -80], [100 %, -50]]"),
+    ):
+        own = problem_of(read_text(text.replace("AGAINST", against).replace("TABLE", table), "x"))
+        found.append(solve(own).reactions.balance.moment)
+    assert np.ptp(found[0]) > 10
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
+@pytest.mark.parametrize(("row", "shown"), [("[5, 900]", "5"), ("[-1 %, 0]", "'-1 %'")])
+def test_what_is_no_share_of_a_stroke_is_refused(tmp_path, row, shown):
+    first, second = sorted(["[0, 0]", row], key=lambda text: "-" not in text)
+    ended = forces(tmp_path, against="share of stroke", table=f"[{first}, {second}]")
+    number, column = (0, 71) if "-" in row else (1, 79)
+    assert ended.stderr.endswith(
+        f"error: x.yaml:12:{column}: loads.gas.force.table[{number}][0]: this is no share of the stroke\n"
+        f"  found:   {shown}\n"
+        "  allowed: 0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke\n"
+    )
+    assert ended.returncode == 2
+
+
+def test_a_longer_crank_shifts_rows_of_shares_with_the_stroke_in_digits():
+    results = slider("share of stroke", [("0", 0), ("1", 1000)], turns="ccw")
+    of_load = judged(results, lambda own: {"F": np.abs(own.loads[0].force)}).lengths["F"]
+
+    def force(phi, crank, rod):
+        place = crank * np.cos(phi) + np.sqrt(rod**2 - (crank * np.sin(phi)) ** 2)
+        share = (place - rod + crank) / (2 * crank)
+        return 1000 * (share if results.strokes.strokes[0].run > 0 else 1 - share)
+
+    phi = results.motion.q
+    by_crank = force(phi, 50.0005, 150) - force(phi, 49.9995, 150)  # of 0.001 mm
+    by_rod = force(phi, 50, 150.0005) - force(phi, 50, 149.9995)
+    wanted = np.abs(by_crank) * 50 + np.abs(by_rod) * 150  # lengths 0.1 % off
+    assert of_load == pytest.approx(wanted, rel=1e-3, abs=1e-3)
+
+
+def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
+    table = "[[0, 0], [0.3, 900], [1, 100]]"
+    text = CRANK_SLIDER.format(against="share of stroke", table=table)
+    text = text.replace("length: 50", "length: OA").replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}")
+    tree = read_text(text, "x.yaml")
+    mechanisms = Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:3"]), ["M_b"])
+    found = swept(mechanisms)
+    assert found.taped
+    for (crank,), (peak,) in zip(found.points, found.values, strict=True):
+        lengths = f"[[0, 0], [{0.6 * crank}, 900], [{2 * crank}, 100]]"
+        own = CRANK_SLIDER.format(against="stroke", table=lengths).replace("length: 50", f"length: {crank}")
+        moment = solve(problem_of(read_text(own, "x.yaml"))).reactions.balance.moment
+        assert peak == pytest.approx(np.max(np.abs(moment)), rel=1e-12)
+
+
+def test_shares_are_told_as_they_are_written():
+    text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [5 %, 5 kN], [1, 2 kN]]")
+    *_, told = given(problem_of(read_text(text, "x.yaml")))
+    rows = list(zip(*(column.values for column in told.columns), strict=True))
+    assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
+    assert told.title == "gas against the share of the stroke"

@@ -154,9 +154,15 @@ class Friction:
 
 @dataclass(frozen=True)
 class LoadTable(Table):
-    """A load's size, tabulated."""
+    """A load's size, tabulated. shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles."""
 
     against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
+    shares: bool = False
+
+    @property
+    def first_column(self) -> str:
+        """What its first column is, in the words of a file."""
+        return f"share of {self.against}" if self.shares else self.against
 
 
 @dataclass(frozen=True)

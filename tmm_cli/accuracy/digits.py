@@ -226,9 +226,16 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
 
 
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
-    """Strokes whose output begins where it really is there, which loads tabulated against it are counted from."""
+    """Strokes whose output begins and ends where it really is there: tables against the stroke are counted from there,
+    and in shares of its run."""
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
     lows: list[Any] = [
         output_place(move(linkage, kernels, still + s.start, law, 0), strokes.link) for s in strokes.strokes
     ]
-    return replace(strokes, strokes=tuple(replace(s, low=x) for s, x in zip(strokes.strokes, lows, strict=True)))
+    swings = linkage.output_swings(strokes.link)
+    begun = []
+    for k, (stroke, low) in enumerate(zip(strokes.strokes, lows, strict=True)):
+        more = lows[(k + 1) % len(lows)] - low - stroke.run
+        run = stroke.run + (more - 2 * np.pi * np.round(rounded(more) / (2 * np.pi)) if swings else more)
+        begun.append(replace(stroke, low=low, run=run))
+    return replace(strokes, strokes=tuple(begun))

@@ -12,7 +12,7 @@ from tmm_cli.groups.sequence import DriverMotion, towards
 from tmm_cli.kinematics.driver_range import SCAN
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.kinematics.output import OutputCurve
-from tmm_cli.linkage import Load
+from tmm_cli.linkage import Load, LoadTable
 from tmm_cli.roots import roots
 from tmm_cli.tolerances import SAME_PLACE
 from tmm_cli.vectors import Real, dot
@@ -31,7 +31,7 @@ def jumps(mechanism: Mechanism) -> Iterable[float]:
         if load.window is not None:
             yield from (place + cycle * k for place in load.window for k in again)
         if load.table is not None and load.table.against == "stroke":
-            yield from _rows_of_strokes(mechanism, load.table.arguments)
+            yield from _rows_of_strokes(mechanism, load.table)
         elif load.table is not None:
             by_angle = load.table.against == "crank angle"
             begin, way = (0.0, 1) if by_angle else (first, sense)
@@ -40,7 +40,7 @@ def jumps(mechanism: Mechanism) -> Iterable[float]:
             yield from _turns_back(mechanism, load)
 
 
-def _rows_of_strokes(mechanism: Mechanism, rows: Iterable[float]) -> Iterable[float]:
+def _rows_of_strokes(mechanism: Mechanism, table: LoadTable) -> Iterable[float]:
     """Where the output comes to the rows of a table against its stroke."""
     linkage, strokes = mechanism.linkage, mechanism.strokes
     if strokes is None or not strokes.strokes:
@@ -49,8 +49,8 @@ def _rows_of_strokes(mechanism: Mechanism, rows: Iterable[float]) -> Iterable[fl
     first = strokes.strokes[0]
     for stroke in strokes.strokes:
         middle = stroke.low + stroke.run / 2
-        for row in rows:
-            wanted = first.low + np.sign(first.run) * row
+        for row in table.arguments:
+            wanted = first.low + (first.run if table.shares else np.sign(first.run)) * row
             # at the ends themselves the output rests: rounding would put the row a little beside them
             if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):
                 end = stroke.start + linkage.driver.sense * stroke.length

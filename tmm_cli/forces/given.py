@@ -11,7 +11,7 @@ from tmm_cli.forces.applied import Applied
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.output import output_place
 from tmm_cli.kinematics.strokes import Strokes
-from tmm_cli.linkage import FRAME, Linkage, Load
+from tmm_cli.linkage import FRAME, Linkage, Load, LoadTable
 from tmm_cli.tolerances import SAME_PLACE, SEAM, SETS_OFF
 from tmm_cli.vectors import Real, Vector, cross, pi
 
@@ -38,7 +38,7 @@ def _size(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
     """What its force and moment are multiplied by."""
     size = np.ones(np.shape(motion.q))
     if load.table is not None:
-        size = load.table(table_argument(load.table.against, motion, strokes))
+        size = load.table(table_argument(load.table, motion, strokes))
     if load.working_stroke_only and strokes is not None and strokes.strokes:
         size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
     if load.window is not None:
@@ -92,13 +92,16 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
     return inside
 
 
-def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Real:
-    """What a load is tabulated against: run of the output from where its working stroke starts, or the crank."""
+def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) -> Real:
+    """What a load is tabulated against: run of the output from where its working stroke starts, or the crank.
+
+    A run is in m or rad, or a share of the working stroke.
+    """
     driver = motion.linkage.driver
-    if against == "crank angle":
+    if table.against == "crank angle":
         return _turned(motion.q, 2 * motion.linkage.turns * pi(motion.q))
     first = strokes.strokes[0] if strokes and strokes.strokes else None
-    if against == "crank turn":
+    if table.against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi * motion.linkage.turns
         return _turned(driver.sense * (motion.q - start), cycle)
@@ -106,7 +109,7 @@ def table_argument(against: str, motion: Motion, strokes: Strokes | None) -> Rea
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
-    worked: Real = run * np.sign(first.run)
+    worked: Real = run / first.run if table.shares else run * np.sign(first.run)
     return worked
 
 

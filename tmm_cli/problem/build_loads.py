@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -15,10 +15,22 @@ from tmm_cli.problem import schema, schema_loads
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
-from tmm_cli.quantities import ACCELERATION, ANGLE, AREA, FORCE, INERTIA, LENGTH, MASS, MOMENT, PRESSURE, Dimension
+from tmm_cli.quantities import (
+    ACCELERATION,
+    ANGLE,
+    AREA,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    PRESSURE,
+    Dimension,
+)
 from tmm_cli.structure.assur import analyse
 from tmm_cli.structure.naming import output_link
-from tmm_cli.tolerances import SAME_PLACE
+from tmm_cli.tolerances import SAME_PLACE, SAME_RATIO
 from tmm_cli.vectors import pi, square
 
 STANDARD_GRAVITY = 9.81
@@ -171,7 +183,9 @@ def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _C
     if (given.against is None) != (given.table is None):
         raise part.refusal(
             "against", _("a table has two columns: what it is against, and the size"),
-            allowed=_("against: stroke, crank angle or crank turn, and table: [[argument, size], ...]"),
+            allowed=_(
+                "against: stroke, share of stroke, crank angle or crank turn, and table: [[argument, size], ...]"
+            ),
         )  # fmt: skip
     along = direction(part.number("angle", ANGLE)) if angled else 1.0
     if part.one_of("size", "table", "resists") == "size":
@@ -210,13 +224,29 @@ def _table(part: Part, want: Dimension, linkage: Linkage) -> LoadTable:
             "against", _("a table is against a crank, or the strokes that it gives: this driver slides"),
             str(given.against), _("size: one value"),
         )  # fmt: skip
-    if given.against == "stroke":
+    shares = given.against == "share of stroke"
+    against = "stroke" if given.against is None or given.against == "share of stroke" else given.against
+    if shares:
+        argument = NUMBER
+    elif against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
         argument = ANGLE if link is None or linkage.output_swings(link) else LENGTH
     arguments, sizes = part.columns("table", argument, want)
-    against = given.against or "stroke"
+    if shares:
+        _refuse_beyond_stroke(part, arguments)
     round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
-    return LoadTable(arguments, sizes, given.between, round_and_round, against)
+    return LoadTable(arguments, sizes, given.between, round_and_round, against, shares)
+
+
+def _refuse_beyond_stroke(part: Part, shares: Sequence[Any]) -> None:
+    """Refuse a row of a table that is no share of a stroke. Raises ProblemError."""
+    for row, share in enumerate(shares):
+        if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
+            raise ProblemError(
+                _("this is no share of the stroke"), path=(*part.path, "table", row, 0),
+                found=quote(part.given.table[row][0]),
+                allowed=_("0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke"),
+            )  # fmt: skip
 
 
 def _whole_turns(way: float) -> bool:

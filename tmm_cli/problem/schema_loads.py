@@ -36,9 +36,10 @@ class Tabulated(Strict):
         default=None, description="instead of size: a constant friction, against the motion of the point or link"
     )
     angle: Value | None = Field(default=None, description="direction of the force from the x axis")
-    against: Literal["stroke", "crank angle", "crank turn"] | None = Field(
+    against: Literal["stroke", "share of stroke", "crank angle", "crank turn"] | None = Field(
         default=None,
         description="what the table's first column is: run of the output from the start of its working stroke; "
+        "the same as a share of the stroke, 0 to 1 or 0 to 100 %; "
         "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
     )
     table: list[Vector] | None = Field(

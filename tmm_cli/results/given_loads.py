@@ -16,6 +16,7 @@ from tmm_cli.quantities import (
     LENGTH,
     MASS,
     MOMENT,
+    NUMBER,
 )  # fmt: skip
 from tmm_cli.results.shown import FILE_WORDS, show, show_vector
 from tmm_cli.results.stages import heavy
@@ -49,7 +50,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
     if load.table is not None:
         size = _("table of {rows} rows against the {against}").format(
-            rows=len(load.table.values), against=_(FILE_WORDS[load.table.against])
+            rows=len(load.table.values), against=_(FILE_WORDS[load.table.first_column])
         )
     elif load.resists:
         size = _("{size} against the motion").format(size=show(problem, abs(value), dimension))
@@ -69,7 +70,9 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
 def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
     """The rows of a load's table; of a force, its direction too."""
     linkage, measure = problem.linkage, ANGLE
-    if table.against == "stroke":
+    if table.shares:
+        measure = NUMBER
+    elif table.against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
         measure = ANGLE if link is None or linkage.output_swings(link) else LENGTH
     rows = [
@@ -83,6 +86,6 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
     elif table.between == "smooth":
         closed, natural = _("Between rows: a cubic spline that closes."), _("Between rows: a natural cubic spline.")
         notes.append(closed if table.closed else natural)
-    title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.against]))
+    title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.first_column]))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return table_of_words(name, title, (_(FILE_WORDS[table.against]), _("size")), rows, tuple(notes))
+    return table_of_words(name, title, (_(FILE_WORDS[table.first_column]), _("size")), rows, tuple(notes))

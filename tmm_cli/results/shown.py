@@ -13,7 +13,8 @@ from tmm_cli.results.table import with_unit
 
 FILE_WORDS: Final = {  # that a file may say, where they are shown
     "always": N_("always"), "working stroke": N_("working stroke"),
-    "stroke": N_("stroke"), "crank angle": N_("crank angle"), "crank turn": N_("crank turn"),
+    "stroke": N_("stroke"), "share of stroke": N_("share of the stroke"),
+    "crank angle": N_("crank angle"), "crank turn": N_("crank turn"),
 }  # fmt: skip
 
 

@@ -64,7 +64,8 @@ class Column:
 
 def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int = 6) -> str:
     """A value (SI) in the unit of the file, to so many digits: `110 mm`."""
-    return typeset(f"{numeral(units.from_si(value, dimension) + 0.0, f'.{digits}g')} {units.spelt(dimension)}")
+    number = numeral(units.from_si(value, dimension) + 0.0, f".{digits}g")
+    return typeset(f"{number} {units.spelt(dimension)}".rstrip())
 
 
 def true_digits(values: Any, bound: Any) -> Any:

@@ -130,7 +130,7 @@ def _short(results: Results, load: Load, table: LoadTable) -> bool:
         acting = acting & in_window(load.window, motion.q, results.linkage)
     if not np.any(acting):
         return False
-    argument = table_argument(table.against, motion, results.strokes)[acting]
+    argument = table_argument(table, motion, results.strokes)[acting]
     first, last = table.arguments[0], table.arguments[-1]
     slack = 1e-6 * (last - first)
     return bool(np.any((argument < first - slack) | (argument > last + slack)))
