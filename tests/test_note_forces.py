@@ -3,12 +3,15 @@
 import re
 from collections.abc import Iterator
 from itertools import takewhile
+from pathlib import Path
 
+import numpy as np
 import pytest
 from bank import NAMES, solved
-from models import PROBLEMS
+from models import PROBLEMS, solved_text
 
 from tmm_cli import load, solve
+from tmm_cli.language import spoken
 from tmm_cli.note.blocks import Block, Equation, Heading, Paragraph
 from tmm_cli.note.chapters.forces import blocks
 from tmm_cli.note.context import Subject
@@ -138,3 +141,23 @@ def test_friction_of_a_hinge_and_of_the_guide_beside_it_have_letters_of_their_ow
     letters = [load_symbols(load)[0] for load in rubbing.loads if load.kind == "friction"]
     assert {"TA2", "TA1", "TA'2", "TA'3"} <= {letter.plain for letter in letters}
     assert len({*letters}) == len(letters)
+
+
+@pytest.mark.parametrize("load", ["M3", "G3", "U3", "Q3", "P3", "Mb", "Mc"])
+@pytest.mark.parametrize("language", ["en", "ru"])
+def test_a_couple_may_have_the_name_of_another_quantity(load, language):
+    """The couple M on the link is replaced by forces M / l at its two points, whatever both are called; a formula
+    whose value is not that of its numbers is refused when it is printed."""
+    text = (Path(__file__).parent / "data" / "couple-named-m3.yaml").read_text().replace("M3:", f"{load}:")
+    results = solved_text(text)
+    with spoken(language):
+        found = [b for b in blocks(Subject(results, drawn=False)) if isinstance(b, Found)]
+        for block in found:
+            block.printed()
+    inertia = next(a for a in results.loads if a.link == "3" and a.kind == "inertia")
+    (k,) = Subject(results, drawn=False).detail
+    pairs = {b.name: b.result for b in found if b.name.letter == "P"}
+    wanted = [abs(inertia.moment[k]) / 0.18, 40 / 0.18]
+    assert list(pairs.values())[1:] == pytest.approx(wanted) and len(pairs) == 3
+    symbols = [symbol for a in results.loads for symbol in set(load_symbols(a)) if np.any(a.force) or np.any(a.moment)]
+    assert len(symbols) == len(set(symbols))

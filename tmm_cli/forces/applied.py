@@ -12,7 +12,11 @@ from tmm_cli.vectors import Real, Vector
 
 @dataclass(frozen=True)
 class Applied:
-    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position."""
+    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position.
+
+    ambiguous: the name of a load of the task is also the symbol of another quantity, such as M3, the couple of inertia
+    of link 3: formulas then write the whole name below the line.
+    """
 
     name: str
     kind: Literal["weight", "inertia", "load", "friction"]
@@ -21,6 +25,7 @@ class Applied:
     force: Vector
     moment: Real
     couple_name: str = ""
+    ambiguous: bool = False
 
     @property
     def has_force(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,11 +13,15 @@ from tmm_cli.forces.springs import spring_loads
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.kinematics.strokes import Strokes
 
+BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are written
+
 
 def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
     """All that acts on each moving link but friction, in the order of the links."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
     found = [load for kind in KINDS for load in kind(motion, strokes)]
+    symbols = {*BALANCING, *(name for load in found if load.kind != "load" for name in (load.name, load.couple_name))}
+    found = [replace(a, ambiguous=True) if a.kind == "load" and a.name.rstrip("'") in symbols else a for a in found]
     return tuple(sorted(found, key=lambda a: order[a.link]))
 
 

@@ -178,6 +178,8 @@ def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
     names = load.name, load.couple_name or load.name
     if load.kind == "friction":
         return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
+    if load.ambiguous:
+        return Symbol("P", load.name), Symbol("M", load.name)
     return named(names[0], "P"), named(names[1], "M")
 
 

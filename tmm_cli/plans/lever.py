@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,19 +32,26 @@ class Pair:
     points: tuple[str, str]
     distance: float
 
+    @property
+    def force(self) -> float:
+        """The magnitude of each force, N."""
+        return abs(self.moment) / self.distance
+
 
 @dataclass(frozen=True)
 class LeverPlan:
     """ends: lettered points of the turned plan (m per unit of the driver's motion). bars: its lines.
 
     acting: all forces, at these places, and couples: those that balance, and M′ = M ω/ω₁ where M is not a pair of
-    forces (on links of one point, and on levers with many forces). equation: their moments about the pole.
+    forces (on links of one point, and on levers with many forces). couples: these M′ with the loads that they are of.
+    equation: their moments about the pole.
     """
 
     ends: dict[str, complex]
     bars: tuple[NamedVector, ...]
     acting: tuple[Acting, ...]
     pairs: tuple[Pair, ...]
+    couples: tuple[tuple[Applied, Acting], ...]
     equation: MomentEquation
 
 
@@ -60,14 +67,18 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
         ends[other_than(ends, f"s{link}")] = TURNED * complex(motion.centre(link).first[k])
     acting: list[Acting] = []
     pairs: list[Pair] = []
+    couples: list[tuple[Applied, Acting]] = []
+    taken = {load_symbols(load)[0] for load in reactions.applied if load.has_force}
     crowded = sum(1 + 2 * (load.moment[k] != 0) for load in reactions.applied) > MOST
     for load in reactions.applied:
         acting += _force(motion, load, k)
-        pair = None if crowded else _pair(motion, load, k)
+        pair = None if crowded else _pair(motion, load, k, taken)
         if pair is None:
-            acting += _couple(motion, load, k)
+            couples.append((load, _couple(motion, load, k)))
+            acting.append(couples[-1][1])
         else:
             pairs.append(pair)
+            taken.add(pair.symbol)
             acting += _forces_of(motion, load, pair, k)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
@@ -77,9 +88,10 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     sought = None if several else Sought(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
     size = max((abs(end) for end in ends.values()), default=0.0)
     found = there(acting, size or 1.0)
-    told = {a.symbol for a in found}
+    symbols = {a.symbol for a in found}
+    kept = tuple((load, couple) for load, couple in couples if any(couple is a for a in found))
     (equation,) = numbered([MomentEquation((), POLE, 0j, terms(found, 0j, size), sought)])
-    return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in told), equation)
+    return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in symbols), kept, equation)
 
 
 def _force(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
@@ -87,20 +99,25 @@ def _force(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
     yield Acting(load_symbols(load)[0], kind_of(load), load.link, end, complex(load.force[k]))
 
 
-def _couple(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
+def _couple(motion: Motion, load: Applied, k: int) -> Acting:
     """M′, with the ratio of the link's speed to the driver's in it."""
     ratio, at = float(motion.link(load.link).first[k]), TURNED * complex(motion.point(load.link, load.at).first[k])
     symbol = load_symbols(load)[1].primed
-    yield Acting(symbol, kind_of(load), load.link, at, 0j, float(load.moment[k]) * ratio)
+    return Acting(symbol, kind_of(load), load.link, at, 0j, float(load.moment[k]) * ratio)
 
 
-def _pair(motion: Motion, load: Applied, k: int) -> Pair | None:
-    """Of the couple on a link of two points and more: at the first two of them."""
+def _pair(motion: Motion, load: Applied, k: int, taken: Container[Symbol]) -> Pair | None:
+    """The two forces that replace the couple on a link, at its first two points; None if the link has one point.
+
+    taken: symbols of other forces. P₃ replaces M₃; if that is taken, P with the whole symbol of the couple.
+    """
     points = list(motion.linkage.links[load.link].points.items())
     if load.moment[k] == 0 or len(points) < 2 or points[0][1] == points[1][1]:
         return None
     couple = load_symbols(load)[1]
     symbol = Symbol("P", couple.below or couple.letter)
+    if symbol in taken:
+        symbol = Symbol("P", couple.plain)
     distance = abs(complex(points[1][1] - points[0][1]))
     return Pair(symbol, couple, float(load.moment[k]), (points[0][0], points[1][0]), distance)
 

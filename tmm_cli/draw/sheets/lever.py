@@ -86,8 +86,7 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 def _pair(pair: Pair) -> tuple[str | Symbol, ...]:
     """P = M / AB: the forces that stand for a couple."""
-    force = figure(abs(pair.moment) / pair.distance)
-    numbers = f"{figure(abs(pair.moment))} / {figure(pair.distance)} = {force} {spelt('N')}"
+    numbers = f"{figure(abs(pair.moment))} / {figure(pair.distance)} = {figure(pair.force)} {spelt('N')}"
     return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
 
 

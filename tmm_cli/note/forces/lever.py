@@ -69,21 +69,16 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         )  # fmt: skip
     for pair in plan.pairs:
         couple, apart = Leaf(pair.couple, abs(pair.moment)), Leaf(Symbol("l", "".join(pair.points)), pair.distance)
-        size = next(a.size for a in plan.acting if a.symbol == pair.symbol)
-        yield Found(pair.symbol, couple / apart, size, _("N"))
-    acting = {one.symbol: one for one in plan.acting if one.couple}
-    # a weight has a couple's letter too
-    bearing = [(load, load_symbols(load)[1]) for load in subject.results.loads if load.moment[k] != 0]
-    turned = [(load, symbol) for load, symbol in bearing if symbol.primed in acting]
-    if turned:
+        yield Found(pair.symbol, couple / apart, pair.force, _("N"))
+    if plan.couples:
         yield said(
             _("The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
               "of the driving link:"),
             M=Symbol("M").primed,
         )  # fmt: skip
-    for load, symbol in turned:
-        own = Product((Leaf(symbol, abs(float(load.moment[k]))), *_ratio(subject, load, k)))
-        yield Found(symbol.primed, own, acting[symbol.primed].size, _("N·m") if turns_of(subject) else _("N"))
+    for load, turned in plan.couples:
+        own = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_ratio(subject, load, k)))
+        yield Found(turned.symbol, own, turned.size, _("N·m") if turns_of(subject) else _("N"))
 
 
 def turns_of(subject: Subject) -> bool:
