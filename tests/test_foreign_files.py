@@ -74,23 +74,25 @@ def encoded(number, *, signed=True):
     return ("0" if signed and number < 0 else "") + digits
 
 
-def link(joints, links, forces=(), *, clockwise=False, gravity=True, rpm=30, length=1, newton=True):
-    """The text of a saved link. joints: (flags, name, x, y, angle); links: (kind, name, joints); forces likewise."""
+def link(joints, links, forces=(), *, clockwise=False, gravity=True, rpm=30, length=1, tail=""):
+    """The text of a saved link. joints: (flags, name, x, y, angle, further fields); links: (kind, name, joints)."""
 
     def decimal(value):
         return encoded(round(1000 * value))
 
-    text = f"{encoded(clockwise + 2 * gravity, signed=False)}.{decimal(1)}.{encoded(rpm)},0.{length}0{int(newton)}."
-    for flags, name, x, y, angle in joints:
-        text += f"{encoded(flags, signed=False)}{name},{name},{decimal(x)},{decimal(y)},{decimal(angle)}."
+    text = f"{encoded(clockwise + 256 * (not gravity), signed=False)}.{decimal(1)}.{encoded(rpm)},0.{length}01."
+    for flags, name, x, y, angle, *more in joints:
+        fields = [name, name, decimal(x), decimal(y), decimal(angle), *more]
+        text += f"{encoded(flags, signed=False)}{','.join(fields)}."
     text += "."
     for kind, name, own, mass, x, y in links:
-        text += f"Y{kind}{name},{name},{decimal(mass)},{decimal(0.5)},{decimal(x)},{decimal(y)},abcdef,"
+        kind = kind if len(kind) > 1 else f"Y{kind}"
+        text += f"{kind}{name},{name},{decimal(mass)},{decimal(0.5)},{decimal(x)},{decimal(y)},abcdef,"
         text += "".join(f"{joint}," for joint in own) + ",."
     text += "."
     for name, on, x0, y0, x1, y1, size in forces:
         text += f"2{name},{on},{name},{decimal(x0)},{decimal(y0)},{decimal(x1)},{decimal(y1)},{decimal(size)}."
-    text += ".N"
+    text += ".N" + tail
     return text + DIGITS[len(text) % 62]
 
 
@@ -111,9 +113,141 @@ def test_a_saved_link_of_pmks_keeps_lengths_guide_speed_masses_and_forces(text):
     assert places(results, math.atan2(4, 3), "BC") == pytest.approx([0.03 + 0.04j, 0.15 - 0.01j], abs=1e-15)
     (slide,) = linkage.slides
     assert float(slide.direction) == pytest.approx(math.pi / 4, abs=5e-4)
-    assert (linkage.driver.sense, linkage.links["BC"].mass, linkage.links["BC"].inertia) == (-1, 3, 0.5)
+    assert (linkage.driver.sense, linkage.links["BC"].mass) == (-1, 0.003)  # 3 g
+    assert linkage.links["BC"].inertia == pytest.approx(0.5e-4, rel=1e-15)  # 0.5 kg*cm^2
     (load,) = linkage.loads
     assert load.force == pytest.approx(40j) and linkage.gravity == -9.81j
+
+
+GALLERY = FILES / "pmks"
+
+
+def gallery(name):
+    """The kinematics of a file that was saved from the gallery of PMKS+."""
+    __, results = imported((GALLERY / f"{name}.pmks").read_text(encoding="utf-8"), f"{name}.pmks")
+    return results
+
+
+@pytest.mark.parametrize(
+    ("angle", "place"), [(0, 2.418 + 2.456j), (-30, 2.130 + 2.496j), (-60, 1.931 + 2.499j)]
+)  # as PMKS+ shows them
+def test_a_block_in_a_slot_of_the_coupler_moves_as_pmks_shows_it(angle, place):
+    (found,) = places(gallery("SlottedCoupler"), math.radians(angle), "F")
+    assert found * 100 == pytest.approx(place, abs=6e-4)
+
+
+ANGLES = np.radians([0, 40, 75, 160, 200, 290, 345])
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_slotted_levers_of_pmks_follow_the_crank_pin(angle):
+    crank, pivot, lever = np.exp(1j * angle), 3, math.hypot(4.743, 1.581)
+    d = pivot + lever * (crank - pivot) / abs(crank - pivot)
+    assert places(gallery("ISC"), angle, "D") == pytest.approx([d / 100], abs=1e-14)
+    pivot, lever = -3j, math.hypot(1.581, 1.743 + 3)
+    d = pivot + lever * (crank - pivot) / abs(crank - pivot)
+    rise, rod = 3.5, math.hypot(3.36 - 1.581, 3.5 - 1.743)
+    r = d.real + math.sqrt(rod**2 - (rise - d.imag) ** 2) + rise * 1j
+    assert places(gallery("Shaper"), angle, "DR") == pytest.approx([d / 100, r / 100], abs=1e-14)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_slide_of_pmks_does_not_rotate_on_its_guide(angle):
+    results = gallery("Saw")  # a Scotch yoke: the yoke moves by the cosine of the crank angle
+    c, e = (place + math.cos(angle) - 1 for place in (1 - 2j, 5 - 2j))
+    assert places(results, angle, "CE") == pytest.approx([c / 100, e / 100], abs=1e-15)
+    assert set(results.linkage.links) == {"0", "AB", "CDE", "block_B"}  # the parts CD and CE are one link
+    assert [load.link for load in results.linkage.loads] == ["CDE", "CDE"]
+
+
+@pytest.mark.parametrize("angle", np.radians([-90, -60, -130]))
+def test_a_free_cylinder_of_pmks_lies_between_its_mounts(angle):
+    mount, d = -4, 1.988 + 3j + 3 * np.exp(1j * angle)
+    along = (d - mount) / abs(d - mount)
+    b, c = mount + 3.538 * along, d - 3.538 * along
+    assert places(gallery("Cylinder"), angle + math.pi, "BCD") == pytest.approx([b / 100, c / 100, d / 100], abs=1e-14)
+
+
+@pytest.mark.parametrize("way", [-0.4, 0, 0.3])  # cm
+def test_a_driven_cylinder_of_pmks_rotates_the_bell_crank_by_the_law_of_cosines(way):
+    results = gallery("Backhoe")
+    driver = results.linkage.driver
+    assert (driver.kind, driver.link, driver.base) == ("slide", "CD", "AB")
+    assert driver.rate == pytest.approx(0.012)  # 1.2 cm/s, of the settings
+    a, b, c, d = -7, -3.493 + 1.66j, -4.631 + 1.121j, -1.124 + 2.781j
+    slot = (b - a) / abs(b - a)
+    at = ((c - a) / slot).real + way
+    reach, lever = abs(at + (d - c) / slot), abs(d)  # from A to D; from the pivot G to D
+    bend = math.acos((lever**2 + 49 - reach**2) / (2 * lever * 7))
+    there = lever * np.exp(1j * (math.pi - bend))
+    assert places(results, at / 100, "D") == pytest.approx([there / 100], abs=1e-14)
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_both_arms_of_the_windshield_wiper_of_pmks_rotate_together(angle):
+    o, b0, c0, t0 = -3.5 - 2.828j, 0.879 - 1.796j, 0.659 - 1.347j, -2.198 + 4.491j
+    a = o + abs(-3.496 - 1.328j - o) * np.exp(1j * angle)
+    rod, arm = abs(b0 - (-3.496 - 1.328j)), abs(b0)
+    share = (arm**2 - rod**2 + abs(a) ** 2) / (2 * abs(a))  # of the circles about P = 0 and A
+    b = a / abs(a) * (share - 1j * math.sqrt(arm**2 - share**2))
+    if ((b0 / (-3.496 - 1.328j)).imag > 0) != ((b / a).imag > 0):
+        b = a / abs(a) * (share + 1j * math.sqrt(arm**2 - share**2))
+    turned = b / b0
+    expected = [b, c0 * turned, t0 * turned, c0 * turned + 6, 6 + (3.802 + 4.491j - 6) * turned]
+    assert places(gallery("Wiper"), angle, "BCTDU") == pytest.approx(np.array(expected) / 100, abs=1e-14)
+
+
+FOUR_BAR = [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 3, 4, 0), (TURNING, "C", 9, 5, 0), (GROUND, "D", 11, 0, 0)]
+BARS = [("R", "AB", "AB", 2, 1.5, 2), ("R", "BC", "BC", 3, 6, 4.5), ("R", "CD", "CD", 1, 10, 2.5)]
+
+
+@pytest.mark.parametrize(
+    ("length", "metre", "mass", "inertia"),
+    [(1, 0.01, 3e-3, 0.5e-4), (0, 0.0254, 3 * 0.45359237, 0.5 * 0.45359237 * 0.0254**2), (2, 1, 3, 0.5)],
+)
+def test_masses_of_pmks_go_with_the_unit_of_length(length, metre, mass, inertia):
+    force = [("F1", "BC", 6, 4.5, 6, 5.5, 10)]
+    __, results = imported(link(FOUR_BAR, BARS, force, length=length))
+    coupler = results.linkage.links["BC"]
+    assert (coupler.mass, coupler.inertia) == (pytest.approx(mass), pytest.approx(inertia))
+    assert abs(coupler.points["C"] - coupler.points["B"]) == pytest.approx(math.hypot(6, 1) * metre)
+    (load,) = results.linkage.loads
+    assert load.force == pytest.approx(10j * (4.4482216152605 if length == 0 else 1))
+
+
+@pytest.mark.parametrize("flag", "YAMG0123")
+def test_a_link_whose_mass_or_centre_pmks_computes_itself_is_there(flag):
+    kinds = [("R", *BARS[0][1:]), (f"{flag}R", *BARS[1][1:]), ("R", *BARS[2][1:])]
+    foreign, results = imported(link(FOUR_BAR, kinds))
+    assert results.linkage.links["BC"].mass == pytest.approx(3e-3)
+    noted = [note for note in foreign.notes if "link BC" in note]
+    assert len(noted) == (flag not in "Y0")
+
+
+def test_a_speed_in_the_record_of_the_driving_joint_goes_before_that_of_the_file():
+    joints = [(*FOUR_BAR[0], "", "", "", encoded(-12_000)), *FOUR_BAR[1:]]
+    foreign, __ = imported(link(joints, BARS, rpm=30))
+    assert (foreign.drive.speed, foreign.drive.unit) == (-12, "rpm")
+
+
+def test_numbers_of_pmks_that_thousandths_do_not_hold_are_exact():
+    foreign, __ = imported(link(FOUR_BAR, BARS, tail=".PJB~0~3.00012345678,PLBC~0~0.0000015,PI~0~2.5,JA,KJB~o"))
+    assert foreign.places["B"] == 3.00012345678 + 4j and foreign.drive.speed == 2.5
+    assert foreign.bodies[1].mass == pytest.approx(1.5e-9)
+
+
+def test_a_link_with_two_pins_on_the_frame_is_the_frame():
+    rail = [*FOUR_BAR, (TURNING, "E", 14, 2, 0), (TURNING, "G", 13, 5, 0)]
+    bars = [*BARS, ("R", "ADE", "ADE", 1, 5, 1), ("R", "EG", "EG", 1, 13, 3), ("R", "CG", "CG", 1, 11, 5)]
+    foreign, results = imported(link(rail, bars))
+    assert set(foreign.frame) == {"A", "D", "E"} and "ADE" not in results.linkage.links
+    assert "Link ADE is pinned to the frame twice: it is part of the frame." in foreign.notes
+
+
+def test_friction_and_synthesis_of_pmks_are_listed_as_not_carried_over():
+    joints = [FOUR_BAR[0], (*FOUR_BAR[1], "", "", "", "", "0~3", "0~2", "1"), *FOUR_BAR[2:]]
+    foreign, __ = imported(link(joints, BARS, tail=".SD~1~2~3"))
+    assert foreign.left == ("The design of its synthesis.", "Friction of joint B.")
 
 
 def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_loads_carried_over():
@@ -193,7 +327,25 @@ REFUSED = {
     json.dumps(file_of_pylinkage(joints=[{}] * 501)):
         "file:1:32: joints: this is too long: at most 500",
     link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []):
-        "file: this link of PMKS+ cannot be read",
+        "file: joints.B: this is no number to the base 64\n  found:   'SijRs6CXv000000000000000'",
+    link([*FOUR_BAR[:3], (*FOUR_BAR[3], *"XAB")], BARS):
+        "file: joints.D: a slot needs a joint that slides, a link and two joints of that link\n  found:   'X,A,B'",
+    link([*FOUR_BAR[:3], (SLIDING, *FOUR_BAR[3][1:], "XY", "A", "B")], BARS):
+        "file: joints.D: there is no link of that name\n  found:   'XY'",
+    link([*FOUR_BAR[:3], (*FOUR_BAR[3], "", "", "", "", "", "", "", "new")], BARS):
+        "file: joints.D: a field of a joint that is not known here\n  found:   ',,new'",
+    link(FOUR_BAR, [*BARS[:2], ("QR", *BARS[2][1:])]):
+        "file: links.CD: a link of a kind that is not known here\n  found:   'Q'",
+    link(FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"):
+        "file: gears of PMKS+ are not read\n  found:   'G1~eyJnZWFycyI6W119'",
+    link(FOUR_BAR, BARS, tail=".XJB"):
+        "file: an entry that is not known here\n  found:   'XJB'",
+    link([(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS):
+        "file: joints.B: a motor between two moving links is not taken over\n  found:   AB, BC",
+    (GALLERY / "Saw.pmks").read_text(encoding="utf-8").replace("E,1E8", "E,1E9"):
+        "file: this link is damaged: its digest does not fit its text\n  found:   '3FX8op'",
+    "https://app.pmksplus.com/?pmks2:0123abcd.eyJib2RpZXMiOltdfQ":
+        "file: a document of the newer editor of PMKS+ is not read\n  found:   pmks2:...",
     link([(INPUT | GROUND, "A", 0, 0, 0)], [("R", "AB", "A", 2, 1, 2)], [("F", "BA", 0, 0, 1, 0, 9)]):
         "file: forces.F: there is no link of that name\n  found:   'BA'",
     "\n" * 900_000:

@@ -34,12 +34,18 @@ class Slide:
 
 @dataclass(frozen=True)
 class Drive:
-    """What turns a body on the frame, counterclockwise: speed in its unit, acceleration in rad/s^2."""
+    """What rotates a body on the frame, counterclockwise, or moves it along its guide on another body.
+
+    speed: in its unit, `length/s` for units of length of the file per second; acceleration: rad/s^2; on: the body with
+    the guide; at: displacement from the place of the guide (unit of lengths), None for a rotation.
+    """
 
     body: str
     speed: float
-    unit: Literal["rad/s", "rpm"] = "rad/s"
+    unit: Literal["rad/s", "rpm", "length/s"] = "rad/s"
     acceleration: float = 0.0
+    on: str = FRAME
+    at: float | None = None
 
 
 @dataclass(frozen=True)

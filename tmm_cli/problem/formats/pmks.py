@@ -1,20 +1,37 @@
-"""PMKS+ (app.pmksplus.com): what its saved links and its CSV files say, made into a mechanism."""
+"""Mechanisms of PMKS+ (app.pmksplus.com): records of its saved links and CSV files, and what they describe.
+
+Meaning of the records: mechanism-builder.ts, legacy-production-connections.ts, transcoder-data.ts and
+docs/force-analysis-units.md of PMKS-Web/Planar-Mechanism-Kinematic-Simulator.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import cmath
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Final
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Length, Push, Slide
 
 MOST = 500  # joints, links
-INCH, POUND = 0.0254, 4.4482216152605
+METRE: Final[dict[Length, float]] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+POUND, POUND_FORCE = 0.45359237, 4.4482216152605
+# kg, kg*m^2 and N in the stored unit: cm goes with g and kg*cm^2, in with lbm, lbm*in^2 and lbf, m with kg and kg*m^2
+MASS: Final[dict[Length, float]] = {"cm": 1e-3, "m": 1.0, "in": POUND}
+INERTIA: Final[dict[Length, float]] = {"cm": 1e-4, "m": 1.0, "in": POUND * 0.0254**2}
+UNITS: Final[dict[Length, str]] = {"cm": "g, kg*cm^2, N", "m": "kg, kg*m^2, N", "in": "lbm, lbm*in^2, lbf"}
 
 
 @dataclass(frozen=True)
 class Joint:
-    """angle: of the guide of one that slides, rad."""
+    """A joint. The attributes below `input` describe a joint that slides, except `speed`.
+
+    angle: of a guide on the frame, rad; carrier, slot: the link with the slot and two of its joints on the slot;
+    welded: the links on the joint do not rotate relative to the guide (of a revolute joint: they are one link);
+    mass: of the sliding block; speed: of the drive, rpm or units of length per second, 0: that of the file.
+    """
 
     id: str
     place: complex
@@ -22,11 +39,16 @@ class Joint:
     ground: bool = False
     input: bool = False
     angle: float = 0.0
+    welded: bool = False
+    carrier: str = ""
+    slot: tuple[str, str] = ("", "")
+    mass: float = 0.0
+    speed: float = 0.0
 
 
 @dataclass(frozen=True)
 class Link:
-    """piston: a stone, which has the joint that slides and the one that it turns on, both in one place."""
+    """A link. piston: a block of an older file, with its sliding joint and its pin; parts: links welded into it."""
 
     id: str
     joints: tuple[str, ...]
@@ -35,6 +57,7 @@ class Link:
     inertia: float = 0.0
     centre: complex = 0j
     name: str = ""
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -52,7 +75,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Saved:
-    """A file of PMKS+. rpm: positive counterclockwise; gravity: whether links have weight."""
+    """A file of PMKS+. rpm: positive counterclockwise; linear: speed of driven sliders, units of length per second."""
 
     joints: tuple[Joint, ...]
     links: tuple[Link, ...]
@@ -60,72 +83,215 @@ class Saved:
     rpm: float
     gravity: bool
     length: Length
-    pounds: bool = False
+    linear: float = 5.0
     notes: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
+    title: str = ""
 
 
 def foreign(saved: Saved, file: str) -> Foreign:
     """The mechanism. Raises ProblemError."""
-    joints = {joint.id: joint for joint in saved.joints}
-    for each in (saved.joints, saved.links):
-        if len(each) > MOST:
+    _check(saved, file)
+    return _Mechanism.of(_folded(saved, file), file).foreign()
+
+
+def _check(saved: Saved, file: str) -> None:
+    """Refuse names that are repeated or that no record has."""
+    for records in (saved.joints, saved.links):
+        if len(records) > MOST:
             raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MOST), file=file)
-    links = {link.id: link for link in saved.links}
-    for ids in ([joint.id for joint in saved.joints], [link.id for link in saved.links]):
-        for k, name in enumerate(ids):
-            if name in ids[:k]:
+    joints, links = [joint.id for joint in saved.joints], [link.id for link in saved.links]
+    known = {*links, *(name for link in saved.links for name in link.parts)}
+    for names in (joints, links):
+        for k, name in enumerate(names):
+            if name in names[:k]:
                 raise ProblemError(_("a name is given twice"), found=quote(name), file=file)
-    for force in saved.forces:
-        if force.link not in links:
-            raise ProblemError(_("there is no link of that name"), path=("forces", force.id), found=quote(force.link),
-                               near=nearest(force.link, links), file=file)  # fmt: skip
-    for link in saved.links:
-        for joint in link.joints:
-            if joint not in joints:
-                raise ProblemError(_("a joint that is not there"), path=("links", link.id), found=joint, file=file)
-    bodies, slides = [], []
-    for link in saved.links:
-        rails = [joints[name] for name in link.joints if joints[name].slides]
-        stone = link.piston or len(link.joints) == len(rails)
-        own = tuple(name for name in link.joints if not joints[name].slides)
-        for rail in rails if stone else ():
-            others = [one for one in saved.links if one is not link and rail.id in one.joints]
-            carrier = FRAME if rail.ground or not others else others[0].id
-            slides.append(Slide(link.id, own[0] if own else rail.id, carrier, rail.place, rail.angle))
-        kept = own if stone and own else link.joints
-        bodies.append(
-            Body(link.id, kept, link.name if link.name != link.id else "", link.mass, link.inertia,
-                 None if stone or not link.mass else link.centre)
-        )  # fmt: skip
-    drive = _drive(saved, joints, file)
-    unit = POUND if saved.pounds else 1.0
-    pushes = []
-    for force in saved.forces:
-        along = (force.end - force.start) * (1 if force.outward else -1)
-        if along:
-            at = force.start
-            pushes.append(Push(force.id, force.link, at, unit * force.size * along / abs(along), turns=force.turns))
-    used = {name for body in bodies for name in body.points}
-    frame = tuple(name for name, joint in joints.items() if joint.ground and not joint.slides and name in used)
-    places = {name: joint.place for name, joint in joints.items() if name in used}
-    notes = (*saved.notes, _("Masses are taken for kg, moments of inertia for kg*m^2, about the centre of mass."))
-    return Foreign(
-        "PMKS+", "", saved.length, places, frame, tuple(bodies), drive, tuple(slides), tuple(pushes),
-        None if saved.gravity else 0j, notes=notes,
-    )  # fmt: skip
+    wanted = [(("forces", force.id), force.link) for force in saved.forces]
+    wanted += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
+    for path, name in wanted:
+        if name not in known:
+            raise ProblemError(_("there is no link of that name"), path=path, found=quote(name),
+                               near=nearest(name, known), file=file)  # fmt: skip
+    on = [(("links", link.id), joint) for link in saved.links for joint in link.joints]
+    on += [(("joints", joint.id), end) for joint in saved.joints if joint.carrier for end in joint.slot]
+    for path, name in on:
+        if name not in joints:
+            raise ProblemError(_("a joint that is not there"), path=path, found=name, file=file)
 
 
-def _drive(saved: Saved, joints: dict[str, Joint], file: str) -> Drive:
-    driven = [joint for joint in saved.joints if joint.input]
-    if len(driven) != 1:
-        raise ProblemError(_("one driving joint is wanted"), found=str(len(driven)), file=file)
-    joint = driven[0]
-    if joint.slides or not joint.ground:
-        raise ProblemError(
-            _("a driving slider, or one that is driven from a moving link, is not taken over"), found=joint.id,
-            allowed=_("a crank on the frame; else write the block `driver` by hand"), file=file,
+def _folded(saved: Saved, file: str) -> Saved:
+    """The same file with each block of an older file, its sliding joint and its pin written as one joint."""
+    joints = {joint.id: joint for joint in saved.joints}
+    links, renamed = [link for link in saved.links if not link.piston], dict[str, str]()
+    for block in (link for link in saved.links if link.piston):
+        rails = [joints[name] for name in block.joints if joints[name].slides]
+        pins = [joints[name] for name in block.joints if not joints[name].slides]
+        if len(rails) != 1 or len(pins) != 1:
+            raise ProblemError(
+                _("a sliding block with one joint that slides and one pin is expected"), path=("links", block.id),
+                found=", ".join(block.joints), file=file,
+            )  # fmt: skip
+        (rail,), (pin,) = rails, pins
+        others = [link.id for link in links if rail.id in link.joints and pin.id not in link.joints]
+        carrier = rail.carrier or (others[0] if others and not rail.ground else "")
+        joints[pin.id] = replace(
+            rail, id=pin.id, ground=not carrier, input=rail.input or pin.input, welded=pin.welded, carrier=carrier,
+            mass=block.mass, speed=rail.speed or pin.speed,
         )  # fmt: skip
-    cranks = [link.id for link in saved.links if joint.id in link.joints]
-    if len(cranks) != 1:
-        raise ProblemError(_("one driving link is wanted"), found=", ".join(cranks), file=file)
-    return Drive(cranks[0], saved.rpm, "rpm")
+        renamed[rail.id] = pin.id
+        del joints[rail.id]
+    for name, joint in joints.items():
+        a, b = joint.slot
+        joints[name] = replace(joint, slot=(renamed.get(a, a), renamed.get(b, b)))
+    kept = [replace(link, joints=tuple(name for name in link.joints if name not in renamed)) for link in links]
+    return replace(saved, joints=tuple(joints.values()), links=tuple(kept))
+
+
+@dataclass(frozen=True)
+class _Mechanism:
+    """Bodies of a file. frame: links that are pinned to the frame twice; owner: of each link, the one it is part of."""
+
+    saved: Saved
+    file: str
+    joints: dict[str, Joint]
+    owner: dict[str, str]
+    frame: frozenset[str]
+    left: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, saved: Saved, file: str) -> _Mechanism:
+        joints = {joint.id: joint for joint in saved.joints}
+        owner = {name: link.id for link in saved.links for name in (link.id, *link.parts)}
+        frame = set[str]()
+        while True:  # a joint of a frame link is on the frame too
+            fixed = {name for name, joint in joints.items() if joint.ground and not joint.slides}
+            more = {link.id for link in saved.links if link.id not in frame
+                    and len({joints[name].place for name in link.joints if name in fixed}) > 1}  # fmt: skip
+            if not more:
+                return cls(saved, file, joints, owner, frozenset(frame))
+            frame |= more
+            for link in saved.links:
+                for name in link.joints if link.id in more else ():
+                    joints[name] = joints[name] if joints[name].slides else replace(joints[name], ground=True)
+
+    def foreign(self) -> Foreign:
+        """All of it."""
+        slides = list(self._slides())
+        blocks = [
+            Body(name, (joint.id,), mass=joint.mass * MASS[self.saved.length])
+            for name, joint in ((self._block(joint), joint) for joint in self.joints.values()) if name
+        ]  # fmt: skip
+        bodies = [self._body(link) for link in self.saved.links if link.id not in self.frame]
+        used = {name for body in bodies for name in body.points}
+        blocks = [block for block in blocks if block.points[0] in used]
+        slides = [slide for slide in slides if slide.point in used]
+        drive = self._drive(slides)
+        pushes = list(self._pushes())
+        self.left.extend(
+            _("Joint {name} is on no moving link.").format(name=name) for name in self.joints if name not in used
+        )
+        notes = [*self.saved.notes, _("Masses, moments of inertia about the centre of mass and forces are read in "
+                                      "{units}.").format(units=UNITS[self.saved.length])]  # fmt: skip
+        notes += [
+            _("Link {name} is pinned to the frame twice: it is part of the frame.").format(name=name)
+            for name in sorted(self.frame)
+        ]
+        return Foreign(
+            "PMKS+", self.saved.title, self.saved.length,
+            {name: joint.place for name, joint in self.joints.items() if name in used},
+            tuple(name for name, joint in self.joints.items() if joint.ground and not joint.slides and name in used),
+            (*bodies, *blocks), drive, tuple(slides), tuple(pushes), None if self.saved.gravity else 0j,
+            notes=tuple(notes), left=(*self.saved.left, *self.left),
+        )  # fmt: skip
+
+    def _riders(self, joint: Joint) -> list[str]:
+        """Moving links on a joint; of one that slides without the link that has the slot."""
+        carrier = self._carrier(joint) if joint.slides else ""
+        return [link.id for link in self.saved.links
+                if joint.id in link.joints and link.id not in self.frame and link.id != carrier]  # fmt: skip
+
+    def _carrier(self, joint: Joint) -> str:
+        owner = self.owner[joint.carrier] if joint.carrier else FRAME
+        return FRAME if owner in self.frame else owner
+
+    def _block(self, joint: Joint) -> str:
+        """Name of the sliding block of a joint, if its links rotate relative to the guide."""
+        return f"block_{joint.id}" if joint.slides and not joint.welded else ""
+
+    def _slides(self) -> Iterator[Slide]:
+        for joint in self.joints.values():
+            riders = self._riders(joint)
+            if not joint.slides:
+                if joint.welded and len(riders) > 1:
+                    raise self._refused(joint, _("a welded joint of links that are not one link"), ", ".join(riders))
+                continue
+            carrier = self._carrier(joint)
+            if not joint.ground and not joint.carrier:
+                raise self._refused(joint, _("a joint that slides neither on the frame nor on a link"))
+            through, angle = self._slot(joint) if any(joint.slot) else (joint.place, joint.angle)
+            if joint.welded and len(riders) > 1:
+                raise self._refused(joint, _("links that slide together and are not one link"), ", ".join(riders))
+            if riders:
+                yield Slide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
+
+    def _slot(self, joint: Joint) -> tuple[complex, float]:
+        """A point of the slot and its angle."""
+        carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
+        if joint.ground:
+            raise self._refused(joint, _("a slot that is on the frame and on a link"), quote(joint.carrier))
+        if joint.id in carrier.joints or any(end not in carrier.joints for end in joint.slot):
+            raise self._refused(joint, _("a slot between two joints of another link is expected"),
+                                ", ".join((joint.carrier, *joint.slot)))  # fmt: skip
+        a, b = (self.joints[end].place for end in joint.slot)
+        if a == b:
+            raise self._refused(joint, _("the slot has no direction: its joints coincide"), ", ".join(joint.slot))
+        return a, cmath.phase(b - a)
+
+    def _body(self, link: Link) -> Body:
+        mass, inertia = link.mass * MASS[self.saved.length], link.inertia * INERTIA[self.saved.length]
+        centre = link.centre
+        for joint in (self.joints[name] for name in link.joints):
+            if joint.slides and joint.welded and joint.mass and self._carrier(joint) != link.id:
+                block, apart = joint.mass * MASS[self.saved.length], abs(joint.place - centre)
+                inertia += mass * block / (mass + block) * (apart * METRE[self.saved.length]) ** 2
+                mass, centre = mass + block, (mass * centre + block * joint.place) / (mass + block)
+        label = link.name if link.name != link.id else ""
+        return Body(link.id, link.joints, label, mass, inertia, centre if mass else None)
+
+    def _drive(self, slides: list[Slide]) -> Drive:
+        driven = [joint for joint in self.joints.values() if joint.input]
+        if len(driven) != 1:
+            raise ProblemError(
+                _("one driving joint is wanted"), found=", ".join(joint.id for joint in driven) or "0", file=self.file
+            )
+        (joint,) = driven
+        if joint.slides:
+            slide = next((slide for slide in slides if slide.point == joint.id), None)
+            if slide is None:
+                raise self._refused(joint, _("one driving link is wanted"), "0")
+            at = ((joint.place - slide.through) * cmath.rect(1, -slide.angle)).real
+            return Drive(slide.runner, joint.speed or self.saved.linear, "length/s", on=slide.carrier, at=at)
+        cranks = self._riders(joint)
+        if not joint.ground:
+            raise self._refused(
+                joint, _("a motor between two moving links is not taken over"), ", ".join(cranks),
+                _("a crank on the frame; else write the block `driver` by hand"),
+            )  # fmt: skip
+        if len(cranks) != 1:
+            raise self._refused(joint, _("one driving link is wanted"), ", ".join(cranks) or "0")
+        return Drive(cranks[0], joint.speed or self.saved.rpm, "rpm")
+
+    def _pushes(self) -> Iterator[Push]:
+        newton = POUND_FORCE if self.saved.length == "in" else 1.0
+        for force in self.saved.forces:
+            along = (force.end - force.start) * (1 if force.outward else -1)
+            body = self.owner[force.link]
+            if body in self.frame:
+                self.left.append(_("Force {name} acts on the frame.").format(name=force.id))
+            elif along and force.size:
+                yield Push(force.id, body, force.start, newton * force.size * along / abs(along), turns=force.turns)
+            elif force.size:
+                self.left.append(_("Force {name} has no direction.").format(name=force.id))
+
+    def _refused(self, joint: Joint, message: str, found: str = "", allowed: str = "") -> ProblemError:
+        return ProblemError(message, path=("joints", joint.id), found=found, allowed=allowed, file=self.file)

@@ -39,7 +39,7 @@ def read(text: str, file: str) -> Foreign:
               _numbers(row, ("mag",), file, n)[0])
         for n, row in rows["forces"]
     )  # fmt: skip
-    notes = [_("CSV files of PMKS+ say no units: lengths are taken for cm, forces for N.")]
+    notes = [_("CSV files of PMKS+ say no units: lengths are taken for cm.")]
     rpm, gravity = 10.0, False
     for n, row in rows["settings"]:
         rpm = _numbers(row, ("input_speed",), file, n)[0] * (-1 if _true(row.get("clockwise", "")) else 1)

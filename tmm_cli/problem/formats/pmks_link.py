@@ -1,59 +1,224 @@
-"""PMKS+: a saved link, or the text of a .pmks file, which is its part behind the question mark.
+"""PMKS+: a saved link, or the text of a .pmks file, which is the query of that link.
 
-PMKS-Web/PMKSWeb, src/app/services/transcoding/string-transcoder.ts: settings, joints, links and forces are parted by
-full stops, numbers written to the base 64 in thousandths, negative ones behind a zero.
+Source: PMKS-Web/Planar-Mechanism-Kinematic-Simulator, src/app/services/transcoding, string-transcoder.ts (records),
+checksum.ts (check character, digest of autumn 2026), stored-settings.ts, precise-values.ts, gear-codec.ts,
+structural-codec.ts, body-document-envelope.ts (pmks2:).
+
+Settings, joints, links, forces, the selected object and a list of tagged entries are separated by full stops, fields
+of a record by commas. Numbers are integers to the base 64 in thousandths; negative ones begin with a zero. Fields of
+the records, where each of the later ones may be missing:
+
+joint: flags and id, name, x, y, angle (rad), carrier and two joints of a slot, drive speed, mass of the block,
+       whether a welded link stands on the slider, name of the machine
+link:  flags and id, name, mass, moment of inertia, x and y of the centre of mass, colour, joints, an empty field, parts
+force: flags and id, link, name, x and y of both ends, magnitude
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Final
+from urllib.parse import unquote
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.formats.foreign import Foreign, Length
 from tmm_cli.problem.formats.pmks import Force, Joint, Link, Saved, foreign
+from tmm_cli.problem.values import LARGEST
 
 DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
-FORM = re.compile(r"(?:https?://[^\s?]*\?)?([\w-]+\.[\w,-]*\.[\w,-]*\.[\w-]*\.\S*)\s*")
+CHECKS = DIGITS[:62]
+ADDRESS = r"(?:https?://[^\s?]*\?)?"
+FORM = re.compile(ADDRESS + r"([\w-]+\.[\w,-]*\.[\w,-]*\.[\w-]*\.[^\r\n#]*)(?:#\S*)?")
+NATIVE = re.compile(ADDRESS + r"pmks2:[^\r\n]*")
 LENGTHS: Final[tuple[Length, ...]] = ("in", "cm", "m")
 MOST = 100_000
 LONGEST = 10  # characters of a number: as many as a mechanism can have
+CLOCKWISE, GRAVITY_OFF = 1, 256  # flags of the file; 2 was gravity once and is dead
+SLIDES, INPUT, GROUND, WELDED = 1, 2, 4, 8  # flags of a joint; 16: its path is drawn, 32: drawn as a cylinder
+LOCAL, OUTWARD = 1, 2  # flags of a force
+ROOTS, PARTS = "YAMG0123", "Namg4567"  # first character of a link: of its own, or welded into another one
+AUTOMATIC = {"A": "both", "1": "both", "M": "inertia", "2": "inertia", "G": "centre", "3": "centre"}
+SILENT = "JLFCHK"  # tags of locks, anchors of centres of mass, held lengths, colours: they change no mechanism
 
 
 def recognised(text: str) -> bool:
     """Whether the text is of this format."""
-    return len(text) < MOST and FORM.fullmatch(text.strip()) is not None
+    text = text.strip()
+    return len(text) < MOST and (FORM.fullmatch(text) or NATIVE.fullmatch(text)) is not None
 
 
 def read(text: str, file: str) -> Foreign:
     """The mechanism of a file. Raises ProblemError."""
+    if NATIVE.fullmatch(text.strip()):
+        raise ProblemError(
+            _("a document of the newer editor of PMKS+ is not read"), found="pmks2:...",
+            allowed=_("a link that begins with its settings, as ?2v.Ay,1E8.5,..."), file=file,
+        )  # fmt: skip
     found = FORM.fullmatch(text.strip())
     assert found is not None
-    content = found[1]
-    if DIGITS[(len(content) - 1) % 62] != content[-1]:
+    return foreign(_Reading.of(_checked(unquote(found[1]), file), file).saved(), file)
+
+
+def _checked(content: str, file: str) -> str:
+    """The text without its check character and its digest. Raises ProblemError if they do not fit."""
+    body, mark, digest = content.rpartition("*")
+    if mark and digest != _digest(body):
         raise ProblemError(
-            _("this link is not whole: its last character does not fit its length"), found=repr(content[-1]),
+            _("this link is damaged: its digest does not fit its text"), found=quote(digest),
             allowed=_("a link as PMKS+ copies it, or its file .pmks"), file=file,
         )  # fmt: skip
-    try:
-        return foreign(_saved(content[:-1]), file)
-    except (ValueError, IndexError):
-        raise ProblemError(_("this link of PMKS+ cannot be read"), file=file) from None
+    body = body if mark else content
+    if CHECKS[(len(body) - 1) % 62] != body[-1:]:
+        raise ProblemError(
+            _("this link is not whole: its last character does not fit its length"), found=quote(body[-1:]),
+            allowed=_("a link as PMKS+ copies it, or its file .pmks"), file=file,
+        )  # fmt: skip
+    return body[:-1]
 
 
-def _saved(content: str) -> Saved:
-    flags, __, whole, words, rest = content.split(".", 4)
-    on = _number(flags, signed=False)
-    joints, rest = _items(rest)
-    links, rest = _items(rest)
-    forces, rest = _items(rest)
-    speed, made = _number(whole.split(",")[0]), [_link(item) for item in links]
-    return Saved(
-        tuple(_joint(item) for item in joints), tuple(link for link, root in made if root),
-        tuple(_force(item) for item in forces), -speed if on & 1 else speed, bool(on & 2),
-        LENGTHS[_number(words[0])], _number(words[2]) == 0,
-    )  # fmt: skip
+def _digest(body: str) -> str:
+    """FNV-1a of 32 bits over the characters, six digits to the base 62."""
+    value = 0x811C9DC5
+    for char in body:
+        value = (value ^ ord(char)) * 0x01000193 & 0xFFFFFFFF
+    digits = ""
+    for __ in range(6):
+        value, digit = divmod(value, 62)
+        digits = CHECKS[digit] + digits
+    return digits
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """Records of a link, field by field. exact: numbers that thousandths do not hold, by kind, id and index."""
+
+    settings: tuple[str, ...]
+    joints: list[list[str]]
+    links: list[list[str]]
+    forces: list[list[str]]
+    exact: dict[tuple[str, str, int], float]
+    left: tuple[str, ...]
+    file: str
+
+    @classmethod
+    def of(cls, content: str, file: str) -> _Reading:
+        """Raises ProblemError."""
+        *settings, rest = content.split(".", 4)
+        joints, rest = _items(rest)
+        links, rest = _items(rest)
+        forces, rest = _items(rest)
+        exact, left = _entries(rest.partition(".")[2], file)
+        records = [[item.split(",") for item in items] for items in (joints, links, forces)]
+        return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
+
+    def saved(self) -> Saved:
+        """The file. Raises ProblemError."""
+        flags, decimals, whole, words = self.settings
+        on = self._integer(flags, ("settings",), signed=False)
+        if not words or words[0] not in DIGITS[: len(LENGTHS)]:
+            raise self._refused(("settings",), _("a unit of length that is not known here"), quote(words[:1]),
+                                ", ".join(LENGTHS))  # fmt: skip
+        rpm = self.exact.get(("I", "", 0), self._integer(whole.split(",")[0], ("settings",)))
+        linear = self._number(("settings",), "D", "", 1, [*decimals.split(","), "", ""][1]) or 5.0
+        left = list(self.left)
+        titles = [fields[11] for fields in self.joints if len(fields) > 11 and fields[11] and "~" not in fields[11]]
+        roots, notes = [], []
+        for fields in self.links:
+            link, kind = self._link(fields)
+            if kind in ROOTS:
+                roots.append(link)
+            if kind in AUTOMATIC and kind in ROOTS:
+                notes.append(_("PMKS+ computes inertia or centre of link {name} from its shape: the stored values are "
+                               "taken.").format(name=link.id))  # fmt: skip
+        joints = tuple(self._joint(fields, left) for fields in self.joints)
+        return Saved(
+            joints, tuple(self._whole(link) for link in roots), tuple(self._force(fields) for fields in self.forces),
+            -rpm if on & CLOCKWISE else rpm, not on & GRAVITY_OFF, LENGTHS[DIGITS.index(words[0])], linear,
+            tuple(notes), tuple(left), titles[0] if titles else "",
+        )  # fmt: skip
+
+    def _joint(self, fields: list[str], left: list[str]) -> Joint:
+        head, name = fields[0], fields[0][1:]
+        path = ("joints", name)
+        if not name or len(fields) < 5:
+            raise self._refused(path, _("a record of a joint with five fields is expected"), quote(",".join(fields)))
+        flags = self._integer(head[0], path, signed=False)
+        x, y, angle = (self._number(path, "J", name, k, text, needed=True) for k, text in enumerate(fields[2:5]))
+        carrier, a, b, speed, mass, *more = [*fields[5:], "", "", "", "", ""][: max(5, len(fields) - 5)]
+        if any("~" in text for text in (mass, *more)) and len(more) == 2:  # static, kinetic, radius of the journal
+            left.append(_("Friction of joint {name}.").format(name=name))
+            mass, more = "", []
+        welded, __, *unknown = [*more, "", ""]
+        if welded not in ("", "0", "Fe") or any(unknown):
+            raise self._refused(path, _("a field of a joint that is not known here"), quote(",".join(more)))
+        if any((carrier, a, b)) and not (all((carrier, a, b)) and flags & SLIDES and a != b):
+            raise self._refused(path, _("a slot needs a joint that slides, a link and two joints of that link"),
+                                quote(",".join((carrier, a, b))))  # fmt: skip
+        return Joint(
+            name, complex(x, y), bool(flags & SLIDES), bool(flags & GROUND), bool(flags & INPUT), angle,
+            bool(flags & WELDED), carrier, (a, b), self._number(path, "J", name, 4, mass),
+            self._number(path, "J", name, 3, speed),
+        )  # fmt: skip
+
+    def _link(self, fields: list[str]) -> tuple[Link, str]:
+        """And the character that says whether it is a link of its own and what PMKS+ computes of it."""
+        kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
+        path = ("links", name)
+        if not name or len(fields) < 9 or form not in ("R", "P"):
+            raise self._refused(path, _("a record of a link with nine fields is expected"), quote(",".join(fields)))
+        if kind not in ROOTS + PARTS:
+            raise self._refused(path, _("a link of a kind that is not known here"), quote(kind),
+                                " ".join(ROOTS + PARTS))  # fmt: skip
+        mass, inertia, x, y = (self._number(path, "L", name, k, text) for k, text in enumerate(fields[2:6]))
+        others = fields[7:]
+        stop = others.index("") if "" in others else len(others)
+        parts = tuple(part for part in others[stop + 1 :] if part)
+        joints = tuple(others[:stop])
+        return Link(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
+
+    def _whole(self, link: Link) -> Link:
+        """The link with the parts of its parts, and the joints of all."""
+        records = {fields[0][2:]: self._link(fields)[0] for fields in self.links}
+        parts, joints = list(link.parts), list(link.joints)
+        for name in parts:  # grows while it is read
+            if name not in records:
+                raise self._refused(("links", link.id), _("there is no link of that name"), quote(name))
+            parts += [part for part in records[name].parts if part not in parts]
+            joints += [joint for joint in records[name].joints if joint not in joints]
+        return Link(link.id, tuple(joints), link.piston, link.mass, link.inertia, link.centre, link.name, tuple(parts))
+
+    def _force(self, fields: list[str]) -> Force:
+        head, name = fields[0], fields[0][1:]
+        path = ("forces", name)
+        if not name or len(fields) != 8:
+            raise self._refused(path, _("a record of a force with eight fields is expected"), quote(",".join(fields)))
+        flags = self._integer(head[0], path, signed=False)
+        x0, y0, x1, y1, size = (self._number(path, "F", name, k, text) for k, text in enumerate(fields[3:]))
+        return Force(
+            name, fields[1], complex(x0, y0), complex(x1, y1), bool(flags & LOCAL), bool(flags & OUTWARD), size
+        )
+
+    def _number(
+        self, path: tuple[str, ...], kind: str, name: str, index: int, text: str, needed: bool = False
+    ) -> float:
+        """Of a field in thousandths; an empty one is zero unless it is needed."""
+        if (kind, name, index) in self.exact:
+            return self.exact[kind, name, index]
+        return self._integer(text, path) / 1000 if text or needed else 0.0
+
+    def _integer(self, text: str, path: tuple[str, ...], *, signed: bool = True) -> int:
+        negative = signed and text[:1] == "0"
+        if not text or len(text) > LONGEST or any(char not in DIGITS for char in text):
+            raise self._refused(path, _("this is no number to the base 64"), quote(text))
+        found = 0
+        for char in text[negative:]:
+            found = found * 64 + DIGITS.index(char)
+        return -found if negative else found
+
+    def _refused(self, path: tuple[str, ...], message: str, found: str, allowed: str | None = None) -> ProblemError:
+        return ProblemError(message, path=path, found=found, allowed=allowed, file=self.file)
 
 
 def _items(rest: str) -> tuple[list[str], str]:
@@ -65,37 +230,33 @@ def _items(rest: str) -> tuple[list[str], str]:
     return found, rest[1:]
 
 
-def _number(text: str, *, signed: bool = True) -> int:
-    """Raises ValueError."""
-    if len(text) > LONGEST:
-        raise ValueError
-    negative = signed and text[:1] == "0"
-    found = 0
-    for char in text[negative:]:
-        found = found * 64 + DIGITS.index(char)
-    return -found if negative else found
+def _entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
+    """Tagged entries behind the records: exact numbers, and what is not carried over. Raises ProblemError."""
+    exact: dict[tuple[str, str, int], float] = {}
+    left: list[str] = []
+    for entry in filter(None, tail.split(",")):
+        tag = entry[0]
+        if tag == "P":  # of a joint, a link, a force, or D, I: a setting
+            target, *numbers = entry.split("~")
+            try:
+                index, value = int(numbers[0]), float(numbers[1])
+            except (ValueError, IndexError):
+                raise _entry(entry, file) from None
+            if len(numbers) != 2 or target[1:2] not in tuple("JLFDI") or not abs(value) <= LARGEST:
+                raise _entry(entry, file)
+            exact[target[1], target[2:], index] = value
+        elif tag == "G":
+            raise ProblemError(_("gears of PMKS+ are not read"), found=quote(entry), file=file)
+        elif tag in "ST":
+            what = _("The design of its synthesis.") if tag == "S" else _("Materials, sections and their load cases.")
+            if what not in left:
+                left.append(what)
+        elif tag not in SILENT:
+            raise _entry(entry, file)
+    return exact, tuple(left)
 
 
-def _decimal(text: str) -> float:
-    return _number(text) / 1000
-
-
-def _joint(item: str) -> Joint:
-    flags, (name, __, x, y, angle) = _number(item[0], signed=False), item[1:].split(",")[:5]
-    return Joint(
-        name, complex(_decimal(x), _decimal(y)), bool(flags & 1), bool(flags & 4), bool(flags & 2), _decimal(angle)
+def _entry(entry: str, file: str) -> ProblemError:
+    return ProblemError(
+        _("an entry that is not known here"), found=quote(entry), allowed="J L F C H K P S T", file=file
     )
-
-
-def _link(item: str) -> tuple[Link, bool]:
-    """And whether it is one of its own, not welded into another."""
-    name, label, mass, inertia, x, y, __, *others = item[2:].split(",")
-    joints = others[: others.index("")] if "" in others else others
-    centre = complex(_decimal(x), _decimal(y))
-    return Link(name, tuple(joints), item[1] == "P", _decimal(mass), _decimal(inertia), centre, label), item[0] == "Y"
-
-
-def _force(item: str) -> Force:
-    flags, parts = _number(item[0], signed=False), item[1:].split(",")
-    x0, y0, x1, y1, size = map(_decimal, parts[3:8])
-    return Force(parts[0], parts[1], complex(x0, y0), complex(x1, y1), bool(flags & 1), bool(flags & 2), size)

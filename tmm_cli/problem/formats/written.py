@@ -114,19 +114,27 @@ class _Writing:
 
     def _motion(self) -> Iterator[str]:
         it, drive = self.foreign, self.foreign.drive
-        sense = "cw" if drive.speed < 0 else "ccw"
-        speed = f"{_number(abs(drive.speed))} {drive.unit}"
-        given = [("link", self._key(drive.body)), ("speed", speed), ("turns", sense)]
+        given = [("link", self._key(drive.body))]
+        if drive.on != FRAME:
+            given.append(("on", self._key(drive.on)))
+        if drive.at is None:
+            speed = f"{_number(abs(drive.speed))} {drive.unit}"
+            given += [("speed", speed), ("turns", "cw" if drive.speed < 0 else "ccw")]
+        else:
+            given.append(("speed", f"{_number(drive.speed)} {drive.unit.replace('length', it.length)}"))
         if drive.acceleration:
             gain = drive.acceleration * (-1 if drive.speed < 0 else 1)
             given.append(("acceleration", f"{_number(gain)} rad/s^2"))
         yield "driver: " + _flow(given)
-        at = _number(math.remainder(math.degrees(self.axes[drive.body][1]), 360))
+        angle = math.remainder(math.degrees(self.axes[drive.body][1]), 360)
+        at = _number(angle if drive.at is None else drive.at)
         moving = [(self.names[p], self._vector(z)) for p, z in it.places.items() if p not in it.frame]
         turned = [
             (self._key(body.name), _number(math.degrees(self.axes[body.name][1])))
             for body in it.bodies
-            if body.name != drive.body and not _spread(it, body.name) and self._key(body.name) not in it.places
+            if (body.name != drive.body or drive.at is not None)
+            and not _spread(it, body.name)
+            and self._key(body.name) not in it.places
         ]
         yield "sketch: " + _flow([("at", at), *moving, *turned])
         if it.output:
