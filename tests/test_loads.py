@@ -13,6 +13,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.given import given
 from tmm_cli.results.understood import doubts
+from tmm_cli.results.warnings import warnings
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}
@@ -232,3 +233,49 @@ def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
     with pytest.raises(ProblemError) as refusal:
         problem_of(read_text(machine + mass.format("[75, 0]"), "x.yaml"))
     assert "this centre of mass is called S2, and so is another point" in str(refusal.value)
+
+
+def work_warnings(tail, output="3"):
+    text = f"{MACHINE}output: {output}\n{tail}"
+    return [w for w in warnings(solve(problem_of(read_text(text, "x.yaml")))) if w.startswith("load F ")]
+
+
+def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():
+    assert work_warnings(
+        "loads: {F: {on: 3, force: [100, 0], when: working stroke}}", "{link: 3, working: forward}"
+    ) == [
+        "load F acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the other "
+        "stroke: output: {link: 3, working: backward}"
+    ]
+    assert work_warnings(
+        "loads: {F: {on: 3, force: [-100, 0], when: working stroke}}", "{link: 3, working: backward}"
+    ) == [
+        "load F acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the other "
+        "stroke: output: {link: 3, working: forward}"
+    ]
+    for force, working in (("[-100, 0]", "forward"), ("[100, 0]", "backward"), ("[100, 0]", "auto")):
+        tail = f"loads: {{F: {{on: 3, force: {force}, when: working stroke}}}}"
+        assert not work_warnings(tail, f"{{link: 3, working: {working}}}")
+
+
+@pytest.mark.parametrize(
+    ("load", "told"),
+    [
+        ("on: 3, force: [0, -100]", "its force is perpendicular to the motion of its point. "
+         "Write it against the motion: force: {size: 100 N, angle: 180 deg}"),
+        ("on: 3, axes: link, force: [0, 100]", "its force is perpendicular to the motion of its point. "
+         "Write it against the motion: force: {size: 100 N, angle: 180 deg}"),
+        ("on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}", "its force is perpendicular to "
+         "the motion of its point. Write it against the motion: angle: 180 deg"),
+        ("on: 3, moment: 5", "link 3 does not rotate. Write a force"),
+        ("on: 1, force: [100, 0]", "its point is at rest. Write the link or the point that moves"),
+    ],
+)  # fmt: skip
+def test_a_load_that_does_no_work_in_its_working_stroke_is_told_what_to_write(load, told):
+    found = work_warnings(f"loads: {{F: {{{load}, when: working stroke}}}}", "{link: 3, working: forward}")
+    assert found == [f"load F does no work in the working stroke: {told}"]
+
+
+def test_a_load_that_works_now_with_and_now_against_the_motion_is_none_of_both():
+    assert not work_warnings("loads: {F: {on: 2, force: [0, 100], when: working stroke}}")
+    assert not work_warnings("loads: {F: {on: 3, from: 1, at: B, force: {resists: 10}, when: working stroke}}")

@@ -8,20 +8,21 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.forces.applied import Applied
-from tmm_cli.forces.given import in_window, table_argument
+from tmm_cli.forces.given import given_loads, in_window, table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral
 from tmm_cli.linkage import Load, LoadTable
-from tmm_cli.quantities import FORCE, MOMENT
+from tmm_cli.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.results.reports.synthesis import missed
 from tmm_cli.results.table import with_unit
 from tmm_cli.results.warnings.motion import driver_place
 from tmm_cli.synthesis.check import measured_on
-from tmm_cli.tolerances import SAME_PLACE, SAME_RATIO
-from tmm_cli.vectors import dot
+from tmm_cli.tolerances import NO_WORK, SAME_PLACE, SAME_RATIO
+from tmm_cli.vectors import Real, dot
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
+WORK_POSITIONS = 120  # positions a turn at which the power of a load is compared with zero
 
 
 def locked_positions(results: Results) -> Iterable[str]:
@@ -62,14 +63,67 @@ def wound_springs(results: Results) -> Iterable[str]:
 
 
 def driving_loads(results: Results) -> Iterable[str]:
-    """Loads of the working stroke that help the motion all through it."""
-    motion, working = results.motion, _of_working_stroke(results)
-    assert motion is not None
-    for load in results.loads:
-        if load.kind == "load" and load.name in working and _drives(motion, load):
-            yield _(
-                "load {load} acts along the motion in the whole working stroke: it drives and does not resist"
-            ).format(load=load.name)
+    """Loads of the working stroke that act along the motion, or do no work, all through it."""
+    loads = [load for load in results.linkage.loads if load.working_stroke_only and not load.resists]
+    if not loads or results.reactions is None:
+        return
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(WORK_POSITIONS * turns + 1))
+    acting = list(given_loads(motion, results.strokes))
+    for load in loads:
+        its = [applied for applied in acting if applied.name in (load.name, f"{load.name}'")]
+        power, largest = _power(motion, its)
+        works = np.abs(power) > NO_WORK * largest
+        if np.any(works) and np.all(power[works] > 0):
+            yield _driving(results, load)
+        elif not np.any(works) and np.any(largest > 0):
+            yield _idle(results, load, motion, its[0])
+
+
+def _power(motion: Motion, acting: Iterable[Applied]) -> tuple[Real, Real]:
+    """Power of a load and of its opposite, and the largest that they could have at this speed; zero at rest (W)."""
+    crank = motion.linkage.driver.kind == "turn"
+    reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
+    power = largest = np.zeros(np.shape(motion.q))
+    for load in acting:
+        work = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
+        power = power + np.where(motion.moving, work, 0.0)
+        largest = largest + np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
+    return power, np.where(motion.moving, largest, 0.0)
+
+
+def _driving(results: Results, load: Load) -> str:
+    reverse = _("load {load} acts in the direction of motion during the whole working stroke. Reverse its sign")
+    strokes = results.strokes
+    if strokes is None or not strokes.working:
+        return reverse.format(load=load.name)
+    other = "backward" if strokes.working[0].run > 0 else "forward"
+    link = results.linkage.output_point(strokes.link) or strokes.link
+    return _("{reverse}, or choose the other stroke: {output}").format(
+        reverse=reverse.format(load=load.name), output=f"output: {{link: {link}, working: {other}}}"
+    )
+
+
+def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str:
+    """What to write instead is seen at the position in which the point of the load is fastest."""
+    velocity = motion.point(load.link, load.at).v
+    k = int(np.argmax(np.where(np.abs(applied.force) > 0, np.abs(velocity), -1.0)))
+    if not np.any(applied.force):
+        return _("load {load} does no work in the working stroke: link {link} does not rotate. Write a force").format(
+            load=load.name, link=load.link
+        )
+    if not abs(velocity[k]):
+        return _("load {load} does no work in the working stroke: its point is at rest. Write the link or the point "
+                 "that moves").format(load=load.name)  # fmt: skip
+    turned = motion.poses[load.link].z[k] if load.follows else 1.0
+    angle = round(float(np.angle(-velocity[k] / turned)), 6) + 0.0  # no signed zero
+    written = f"angle: {results.problem.units.told(angle, ANGLE, 4)}"
+    if load.table is None:
+        written = f"force: {{size: {results.problem.units.told(abs(load.force), FORCE)}, {written}}}"
+    return _(
+        "load {load} does no work in the working stroke: its force is perpendicular to the motion of its point. "
+        "Write it against the motion: {written}"
+    ).format(load=load.name, written=written)
 
 
 def short_tables(results: Results) -> Iterable[str]:
@@ -106,17 +160,6 @@ def without_strokes(results: Results) -> Iterable[str]:
 
 def _of_working_stroke(results: Results) -> list[str]:
     return [load.name for load in results.linkage.loads if load.working_stroke_only]
-
-
-def _drives(motion: Motion, load: Applied) -> bool:
-    """Whether a load helps the motion at every position where it acts: it should resist."""
-    power = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
-    crank = motion.linkage.driver.kind == "turn"
-    reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
-    # at the ends of a stroke the speed is only rounding, and its sign says nothing
-    most = np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
-    acting = motion.moving & (np.abs(power) > 1e-6 * most)
-    return bool(np.any(acting)) and bool(np.all(power[acting] > 0))
 
 
 def _short(results: Results, load: Load, table: LoadTable) -> bool:
