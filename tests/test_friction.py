@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from models import results_of
+from models import linkage_of, results_of
+from transforms import turned
+
+from tmm_cli.analysis.mechanism import Inputs
+from tmm_cli.analysis.pipeline import solve
+from tmm_cli.linkage import Friction, Request
 
 G = 9.81
 SLIDER = {
@@ -100,3 +106,38 @@ def test_the_efficiency_of_a_crank_slider_is_the_work_that_arrives_at_the_slider
     assert results.losses.efficiency == pytest.approx(useful / results.losses.drivers, rel=1e-4)
     assert 0.8 < results.losses.efficiency < 0.95
     assert sum(results.losses.pairs.values()) == pytest.approx(useful - results.losses.drivers, rel=1e-3)
+
+
+@pytest.mark.parametrize("by", [40, 77, -131])
+def test_pairs_of_links_that_do_not_move_against_each_other_have_no_friction_however_the_drawing_lies(by):
+    """The elbows of a breaking rod, hinged at X and in contact at P, move as one link."""
+    rod = linkage_of("settings/breaking-rod")
+    pairs = [*(Friction(point, 0.15, 0.03) for point in "OAXPE"), Friction("y", 0.15)]
+    places = np.radians(np.arange(12) * 30.0 + 7)
+
+    def forces(linkage, at):
+        results = solve(Inputs(linkage, Request(places=tuple(at))))
+        assert not any(np.any(results.friction.work.get(point, 0)) for point in "XP")
+        return {r.pair.name: np.abs(r.force) for r in results.reactions.all}
+
+    drawn = forces(replace(rod, friction=tuple(pairs)), places)
+    otherwise = forces(turned(replace(rod, friction=tuple(pairs)), math.radians(by)), places + math.radians(by))
+    largest = max(np.max(force) for force in drawn.values())
+    for name, force in drawn.items():
+        assert np.allclose(force, otherwise[name], rtol=0, atol=1e-11 * largest)
+    without = forces(replace(rod, friction=tuple(f for f in pairs if f.pair not in "XP")), places)
+    assert all(np.allclose(force, without[name], rtol=0, atol=1e-11 * largest) for name, force in drawn.items())
+
+
+def test_a_machine_without_a_useful_load_has_an_efficiency_of_zero_and_without_friction_none():
+    """Weights and inertia give back over a turn what they took, but for rounding."""
+    idle = {
+        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "guides": {"x": {"through": [0, 0], "angle": 0}},
+        "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
+                  "3": {"points": ["B"], "slides": {"on": "x"}}},
+        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.45, 0]},
+        "masses": {"2": {"mass": 2, "inertia": 0.04, "centre": {"on": "AB", "at": 0.5}}},
+    }  # fmt: skip
+    assert results_of(idle | {"friction": {"coefficient": 0.1, "radius": 0.02}}).losses.efficiency == 0
+    assert results_of(idle | {"friction": {"coefficient": 1e-20, "radius": 0.02}}).losses.efficiency is None

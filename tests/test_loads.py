@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from models import PARALLELOGRAM, solved_text
 from scipy.interpolate import CubicSpline
 
 from tmm_cli import solve
@@ -74,6 +75,41 @@ def test_friction_changes_its_sense_where_the_slider_turns_back(turns):
     force = load(results, "f").force.real
     assert force[0] == pytest.approx(200) and force[6] == pytest.approx(-200)
     assert force[1:6] == pytest.approx(200) and force[7:] == pytest.approx(-200)
+
+
+@pytest.mark.parametrize("drawn_at", [0, 40, 77, 131])
+def test_what_stays_at_rest_is_not_resisted_however_the_drawing_lies(drawn_at):
+    """The coupler of a parallelogram only translates, and the hinges on the frame do not move."""
+    results = solved_text(f"""tmm: 1
+parameters: {{b: {drawn_at} deg, c: {60 + drawn_at} deg}}
+points: {{O: [0, 0], C: [400*cos(b), 400*sin(b)]}}
+links:
+  1: {{points: [O, A], length: 100}}
+  2: {{points: [A, B], length: 400}}
+  3: {{points: [C, B], length: 100}}
+driver: {{link: 1, speed: 10 rad/s}}
+sketch: {{at: c, B: [400*cos(b) + 100*cos(c), 400*sin(b) + 100*sin(c)]}}
+loads:
+  M: {{on: 2, moment: {{resists: 10}}}}
+  F: {{on: 1, at: O, force: {{resists: 10}}}}
+  P: {{on: 3, at: C, force: {{resists: 10}}}}
+positions: {{count: 11, from: b + 7 deg}}
+""")
+    assert all(np.all(load.force == 0) and np.all(load.moment == 0) for load in results.loads)
+    assert all(np.all(pair.force == 0) for pair in results.reactions.all)
+    assert np.all(results.reactions.balance.moment == 0)
+
+
+def test_an_output_that_only_translates_has_no_working_stroke():
+    """Its angle rises and falls by rounding, which makes no strokes."""
+    text = PARALLELOGRAM + "output: 2\nloads: {M: {on: 2, moment: 10, when: working stroke}}\n"
+    with pytest.raises(ProblemError) as refusal:
+        solved_text(text)
+    assert str(refusal.value) == (
+        "x.yaml:12:38: loads.M.when: there is no working stroke\n"
+        "  found:   link 2 has no ends of its stroke\n  allowed: see output:"
+    )
+    assert solved_text(PARALLELOGRAM + "output: 2\n").strokes.strokes == ()
 
 
 def test_a_pair_of_forces_between_two_links_works_by_what_they_move_on_one_another():

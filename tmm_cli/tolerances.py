@@ -69,8 +69,8 @@ VANISHED = 1e-11  # sizes: a triad's polynomial with less everywhere is zero, an
 TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for nothing
 
 # At rest, or nothing
-RESTS = 1e-12  # of the longest run, of the largest speed: less is rounding
-SETS_OFF = 1e-9  # sizes of the linkage a radian, or one: what moves by less is at an end of its way
+RESTS = 1e-12  # of the longest run: less is rounding
+AT_REST = 1e-9  # of the largest speed in the mechanism: what moves slower is at rest, and rounding gives its sign
 WHOLE_TURNS = 1e-9  # turns: a wheel that has made whole ones but for less has made them but for rounding
 SHOCKLESS = 1e-9  # of the largest angular speed: what jumps by less at the ends of a stroke does not jump
 NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that

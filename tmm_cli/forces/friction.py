@@ -15,11 +15,11 @@ import numpy as np
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Reaction, Reactions, power, react
 from tmm_cli.groups.linear import solve
-from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.motion import Motion, moving_parts
 from tmm_cli.linkage import FRAME, Friction
 from tmm_cli.structure.assur import Structure
-from tmm_cli.tolerances import FRICTION_AGREES, FRICTION_LOCKS, FRICTION_ROUNDED, RESTS
-from tmm_cli.vectors import Real, Vector, unit
+from tmm_cli.tolerances import FRICTION_AGREES, FRICTION_LOCKS, FRICTION_ROUNDED
+from tmm_cli.vectors import Real, Vector, unit, without_rounding
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
 ROUNDS = 40  # of Newton's method in each
@@ -59,13 +59,15 @@ class Losses:
         """What is not lost of the drivers' work; None when they do none or are locked."""
         if self.locked or not self.drivers > 0:
             return None
-        return (self.drivers + sum(self.pairs.values())) / self.drivers
+        useful = without_rounding(self.drivers + sum(self.pairs.values()), self.drivers)
+        return float(useful / self.drivers)
 
 
 def losses(rubbed: FrictionSolution, motion: Motion) -> Losses:
     """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
     pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
-    return Losses(_over(rubbed.drivers, motion), pairs, bool(np.any(rubbed.locked)))
+    drivers = without_rounding(_over(rubbed.drivers, motion), _over(np.abs(rubbed.drivers), motion))
+    return Losses(float(drivers), pairs, bool(np.any(rubbed.locked)))
 
 
 def _over(work: Real, motion: Motion) -> float:
@@ -150,13 +152,13 @@ def _nowhere(load: Applied, lost: Real) -> Applied:
 
 def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     """Direction of the relative motion (+1, 0, -1) and its size per unit of the driver, of link `on` against `by`."""
+    largest = motion.largest
     if pair.pair.slide is not None:
         slide = pair.pair.slide
-        first = motion.slide(slide).first * (1 if slide.runner == pair.on else -1)
+        slip = motion.slide(slide).first * (1 if slide.runner == pair.on else -1)
+        moving = moving_parts(slip, largest.speed)
     else:
-        first = motion.first[pair.on].w - (motion.first[pair.by].w if pair.by != FRAME else 0.0)
-    scale = float(np.nanmax(np.abs(first), initial=0.0))
-    moving = np.where(np.abs(first) > RESTS * scale, first, 0.0)
+        moving = moving_parts(motion.first[pair.on].w - motion.first[pair.by].w, largest.speed / largest.size)
     return np.sign(moving * motion.rate), np.abs(moving)
 
 

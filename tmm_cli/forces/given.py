@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import reduce
 
 import numpy as np
 
 from tmm_cli.forces.applied import Applied
-from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.motion import Motion, moving_parts
 from tmm_cli.kinematics.output import output_place
 from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import FRAME, Linkage, Load, LoadTable
-from tmm_cli.tolerances import SAME_PLACE, SEAM, SETS_OFF
+from tmm_cli.tolerances import SAME_PLACE, SEAM
 from tmm_cli.vectors import Real, Vector, cross, pi
 
 
@@ -58,17 +57,18 @@ def _opposite(load: Load, motion: Motion, force: Vector, moment: Real) -> Applie
 def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
     """Direction in which the point of a load moves, and the sense in which its link turns, as its base sees them.
 
-    In an end of its way a thing has the direction in which it sets off from there.
+    In an end of its way a thing has the direction in which it sets off from there; what stays at rest has none: 0.
     """
+    largest = motion.largest
     velocity, spin = motion_on_base(load, motion)
+    velocity, spin = moving_parts(velocity, largest.speed), moving_parts(spin, largest.speed / largest.size)
     if motion.order > 1:
         pose, other = motion.poses[load.link], motion.second[load.base]
         arm, far = load.at * pose.z, pose.at(load.at) - motion.poses[load.base].x
         second = motion.second[load.link]
         gain = second.at(arm, motion.first[load.link].w) - other.at(far, motion.first[load.base].w)
-        reach = reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
-        velocity = np.where(np.abs(velocity) > SETS_OFF * reach, velocity, gain)
-        spin = np.where(np.abs(spin) > SETS_OFF, spin, second.e - other.e)
+        velocity = np.where(velocity == 0, moving_parts(gain, largest.acceleration), velocity)
+        spin = np.where(spin == 0, moving_parts(second.e - other.e, largest.acceleration / largest.size), spin)
     length = np.abs(velocity)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(length > 0, velocity / length, 0j), np.sign(spin)

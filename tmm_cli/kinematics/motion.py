@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LawOfMotion, LinkStates, link_states
 from tmm_cli.groups.state import Drives
 from tmm_cli.linkage import Linkage, Slide
+from tmm_cli.tolerances import AT_REST
 from tmm_cli.vectors import Real, Record, Vector, dot, mapped, unit
 
 FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order"})
@@ -86,6 +87,11 @@ class Motion(LinkStates):
             self._known[kind, name] = of()
         found: Record = self._known[kind, name]
         return found
+
+    @cached_property
+    def largest(self) -> LargestRates:
+        """The largest rates of the links at every position."""
+        return LargestRates.of(self)
 
     def _finest(self, of: Callable[[Motion], Record]) -> Record:
         """What is asked of the motion, from its finer one where there is one."""
@@ -171,6 +177,40 @@ def move(
     rate = law.speed(states.q)
     whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
     return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=law.accelerated(states.q))
+
+
+@dataclass(frozen=True)
+class LargestRates:
+    """The largest rates in a mechanism at every position: a rate is told from rest by comparison with them.
+
+    Compared with its own largest value, what never moves would move, by rounding. size: m; speed and acceleration of
+    points, m per unit of the driver coordinate and per its square, with what rotation adds over the size.
+    """
+
+    size: Real | float
+    speed: Real
+    acceleration: Real
+
+    @classmethod
+    def of(cls, states: LinkStates) -> LargestRates:
+        """Of all links; accelerations follow from speeds where they were not computed."""
+        linkage = states.linkage
+        size: Any = reduce(np.maximum, [kernel.size for kernel in states.kernels], 0.0)
+        size = np.where(size > 0, size, 1.0)  # links with one point each, which only slide
+        speeds, gains = [], []
+        for link, rate in states.first.items():
+            arm = next(iter(linkage.links[link].points.values()), 0j) * states.poses[link].z
+            speeds += [np.abs(rate.at(arm)), np.abs(rate.w) * size]
+            if states.order > 1:
+                accel = states.second[link]
+                gains += [np.abs(accel.at(arm, rate.w)), np.abs(accel.e) * size]
+        speed = reduce(np.maximum, speeds)
+        return cls(size, speed, reduce(np.maximum, gains, speed * speed / size))
+
+
+def moving_parts(rates: Real | Vector, largest: Real) -> Real | Vector:
+    """Rates, with zeros for those of what is at rest; largest: the largest of their kind in the mechanism."""
+    return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 
 def spliced(full: Record, part: Record, where: Real) -> Record:

@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.kinematics.driver_range import SCAN
-from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.motion import LargestRates, Motion, moving_parts
 from tmm_cli.linkage import Linkage
 from tmm_cli.roots import roots
 from tmm_cli.vectors import Real, Vector
@@ -50,6 +50,17 @@ def output_slope(motion: LinkStates, link: str) -> Real:
         return _along(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
     slide = linkage.output_guide(link)
     return motion.first[link].w if slide is None else motion.slope(slide)
+
+
+def moving_slope(motion: LinkStates, link: str) -> Real:
+    """First transfer function of the output; zero in all positions of a variant where it moves in none of them.
+
+    The speed of what stays at rest is rounding, and so is its sign.
+    """
+    slope, rates = output_slope(motion, link), LargestRates.of(motion)
+    largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
+    moves = np.any(moving_parts(slope, largest), axis=-1, keepdims=True)
+    return np.where(moves, slope, 0.0)
 
 
 def _along(output: str, vector: Vector) -> Real:
@@ -93,6 +104,10 @@ class OutputCurve:
     def slope(self, q: Real) -> Real:
         """First transfer function."""
         return output_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
+
+    def moving_slope(self, q: Real) -> Real:
+        """First transfer function at many places of each variant; zero at all of them if the output stays at rest."""
+        return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
 
 def runs_of(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:

@@ -96,9 +96,11 @@ def find_strokes(
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
     # one step more: at the seam of the scan rounding may hide the end of a stroke
     q = np.append(q, q[-1] + (q[1] - q[0]))
-    slope = curve.slope(q)
+    slope = curve.moving_slope(q)
+    if not np.any(slope):
+        return none
     moves = np.flatnonzero(slope)
-    if moves.size and moves[0] > 0:  # a dwell at the seam is not to be cut in two
+    if moves[0] > 0:  # a dwell at the seam is not to be cut in two
         q = q + (q[moves[0]] - q[0])
         slope = curve.slope(q)
     turns, rests = _stops(curve, q, slope, sense)

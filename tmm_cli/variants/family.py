@@ -21,7 +21,7 @@ from tmm_cli.groups.base import Closed, Kernel
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import link_states, towards
 from tmm_cli.kinematics.driver_range import cycle_of
-from tmm_cli.kinematics.output import Curve, OutputCurve, output_slope, runs_of
+from tmm_cli.kinematics.output import Curve, OutputCurve, moving_slope, runs_of
 from tmm_cli.kinematics.strokes import Stroke, Strokes, resisted
 from tmm_cli.linkage import Linkage, Request
 from tmm_cli.roots import roots
@@ -141,7 +141,7 @@ def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound
     curve = OutputCurve(linkage, towards(kernels, [link]), link)
-    forward = np.broadcast_to(output_slope(whole, link), q.shape) >= 0
+    forward = np.broadcast_to(moving_slope(whole, link), q.shape) >= 0
     turns_back = forward[:, :-1] != forward[:, 1:]
     if not np.any(turns_back):  # it turns on and on
         return Strokes(link, curve.kind, (), ""), sound
