@@ -211,3 +211,40 @@ def test_a_guide_may_run_through_a_share_of_the_way_between_two_points() -> None
     text = changed("along: CD", "through: {on: CD, at: 0.3}")
     assert build(read_text(text, "x.yaml")).linkage.slides[0].through == pytest.approx(0.195)
     assert np.isfinite(solved_text(text).motion.poses["5"].x).all()
+
+
+LOADED = (
+    FOUR_BAR
+    + """masses: {2: {mass: 2, inertia: 0.01, centre: {on: AB, at: 0.4}}}
+loads: {F: {on: 3, at: {on: BD, at: 0.25}, force: [10, -20]}}
+springs: {s: {between: [0, 3], at: [O, {on: DB, at: 0.5}], rate: 100, free: 50}}
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "number", "at", "points"),
+    [
+        ("{on: AB, at: 0.4}", "110", "9:59: masses.2.centre", "AB"),
+        ("{on: BD, at: 0.25}", "50", "10:37: loads.F.at", "BD"),
+        ("{on: DB, at: 0.5}", "-40", "11:53: springs.s.at[1]", "DB"),
+    ],
+)  # fmt: skip
+def test_a_bare_length_or_per_cent_is_no_share(old: str, number: str, at: str, points: str) -> None:
+    place, _, where = at.partition(": ")
+    new = old[: old.index("at: ")] + f"at: {number}}}"
+    assert refusal(LOADED.replace(old, new)) == (
+        f"x.yaml:{place}: {where}.at: a share of the way from {points[0]} to {points[1]} is wanted here\n"
+        f"  found:   {number}\n"
+        f"  allowed: e.g. 0.5; with its unit {number} %, or {number} mm for a distance from {points[0]}"
+    )
+
+
+def test_a_share_may_be_written_as_a_distance_from_the_first_point() -> None:
+    lengths = LOADED.replace("tmm: 1", "tmm: 1\nparameters: {l3: 200 mm}")
+    for share, length in (("on: AB, at: 0.4", "100 mm"), ("on: BD, at: 0.25", "5 cm"), ("on: DB, at: 0.5", "l3/2")):
+        lengths = lengths.replace(share, f"{share[: share.index('at: ')]}at: {length}")
+    one, other = (build(read_text(text, "x.yaml")).linkage for text in (LOADED, lengths))
+    assert other.links["2"].centre == pytest.approx(one.links["2"].centre, abs=1e-17)
+    assert other.loads[0].at == pytest.approx(one.loads[0].at, abs=1e-17)
+    assert other.springs[0].at_j == pytest.approx(one.springs[0].at_j, abs=1e-17)

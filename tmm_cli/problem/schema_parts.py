@@ -64,10 +64,15 @@ class FileHead(Strict):
 
 
 class OnLine(Strict):
-    """A place on the line of two points of the link: `at` is 0 at the first, 1 at the second; `side` is off it."""
+    """A place on the line of two points of the link.
+
+    `at` is 0 at the first, 1 at the second, or a distance from the first; `side` is off it.
+    """
 
     on: Name = Field(description="two points of the link, written together: CD (or C-D)")
-    at: Value = Field(default=0.5, description="share of the way from the first to the second")
+    at: Value = Field(
+        default=0.5, description="share of the way from the first to the second, 0.5 or 50 %; or a distance, 110 mm"
+    )
     side: Value = Field(default=0, description="distance to the left of the line")
 
 

@@ -22,6 +22,7 @@ from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
+MOST_SHARE = 10  # of a way between two points: a bare number beyond it is a length, or per cent
 UNKNOWN = {
     "link": N_("there is no link of that name"),
     "moving link": N_("there is no moving link of that name"),
@@ -112,10 +113,29 @@ class ValueReader:
         if isinstance(value, OnLine):
             first, second = self.two_points(value.on, points, (*path, "on"))
             way = points[second] - points[first]
-            share = self.number(value.at, NUMBER, (*path, "at"))
+            share = self.share_of(abs(way), value.at, (first, second), (*path, "at"))
             side = self.number(value.side, LENGTH, (*path, "side"))
             return points[first] + share * way + (1j * side * way / abs(way) if side else 0)
         return self.vector(value, LENGTH, path)
+
+    def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
+        """A share of the length (m) between two points, which may be written as a distance from the first (110 mm)."""
+        with under(*path):
+            dimension = evaluate_quantity(value, self.parameters, self.units, pi=None).dimension
+        if dimension == LENGTH:
+            distance: float = self.number(value, LENGTH, path) / length
+            return distance
+        share = self.number(value, NUMBER, path)
+        if dimension is None and not -MOST_SHARE <= share <= MOST_SHARE:
+            number, (first, second) = f"{share:.6g}", points
+            raise ProblemError(
+                _("a share of the way from {first} to {second} is wanted here").format(first=first, second=second),
+                path=path, found=quote(value),
+                allowed=_("e.g. 0.5; with its unit {number} %, or {number} {unit} for a distance from {first}").format(
+                    number=number, unit=self.units.spelt(LENGTH), first=first
+                ),
+            )  # fmt: skip
+        return share
 
     @staticmethod
     def known(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
