@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from bank import EVERY, problem
 from test_commands import tmm
 
 from tmm_cli import load, solve
@@ -32,7 +33,8 @@ def test_units_driver_sizes_and_gravity_are_said_before_the_tables():
     assert done.stderr.splitlines() == [
         "shaper: bare numbers: mm, deg, kg, N, N*m, kg*m^2; a bare speed: rad/s or m/s",
         "shaper: driver: link 1, 8.587 rad/s = 82 rpm, counterclockwise",
-        "shaper: sizes: from 110 mm (OA) to 650 mm (CD); gravity 9.81 m/s^2 downwards",
+        "shaper: sizes: from 110 mm (OA) to 650 mm (CD); masses from 1.5 kg (2) to 52 kg (5); forces 1500 N (F); "
+        "gravity 9.81 m/s^2 downwards",
     ]
 
 
@@ -196,3 +198,132 @@ def test_a_value_that_changes_nothing_is_warned_of(command, tmp_path):
         (tmp_path / "own.yaml").write_text(own, encoding="utf-8")
         done = tmm(command[0], tmp_path / "own.yaml", *command[1:])
         assert done.returncode == 0 and (warning in done.stderr) == warned
+
+
+DYNAMICS = """
+dynamics:
+  mean speed: {mean}
+  delta: {delta}
+  motor: {{kind: asynchronous, synchronous: {synchronous}, speed: {rated}, moment: 20, ratio: {ratio}}}
+"""
+
+
+def of_law(mean="82 rpm", delta="1/25", synchronous="1500 rpm", rated="1430 rpm", ratio="17.4", file=TEXT):
+    """Sentences about the shaper with a motor."""
+    law = DYNAMICS.format(mean=mean, delta=delta, synchronous=synchronous, rated=rated, ratio=ratio)
+    return list(doubts(build(read_text(file + law, "shaper.yaml"))))
+
+
+def test_masses_loads_and_pressures_are_said_before_the_tables():
+    grams = told(("mass: 6 kg", "mass: 6 g"), say=understood)[2]
+    assert grams == (
+        "sizes: from 110 mm (OA) to 650 mm (CD); masses from 0.006 kg (1) to 52 kg (5); forces 1500 N (F); "
+        "gravity 9.81 m/s^2 downwards"
+    )
+    loads = "  gas: {on: 5, bore: 50, pressure: {angle: 0, against: share of stroke, table: [[0, 0], [1, 2.5]]}}\n  M: "
+    more = told(("loads:\n", f"loads:\n{loads}{{on: 3, moment: 7}}\n"), say=understood)[2]
+    assert "; forces from 1500 N (F) to 4908.74 N (gas); moments 7 N*m (M); pressures 2.5 MPa (gas); " in more
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"mean": "8.6"}, "mean speed has no unit and is taken as 8.6 rad/s = 82.12 rpm, though angles are in deg: "
+         "write `8.6 rad/s`, or `8.6 rpm`"),
+        ({"synchronous": "1500"}, "motor.synchronous has no unit and is taken as 1500 rad/s = 14324 rpm, though angles "
+         "are in deg: write `1500 rad/s`, or `1500 rpm`"),
+        ({"rated": "143"}, "motor.speed has no unit and is taken as 143 rad/s = 1366 rpm, though angles are in deg: "
+         "write `143 rad/s`, or `143 rpm`"),
+    ],
+)  # fmt: skip
+def test_bare_speeds_of_the_law_of_motion_are_warned_of(changes, key):
+    assert of_law(**changes) == [f"dynamics.{key} if turns a minute are meant"]
+    assert of_law(**changes, file=TEXT.replace("angle: deg}", "angle: deg, angular speed: rad/s}")) == []
+
+
+def test_a_bare_speed_of_a_linear_motor_and_of_a_run_is_warned_of():
+    run = TEXT + "dynamics: {motor: {kind: linear, stall: 900, free: 20}, run: {from: 0, to: 90, speed: 5}}\n"
+    (free, start) = doubts(build(read_text(run, "shaper.yaml")))
+    assert free.startswith("dynamics.motor.free has no unit and is taken as 20 rad/s = 191 rpm")
+    assert start.startswith("dynamics.run.speed has no unit and is taken as 5 rad/s = 47.75 rpm")
+
+
+@pytest.mark.parametrize("linked", [True, False])
+def test_a_bare_speed_in_a_task_of_synthesis_is_warned_of(linked, tmp_path):
+    text = (SHAPER.parent / "pump-synthesis.yaml").read_text(encoding="utf-8")
+    text = text.replace("crank_speed: n1", "crank_speed: 150")
+    if not linked:
+        text = "tmm: 1\n" + next(line for line in text.splitlines(keepends=True) if line.startswith("synthesis"))
+    (tmp_path / "pump.yaml").write_text(text, encoding="utf-8")
+    done = tmm("synthesis", tmp_path / "pump.yaml", "--json")
+    assert (
+        "warning: pump: synthesis.crank_speed has no unit and is taken as 150 rad/s = 1432 rpm, though angles are in "
+        "deg: write `150 rad/s`, or `150 rpm` if turns a minute are meant\n"
+    ) in done.stderr
+
+
+def test_a_mean_speed_beside_another_speed_of_the_driver_is_warned_of():
+    assert of_law(mean="82.5 rpm") == []
+    assert of_law(mean="82 rad/s") == [
+        "dynamics.mean speed is 82 rad/s = 783 rpm, but the driver's speed is 8.587 rad/s = 82 rpm: the law of motion "
+        "takes the mean speed; write one of them, or both the same"
+    ]
+
+
+def test_a_fluctuation_in_per_cent_twice_over_is_warned_of():
+    assert of_law(delta="1/300") == of_law(delta="2.5 %") == []
+    assert of_law(delta="0.025 %") == [
+        "dynamics.delta is 0.025 % = 1/4000: machines have 1/5 to 1/300; write `0.025`, or `2.5 %`, if that is meant"
+    ]
+
+
+def test_pressures_in_bare_pascals_are_warned_of():
+    gas = "F: {on: 5, area: 100, pressure: {angle: 0, against: share of stroke, table: [[0, 8e5], [1, 4e5]]}, "
+    load = "F: {on: 5, at: [100, 30], force: [1500, 0], "
+    assert told((load, gas)) == [
+        "loads.F.pressure comes to 800000 MPa, more than 1000 MPa: is the unit right? write `800000 Pa` if pascals "
+        "are meant"
+    ]
+    assert told((load, gas.replace("8e5", "8e5 Pa").replace("4e5", "4 bar"))) == []
+    text = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("4.6 MPa", "4.6e5")
+    (doubt,) = doubts(build(read_text(text, "boom.yaml")))
+    assert doubt.startswith("dynamics.run.drive comes to 460000 MPa, more than 1000 MPa")
+
+
+def test_an_inertia_far_too_small_for_its_link_is_warned_of():
+    assert told(("inertia: 1.1", "inertia: 0.01")) == []
+    assert told(("inertia: 1.1", "inertia: 1.1e-3")) == [
+        "masses.3: the radius of gyration sqrt(I/m) is 7.07107 mm, less than 1/50 of the link (CD, 650 mm): "
+        "are the units of inertia right? a uniform rod has I = 0.775 kg*m^2"
+    ]
+
+
+def test_cheeks_and_a_flywheel_are_no_slip_but_wrong_units_are():
+    """A flywheel of 1 m and 200 kg on a crank of 110 mm has a radius of gyration of 350 mm."""
+    assert told(("mass: 6 kg, inertia: 0.012", "mass: 200 kg, inertia: 25")) == []
+    assert told(("inertia: 0.012", "inertia: 12000")) == [
+        "masses.1: the radius of gyration sqrt(I/m) is 44721.4 mm, more than the link itself (OA, 110 mm): "
+        "are the units of inertia right?"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "distance", "link", "share"),
+    [
+        ("centre: {on: CD, at: 0.5}", "centre: [24 m, 0]", "masses.3", "23350", "3", "CD"),
+        ("at: [100, 30]", "at: [2 m, 0]", "loads.F", "2000", "5", ""),
+        ("output: 5", "springs: {s: {between: [0, 4], at: [O, {on: DE, at: 10}], rate: 1, free: 9}}\noutput: 5",
+         "springs.s", "1890", "4", "DE"),
+    ],
+)  # fmt: skip
+def test_places_farther_than_the_mechanism_is_long_are_warned_of(old, new, key, distance, link, share):
+    end = f", a share is written {{on: {share}, at: 50 %}}" if share else ""
+    assert told((old, new)) == [
+        f"{key}: this place is {distance} mm from every point of link {link}, farther than the mechanism is long (its "
+        f"largest link, CD, is 650 mm): is the unit right? a bare length is in mm{end}"
+    ]
+
+
+def test_no_file_of_the_bank_has_a_slip():
+    for name in EVERY:
+        assert list(doubts(problem(name).whole)) == [], name

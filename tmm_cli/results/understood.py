@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,15 +13,39 @@ from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME, Driver, Link, SpeedTable
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.settings import unused
-from tmm_cli.problem.tree import Tree
+from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, FORCE, INERTIA, LENGTH, MASS, MOMENT, SPEED
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.quantities import (
+    ANGLE,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    PRESSURE,
+    SPEED,
+    Dimension,
+)  # fmt: skip
 from tmm_cli.results.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
 SWINGS = 0.02  # of the range of a table: a smooth curve that goes beyond it by more is hardly meant
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
+SLENDER = 1 / 50  # of a link: a uniform rod has a radius of gyration of 0.29
+HEAVY_CRANK = 10  # largest links: cheeks and a flywheel make the radius of gyration of a crank larger than the crank
+FAR = 2  # largest links: a mechanism is hardly longer
+STRONG = 1e9  # Pa: no hydraulic or gas drive has such a pressure
+UNIFORM = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
+SAME_SPEED = 0.01  # relative: two speeds of one shaft that differ by less differ by rounding on paper
+ANGULAR_SPEEDS: tuple[Path, ...] = (  # beside the driver's, where a file may give them
+    ("dynamics", "mean speed"), ("dynamics", "mean_speed"), ("dynamics", "motor", "free"),
+    ("dynamics", "motor", "synchronous"), ("dynamics", "motor", "speed"), ("dynamics", "run", "speed"),
+    ("synthesis", "crank_speed"),
+)  # fmt: skip
 
 
 def understood(task: Problem | TaskProblem) -> Iterable[str]:
@@ -33,15 +57,59 @@ def understood(task: Problem | TaskProblem) -> Iterable[str]:
     linkage = problem.linkage
     for driver in linkage.drivers:
         yield _("driver: link {link}, {motion}").format(link=driver.link, motion=motion(driver))
-    spans = _spans(problem)
+    sizes = "; ".join(_ranges(problem))
+    yield (
+        _("sizes: {sizes}; {gravity}").format(sizes=sizes, gravity=gravity(linkage.gravity))
+        if sizes
+        else gravity(linkage.gravity)
+    )
+
+
+def _ranges(problem: Problem) -> Iterator[str]:
+    """From the least to the largest length, mass, force, moment and pressure, with the names of what has them."""
+    linkage = problem.linkage
+    spans = sorted((span, points) for span, points in _spans(problem).values())
     if spans:
-        (small, short), (large, long) = min(spans.values()), max(spans.values())
-        yield _("sizes: from {small} ({short}) to {large} ({long}); {gravity}").format(
+        (small, short), (large, long) = spans[0], spans[-1]
+        yield _("from {small} ({short}) to {large} ({long})").format(
             small=with_unit(problem.units, small, LENGTH), short=short,
-            large=with_unit(problem.units, large, LENGTH), long=long, gravity=gravity(linkage.gravity),
+            large=with_unit(problem.units, large, LENGTH), long=long,
         )  # fmt: skip
-    else:
-        yield gravity(linkage.gravity)
+    largest = [(load, max(map(abs, load.table.values)) if load.table is not None else 1.0) for load in linkage.loads]
+    every = (
+        (MASS, _("masses"), [(link.mass, name) for name, link in linkage.links.items()]),
+        (FORCE, _("forces"), [(abs(load.force) * size, load.name) for load, size in largest]),
+        (MOMENT, _("moments"), [(abs(load.moment) * size, load.name) for load, size in largest]),
+        (PRESSURE, _("pressures"), [(pressure, str(path[1])) for path, pressure in _pressures(problem)]),
+    )
+    for dimension, title, values in every:
+        present = sorted((float(rounded(value)), name) for value, name in values if value)
+        if present:
+            yield f"{title} {_range(problem, present, dimension)}"
+
+
+def _range(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
+    """The first and the last of the values, which are sorted, with their names; all in one if there is one alone."""
+    sizes = dict.fromkeys((values[0], values[-1]))
+    ends = [f"{with_unit(problem.units, size, dimension)} ({name})" for size, name in sizes]
+    if len(ends) == 1 or values[0][0] == values[-1][0]:
+        return ends[0]
+    return _("from {least} to {largest}").format(least=ends[0], largest=ends[1])
+
+
+def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
+    """The largest pressure (Pa) of each load by a pressure, and of a piston that drives, with its place in the file."""
+    if problem.source is None or problem.values is None:
+        return
+    data = problem.source.data
+    blocks: list[tuple[Path, Any]] = [(("loads", name), load) for name, load in (data.get("loads") or {}).items()]
+    blocks = [((*path, "pressure"), load["pressure"]) for path, load in blocks if "pressure" in load]
+    drive = ((data.get("dynamics") or {}).get("run") or {}).get("drive")
+    if isinstance(drive, dict) and "area" in drive:
+        blocks.append((("dynamics", "run", "drive"), drive))
+    for path, given in blocks:
+        rows = [row[1] for row in given["table"]] if "table" in given else [given["size"]]
+        yield path, max(abs(float(rounded(problem.values.number(row, PRESSURE, path)))) for row in rows)
 
 
 def bare_units(units: UnitSystem) -> str:
@@ -103,6 +171,10 @@ def doubts(problem: Problem) -> Iterable[str]:
     if problem.source is not None:
         yield from without_effect(problem.source, [path[1] for path in problem.source.given])
     yield from _bare_speed(problem, data)
+    if problem.values is not None:
+        yield from bare_angular_speeds(data, problem.values, turns=problem.linkage.driver.kind == "turn")
+        yield from _speeds_apart(problem, data)
+        yield from _fluctuation(data, problem.values)
     for driver in problem.linkage.drivers:
         if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
             yield _("the driver's speed, {motion}, is more than machines have: is the unit right?").format(
@@ -110,6 +182,8 @@ def doubts(problem: Problem) -> Iterable[str]:
             )
     yield from _sizes(problem)
     yield from _masses(problem, data)
+    yield from _far_places(problem)
+    yield from _high_pressures(problem)
     yield from _smooth_tables(problem)
     yield from _several_strokes(problem)
     positions = data.get("positions", {})
@@ -142,6 +216,104 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
 
 
+def bare_angular_speeds(data: Mapping[str, Any], values: ValueReader, *, turns: bool = True) -> Iterator[str]:
+    """Angular speeds without a unit in blocks beside `driver`, in a file that counts in degrees.
+
+    turns: whether the driver rotates; the speed of a run of one that slides is no angular speed.
+    """
+    units = values.units
+    named = {key.replace("_", " ") for key in data.get("units") or {}}
+    if units.factor(ANGLE) == 1 or "angular speed" in named:
+        return
+    for path in ANGULAR_SPEEDS:
+        value: Any = data
+        for key in path:
+            value = value.get(key) if isinstance(value, dict) else None
+        if value is None or (path[1] == "run" and not turns) or not values.bare(value):
+            continue
+        speed = float(rounded(values.number(value, ANGULAR_SPEED, path)))
+        if speed:  # rest is rest in any unit
+            yield _(
+                "{key} has no unit and is taken as {speed} rad/s = {turns} rpm, though angles are in {angle}: "
+                "write `{written} rad/s`, or `{written} rpm` if turns a minute are meant"
+            ).format(
+                key=".".join(map(str, path)), speed=_short(speed), turns=_short(speed * 30 / math.pi),
+                angle=units.spelt(ANGLE), written=numeral(speed, ".6g"),
+            )  # fmt: skip
+
+
+def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
+    """A mean speed of the law of motion beside another speed of the driver."""
+    task, speed = problem.dynamics, float(rounded(problem.linkage.driver.rate))
+    mean = getattr(task, "mean", None)
+    if mean is None or not speed or not {"mean speed", "mean_speed"} & set(data.get("dynamics") or {}):
+        return
+    mean = float(rounded(mean))
+    if abs(mean / speed - 1) > SAME_SPEED:
+        yield _(
+            "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
+            "{speed_rpm} rpm: the law of motion takes the mean speed; write one of them, or both the same"
+        ).format(
+            mean=_short(mean), mean_rpm=_short(mean * 30 / math.pi), speed=_short(speed),
+            speed_rpm=_short(speed * 30 / math.pi),
+        )  # fmt: skip
+
+
+def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
+    """A coefficient of fluctuation that is written in per cent twice over."""
+    given = (data.get("dynamics") or {}).get("delta")
+    if given is None:
+        return
+    delta = float(rounded(values.number(given, NUMBER, ("dynamics", "delta"))))
+    if delta < UNIFORM:
+        yield _(
+            "dynamics.delta is {given} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
+            "`{per_cent} %`, if that is meant"
+        ).format(
+            given=given, parts=f"{1 / delta:.0f}", hundredfold=numeral(100 * delta, ".6g"),
+            per_cent=numeral(1e4 * delta, ".6g"),
+        )  # fmt: skip
+
+
+def _far_places(problem: Problem) -> Iterator[str]:
+    """Centres of mass, points of load and ends of springs farther from their link than the mechanism is long."""
+    linkage = problem.linkage
+    size, longest = max(_spans(problem).values(), default=(math.inf, ""))
+    places: list[tuple[str, str, complex]] = [
+        (f"masses.{name}", name, link.centre) for name, link in linkage.links.items() if link.mass
+    ]
+    places += [(f"loads.{load.name}", load.link, load.at) for load in linkage.loads if load.force]
+    for spring in (spring for spring in linkage.springs if not spring.turns):
+        places += [(f"springs.{spring.name}", spring.i, spring.at_i), (f"springs.{spring.name}", spring.j, spring.at_j)]
+    for key, link, at in places:
+        distances = [float(abs(point - at)) for point in linkage.links[link].points.values()]
+        distance = min(distances, default=0.0)
+        if distance > FAR * size:
+            told = _(
+                "{key}: this place is {distance} from every point of link {link}, farther than the mechanism is long "
+                "(its largest link, {points}, is {size}): is the unit right? a bare length is in {unit}"
+            ).format(
+                key=key, distance=with_unit(problem.units, distance, LENGTH), link=link, points=longest,
+                size=with_unit(problem.units, size, LENGTH), unit=problem.units.spelt(LENGTH),
+            )  # fmt: skip
+            names = "".join(list(linkage.links[link].points)[:2])
+            share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=told, points=names)
+            yield share if len(distances) > 1 else told
+
+
+def _high_pressures(problem: Problem) -> Iterator[str]:
+    """Pressures in bare pascals, which are taken as megapascals."""
+    for path, pressure in _pressures(problem):
+        if pressure > STRONG:
+            yield _(
+                "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
+                "meant"
+            ).format(
+                key=".".join(map(str, path)), pressure=with_unit(problem.units, pressure, PRESSURE),
+                number=numeral(problem.units.from_si(pressure, PRESSURE), ".6g"),
+            )  # fmt: skip
+
+
 def _sizes(problem: Problem) -> Iterable[str]:
     for link, (span, points) in _spans(problem).items():
         size = with_unit(problem.units, span, LENGTH)
@@ -156,6 +328,7 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
     linkage, spans = problem.linkage, _spans(problem)
     largest = max((span for span, points in spans.values()), default=math.inf)
     wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
+    cranks = {driver.link for driver in linkage.cranks if driver.kind == "turn"}
     runners = {slide.runner for slide in linkage.slides}
     for name, given in data.get("masses", {}).items():
         link = linkage.links[name]
@@ -163,13 +336,22 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
             continue
         radius = math.sqrt(link.inertia / link.mass)
         told = with_unit(problem.units, radius, LENGTH)
-        if name in spans and name not in wheels and radius > spans[name][0]:
+        allowed = HEAVY_CRANK * largest if name in cranks else spans[name][0] if name in spans else math.inf
+        if name in spans and name not in wheels and radius > allowed:
             yield _(
                 "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, more than the link itself "
                 "({points}, {size}): are the units of inertia right?"
             ).format(
                 link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH)
             )
+        elif name in spans and radius < SLENDER * spans[name][0] <= SLENDER * LARGE:
+            yield _(
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, less than 1/50 of the link ({points}, "
+                "{size}): are the units of inertia right? a uniform rod has I = {inertia}"
+            ).format(
+                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH),
+                inertia=with_unit(problem.units, link.mass * spans[name][0] ** 2 / 12, INERTIA, 3),
+            )  # fmt: skip
         elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
             yield _(
                 "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
