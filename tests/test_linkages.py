@@ -25,11 +25,11 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.structure.assur import analyse
 
 FORMULAS = {
-    "positioner": "I(1,2) -> II(1,2,3) -> II(4,5) -> II(6,7)",
-    "clamp": "I(0,1) -> II(2,3) -> II(4,5) -> II(6,7)",
+    "positioner": "I(1,2) -> II(1,2,3) -> II(4,5), II(1,2,3) -> II(6,7)",
+    "clamp": "I(0,1) -> II(2,3) -> II(4,5), II(2,3) -> II(6,7)",
     "hanger": "I(0,1) -> II(2,3) -> II(4,5)",
     "two-strokes": "I(0,1) -> II(2,3) -> II(4,5)",
-    "engine-four": "I(0,1) -> II(2,3) -> II(4,5) -> II(6,7) -> II(8,9)",
+    "engine-four": "I(0,1) -> II(2,3), I(0,1) -> II(4,5), I(0,1) -> II(6,7), I(0,1) -> II(8,9)",
     "press-class-iii": "I(0,1) -> III(2,5,6,7) -> II(3,4)",
     "shaking-screen": "I(0,1) -> III(2,3,4,5)",
     "class-iv": "I(0,1) -> IV(2,3,4,5)",
@@ -43,7 +43,7 @@ FORMULAS = {
     "valve-drive": "I(0,1) -> II(2) -> II(3,4)",
     "rack-doubling": "I(0,1) -> II(2,3) -> II(4) -> II(5)",
     "five-bar": "I(0,1) + I(0,4) -> II(2,3)",
-    "excavator": "I(2,3) + I(5,6) + I(8,9) -> II(1,2,3) -> II(4,5,6) -> II(7,8,9)",
+    "excavator": "I(2,3) -> II(1,2,3), I(5,6) + II(1,2,3) -> II(4,5,6), I(8,9) + II(4,5,6) -> II(7,8,9)",
     "loader": "I(4,5) -> III(1,2,3,4,5)",
 }
 SHARES = (0.07, 0.31, 0.58, 0.86)  # of the driver's way: off the round places of the file

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
+from itertools import islice, permutations
+from math import factorial
 from pathlib import Path
 
 import numpy as np
 import pytest
+import random_linkages
 from test_commands import tmm
 
 from tmm_cli import solve
+from tmm_cli.linkage import FRAME
 from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.as_json import to_json
+from tmm_cli.structure.assur import analyse
 
+V_ENGINE = Path("tests/data/v-compressor.yaml").read_text(encoding="utf-8")
 SIX_BAR = Path("problems/six-bar.yaml")
 TEXT = SIX_BAR.read_text(encoding="utf-8")
 PUSH = complex(300, -700)  # N, on the pin B
@@ -24,6 +32,16 @@ def pins(text):
     results = solve(build(read_text(text, "pins.yaml")))
     found = {pin.link: pin.force for pin in results.reactions.pins(results.linkage)}
     return found, max(np.max(np.abs(force)) for force in found.values())
+
+
+def attached(text, point, link):
+    """The file with the links of a compound hinge attached to one of them."""
+    return text.replace("links:\n", f"hinges: {{{point}: {{attached to: {link}}}}}\nlinks:\n", 1)
+
+
+def pairs_at(point, structure):
+    """The pairs of a compound hinge."""
+    return [(pair.name, pair.i, pair.j) for pair in structure.pairs if pair.point == point]
 
 
 def pushed(link):
@@ -55,15 +73,15 @@ def test_the_pin_bears_each_link_with_all_that_acts_on_it():
     assert np.max(np.abs(total)) < 1e-15 * np.max(np.abs(force))
 
 
-def test_how_a_hinge_is_counted_as_pairs_does_not_matter():
-    rocker = "  3: {name: rocker, points: [D, B], length: BD}\n"
-    other = TEXT.replace(rocker, "").replace("  2: {name", rocker + "  2: {name")
-    one, two = (solve(build(read_text(text, "pins.yaml"))) for text in (TEXT, other))
-    assert [r.pairs for r in one.reactions.pins(one.linkage)] == [("B",), ("B", "B''"), ("B''",)]
-    found = {pin.link: pin for pin in two.reactions.pins(two.linkage)}
-    assert found["2"].pairs == ("B", "B''")
-    for pin in one.reactions.pins(one.linkage):
-        assert np.max(np.abs(pin.force - found[pin.link].force)) < 4e-15 * np.max(np.abs(pin.force))
+@pytest.mark.parametrize("link", ["2", "3"])
+def test_the_pin_forces_do_not_depend_on_the_link_to_which_the_others_are_attached(link):
+    results = [solve(build(read_text(text, "pins.yaml"))) for text in (TEXT, attached(TEXT, "B", link))]
+    usual, other = ({pin.link: pin for pin in r.reactions.pins(r.linkage)} for r in results)
+    assert other[link].pairs == ("B", "B''")
+    for name, pin in usual.items():
+        assert np.max(np.abs(pin.force - other[name].force)) < 4e-15 * np.max(np.abs(pin.force))
+    balances = [r.reactions.balance.moment for r in results]
+    assert np.max(np.abs(balances[0] - balances[1])) < 4e-15 * np.max(np.abs(balances[0]))
 
 
 def test_tables_and_result_json_have_a_row_a_link(tmp_path):
@@ -77,3 +95,137 @@ def test_tables_and_result_json_have_a_row_a_link(tmp_path):
         assert float(row["Fx, N"]) == pytest.approx(written[row["link"]]["x"][position], rel=1e-8)
     assert len(rows) == 12 * 3
     assert "Compound hinges" not in tmm("forces", "problems/crank-rocker.yaml").stdout
+
+
+def rod_on_crank_pin(results, rod, piston, pin, guide, push, position):
+    """The force of the crank pin on a connecting rod (N), by the equations of equilibrium of the rod and its piston.
+
+    guide: angle of the piston's guide (rad); push: the force of the gas on the piston. Unknown are both components of
+    the forces on the rod at the crank pin and at the piston pin, and the force across the guide.
+    """
+    motion, links = results.motion, results.linkage.links
+    end = motion.named(pin).x[position]
+    crank_pin = motion.named("A").x[position]
+    centre, turning = motion.centre(rod), motion.link(rod)
+    mass, piston_mass, g = links[rod].mass, links[piston].mass, -9.81j
+    inertia = mass * (g - centre.a[position])
+    couple = -links[rod].inertia * turning.epsilon[position]
+    on_piston = push + piston_mass * (g - motion.named(pin).a[position])
+    across = 1j * np.exp(1j * guide)
+    arm, to_centre = end - crank_pin, centre.x[position] - crank_pin
+    rows = np.array([
+        [1, 0, 1, 0, 0], [0, 1, 0, 1, 0], [0, 0, -arm.imag, arm.real, 0],
+        [0, 0, -1, 0, across.real], [0, 0, 0, -1, across.imag],
+    ])  # fmt: skip
+    moment = (np.conj(to_centre) * inertia).imag + couple
+    right = [-inertia.real, -inertia.imag, -moment, -on_piston.real, -on_piston.imag]
+    x, y = np.linalg.solve(rows, right)[:2]
+    return complex(x, y)
+
+
+def test_both_rods_of_a_v_engine_are_attached_to_the_crank():
+    """Two rods on one crank pin: R_12 is the force of rod 2 alone, not that of the whole pin."""
+    results = solve(build(read_text(V_ENGINE, "v-compressor.yaml")))
+    position = 10
+    assert pairs_at("A", results.structure) == [("A", "1", "2"), ("A''", "1", "4")]
+    assert results.structure.formula == "I(0,1) -> II(2,3), I(0,1) -> II(4,5)"
+    gas = {load.name: load.force[position] for load in results.loads}
+    forces = {r.pair.name: r.onto(r.on)[position] for r in results.reactions.all}
+    one = rod_on_crank_pin(results, "2", "3", "B", np.radians(45), gas["p1"], position)
+    two = rod_on_crank_pin(results, "4", "5", "C", np.radians(135), gas["p2"], position)
+    assert forces["A"] == pytest.approx(one, rel=1e-12)
+    assert forces["A''"] == pytest.approx(two, rel=1e-12)
+    assert (abs(one), abs(two), abs(one + two)) == pytest.approx((4683.3, 1583.5, 5577.6), abs=0.05)
+    pin = {pin.link: pin.force[position] for pin in results.reactions.pins(results.linkage)}
+    assert pin["1"] == pytest.approx(-(one + two), rel=1e-12)
+
+
+def test_attached_to_a_rod_the_crank_bears_the_whole_pin_in_one_pair():
+    """The force of each pair is the vector sum of the forces of the pin on the links beyond it."""
+    results = solve(build(read_text(attached(V_ENGINE, "A", 2), "v-compressor.yaml")))
+    pin = {pin.link: pin.force for pin in results.reactions.pins(results.linkage)}
+    usual = solve(build(read_text(V_ENGINE, "v-compressor.yaml"))).reactions
+    whole = usual.of("A").onto("2") + usual.of("A''").onto("4")
+    largest = np.max(np.abs(whole))
+    assert pairs_at("A", results.structure) == [("A", "1", "2"), ("A''", "2", "4")]
+    assert results.structure.formula == "I(0,1) -> II(2,3) -> II(4,5)"
+    assert np.max(np.abs(results.reactions.of("A").onto("2") - whole)) < 1e-14 * largest
+    assert np.max(np.abs(results.reactions.of("A").onto("1") - pin["1"])) < 1e-14 * largest
+    assert np.max(np.abs(results.reactions.of("A''").onto("4") - usual.of("A''").onto("4"))) < 1e-14 * largest
+
+
+def test_a_later_rod_may_be_attached_first():
+    """Attached to rod 4 its group is solved first, and the other rod is attached to it."""
+    structure = solve(build(read_text(attached(V_ENGINE, "A", 4), "v-compressor.yaml")), "structure").structure
+    assert pairs_at("A", structure) == [("A", "1", "4"), ("A''", "4", "2")]
+    assert structure.formula == "I(0,1) -> II(4,5) -> II(2,3)"
+
+
+def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached():
+    """On each rod mu r R of its own force, R_12 and R_14; the drivers' work is what friction takes more."""
+    text = V_ENGINE + "friction: {coefficient: 0.1, radius: 20, pairs: {x: {coefficient: 0}, y: {coefficient: 0}}}\n"
+    results = solve(build(read_text(text, "v-compressor.yaml")))
+    motion = results.motion
+    for pair, rod in (("A", "2"), ("A''", "4")):
+        slip = motion.link(rod).omega - motion.link("1").omega
+        expected = -0.1 * 0.020 * np.abs(results.reactions.of(pair).force) * np.sign(slip)
+        load = next(x for x in results.loads if x.kind == "friction" and x.name == f"T{pair}{rod}")
+        assert np.max(np.abs(load.moment - expected)) < 1e-12 * np.max(np.abs(expected))
+        back = next(x for x in results.loads if x.kind == "friction" and x.name == f"T{pair}1")
+        assert np.max(np.abs(back.moment + expected)) < 1e-12 * np.max(np.abs(expected))
+    assert np.max(np.abs(results.lever.difference)) < 1e-9
+
+
+@pytest.mark.parametrize("point, link, message, found, allowed", [
+    ("Q", 1, "there is no hinge of that name", "'Q'", None),
+    ("B", 2, "this hinge joins two links: they make one pair", "2, 3", None),
+    ("A", 5, "link 5 is not in hinge A", "'5'", "1, 2, 4"),
+])  # fmt: skip
+def test_a_wrong_attachment_is_refused(point, link, message, found, allowed):
+    with pytest.raises(ProblemError) as error:
+        build(read_text(attached(V_ENGINE, point, link), "v-compressor.yaml"))
+    assert (error.value.message, error.value.found) == (message, found)
+    assert allowed is None or error.value.allowed == allowed
+
+
+def test_an_attachment_that_joins_groups_is_refused():
+    """Rod 4 is placed by pin B, which coupler and rocker place: attached to it they would make one group of four."""
+    with pytest.raises(ProblemError) as error:
+        build(read_text(attached(TEXT, "B", 4), "six-bar.yaml"))
+    assert error.value.message == "with the links attached to 4 the mechanism does not fall into the same groups"
+    assert error.value.allowed == "2, 3"
+
+
+def expected_link(linkage, structure, hinge):
+    """The link to which the rule attaches the others, found from the groups: frame, driver, first group."""
+    if FRAME in hinge.links:
+        return {FRAME}
+    cranks = {driver.link for driver in linkage.drivers} & set(hinge.links)
+    if cranks:
+        return cranks
+    group = next(g for g in structure.groups if set(g.links) & set(hinge.links))
+    own = [link for link in hinge.links if link in group.links]
+    joined = [n for n in own if any({n, FRAME} == {p.i, p.j} for p in structure.pairs)]
+    return {min(joined or own, key=list(linkage.links).index)}
+
+
+@pytest.mark.parametrize("name", ["six-bar", "engine-four", "toggle-press", "cranks/reversing", "slotted/intermittent"])
+def test_the_order_of_links_in_the_file_does_not_change_what_is_attached(name):
+    linkage = build(read_text(Path(f"problems/{name}.yaml").read_text(encoding="utf-8"), name)).linkage
+    found = set()
+    for order in islice(permutations(linkage.moving), 0, None, max(1, factorial(len(linkage.moving)) // 60)):
+        links = {name: linkage.links[name] for name in (FRAME, *order)}
+        hinges = tuple(replace(h, links=tuple(n for n in links if n in h.links)) for h in linkage.hinges)
+        structure = analyse(replace(linkage, links=links, hinges=hinges))
+        found.add(frozenset((p.point, frozenset((p.i, p.j))) for p in structure.pairs if p.kind == "R"))
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_links_of_a_compound_hinge_are_attached_by_the_rule_in_random_chains(seed):
+    linkage = random_linkages.linkage(seed, ("RRR", "RRR", "RRP", "RRR"))
+    structure = analyse(linkage)
+    for hinge in linkage.hinges:
+        pairs = [{p.i, p.j} for p in structure.pairs if p.point == hinge.point and p.kind == "R"]
+        assert len(pairs) == len(hinge.links) - 1
+        assert expected_link(linkage, structure, hinge) & set.intersection(*pairs)

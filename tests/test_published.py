@@ -151,7 +151,7 @@ def jansen():
 def test_jansen_leg_walks_through_the_printed_points():
     printed = published("jansen")
     results = results_of(jansen(), "kinematics")
-    assert results.structure.formula == "I(0,1) -> II(2,3) -> II(4,5) -> II(6,7)"
+    assert results.structure.formula == "I(0,1) -> II(2,3), I(0,1) -> II(4,5), II(2,3) + II(4,5) -> II(6,7)"
     for point in "BCDEF":
         expected = np.array([complex(*row[point]) for row in printed.values()])
         assert np.max(np.abs(results.motion.named(point).x - expected)) < 1e-12 * np.max(np.abs(expected)), point

@@ -280,7 +280,7 @@ def test_the_command_counts_chains_by_assortment():
     assert (told["count"], told["fractionated"], len(told["chains"])) == (4, 1, 4)
     told = json.loads(tmm("schemes", "--links", 4, "--mobility", 2, "--json").stdout)
     assert told["count"] == 5
-    assert told["schemes"][0]["formula"] == "I(0,1) -> I(0,2) -> II(3,4)"
+    assert told["schemes"][0]["formula"] == "I(0,1) + I(0,2) -> II(3,4)"
 
 
 @pytest.mark.parametrize(

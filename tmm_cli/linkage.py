@@ -33,10 +33,14 @@ class Link:
 
 @dataclass(frozen=True)
 class Hinge:
-    """A turning pair at a named point of two links, or a compound hinge of more: k links make k - 1 pairs."""
+    """A revolute pair at a named point of two links, or a compound hinge of more: k links make k - 1 pairs.
+
+    attached_to: the link with which each of the others makes one of these pairs, if the file names it.
+    """
 
     point: str
     links: tuple[str, ...]
+    attached_to: str = ""
 
 
 def hinged(hinges: Iterable[Hinge], one: str, other: str) -> str | None:

@@ -15,7 +15,7 @@ from tmm_cli.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.problem import schema
 from tmm_cli.problem.budget import refuse_work
 from tmm_cli.problem.build_drivers import build_cycle, build_drivers, build_request, build_sketch
-from tmm_cli.problem.build_links import build_links, refuse_unused
+from tmm_cli.problem.build_links import build_links, refuse_attachments, refuse_unused
 from tmm_cli.problem.build_loads import build_loads, with_masses
 from tmm_cli.problem.build_meshes import build_meshes
 from tmm_cli.problem.build_springs import with_springs
@@ -101,6 +101,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
         keep_side=shape.change_points == "keep side", turns=build_cycle(shape, first, values),
     )  # fmt: skip
+    refuse_attachments(linkage, shape, values)
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
     linkage = with_springs(linkage, shape, values)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Hinge, Link, Slide, hinged
+from tmm_cli.linkage import FRAME, Hinge, Link, Linkage, Slide, hinged
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, unknown_name
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
 from tmm_cli.quantities import ANGLE, LENGTH
+from tmm_cli.structure.assur import analyse
 
 LONGEST_PAIR = 80  # letters of the names of two points
 
@@ -54,7 +55,49 @@ def build_links(shape: schema.File, values: ValueReader) -> Members:
         for point in link.points:
             owners.setdefault(point, []).append(name)
     hinges = tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
-    return Members(reader.links, hinges, slides)
+    return Members(reader.links, _attach_links(hinges, shape, values), slides)
+
+
+def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
+    """The hinges, compound ones with the link to which the file attaches the others."""
+    links_at = {hinge.point: hinge.links for hinge in hinges}
+    for point, hinge in shape.hinges.items():
+        part = Part(hinge, ("hinges", point), values)
+        values.known(point, links_at, part.path, "hinge", key=True)
+        if len(links_at[point]) == 2:
+            raise part.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
+        if hinge.attached_to not in links_at[point]:
+            raise part.refusal(
+                "attached_to", _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
+                found=quote(hinge.attached_to), allowed=", ".join(links_at[point]),
+            )  # fmt: skip
+    attached = {point: hinge.attached_to for point, hinge in shape.hinges.items()}
+    return tuple(replace(hinge, attached_to=attached.get(hinge.point, "")) for hinge in hinges)
+
+
+def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader) -> None:
+    """Refuse links of compound hinges attached so that groups merge, or that a driver has no pair to work in."""
+    for hinge in linkage.hinges:
+        if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
+            allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
+            raise Part(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
+                "attached_to",
+                _("with the links attached to {link} the mechanism does not fall into the same groups").format(
+                    link=hinge.attached_to
+                ),
+                found=quote(hinge.attached_to), allowed=", ".join(allowed),
+            )  # fmt: skip
+
+
+def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
+    """True if the groups stay the same when the links of a hinge are attached to this one."""
+    usual, attached = (
+        replace(linkage, hinges=tuple(replace(hinge, attached_to=to) if h == hinge else h for h in linkage.hinges))
+        for to in ("", link)
+    )
+    driven = [{d.base, d.link} for d in linkage.drivers if d.kind == "turn" and d.joint == hinge.point]
+    groups = [{frozenset(group.links) for group in analyse(changed).groups} for changed in (usual, attached)]
+    return groups[0] == groups[1] and all(link in ends for ends in driven)
 
 
 class _Reader:

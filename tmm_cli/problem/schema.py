@@ -91,6 +91,14 @@ class Speeds(Strict):
     )
 
 
+class CompoundHinge(Strict):
+    """A hinge of three links or more."""
+
+    attached_to: Name = Field(
+        alias="attached to", description="the link with which each of the others makes a pair; 0 is the frame"
+    )
+
+
 def _by_angle(found: Any) -> Any:
     return Speeds.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
@@ -171,6 +179,9 @@ class File(FileHead):
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)
+    hinges: dict[Name, CompoundHinge] = Field(
+        default_factory=dict, max_length=100, description="compound hinges that are not counted in the usual way"
+    )
     driver: Driver | list[Driver] = Field(description="the input; several as a list, when W > 1")
     gears: dict[Name, Gear] = Field(default_factory=dict, max_length=100)
     racks: dict[Name, Rack] = Field(default_factory=dict, max_length=100)

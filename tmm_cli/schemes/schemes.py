@@ -24,7 +24,7 @@ from typing import Literal
 
 from tmm_cli.linkage import FRAME
 from tmm_cli.schemes.isomorphism import Form, canonical
-from tmm_cli.structure.assur import ROMAN
+from tmm_cli.structure.assur import ROMAN, structural_formula
 
 Kind = Literal["R", "P"]
 Joint = tuple[int, int, Kind]
@@ -113,9 +113,14 @@ class Scheme:
 
     @property
     def formula(self) -> str:
-        """Formula of structure: I(0,1) -> II(2,3) -> II(4,5)."""
-        driving = [f"I({FRAME},{crank})" for crank in range(1, self.cranks + 1)]
-        return " -> ".join(driving + [group.title for group in self.groups])
+        """Structural formula, see structural_formula()."""
+        titles = {crank: f"I({FRAME},{crank})" for crank in range(1, self.cranks + 1)}
+        titles |= {link: group.title for group in self.groups for link in group.links}
+        parts: dict[str, list[str]] = {titles[crank]: [] for crank in range(1, self.cranks + 1)}
+        for group in self.groups:
+            ends = [link for i, j, _kind in group.outer for link in (i, j)]
+            parts[group.title] = [titles[link] for link in ends if link in titles and link not in group.links]
+        return structural_formula(parts)
 
     @property
     def types(self) -> tuple[str, ...]:

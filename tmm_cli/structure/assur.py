@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal
 
 from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Mesh, Slide
@@ -157,9 +156,10 @@ class Structure:
         return replace(self, pairs=tuple(pair.rebind(linkage) for pair in self.pairs), groups=groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
-        """The pair in which a driver works."""
-        ends = {driver.base, driver.link}
-        return next(p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
+        """The pair in which a driver works; in a compound hinge its two links may both be attached to a third."""
+        ends, apart = {driver.base, driver.link}, Pair(driver.joint, "R", driver.base, driver.link, driver.joint)
+        pairs = (p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
+        return next(pairs, apart)
 
     @property
     def contours(self) -> int:
@@ -168,9 +168,15 @@ class Structure:
 
     @property
     def formula(self) -> str:
-        """Formula of structure: I(0,1) -> II(2,3) -> II(4,5)."""
-        inputs = [f"I({d.base},{d.link})" for d in self.drivers]
-        return " -> ".join([" + ".join(inputs), *(g.title for g in self.groups)])
+        """Structural formula: I(0,1) -> II(2,3) -> II(4,5); branches as structural_formula() writes them."""
+        titles = {driver.link: f"I({driver.base},{driver.link})" for driver in self.drivers}
+        parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
+        cranks = {driver.link: titles[driver.link] for driver in self.drivers if driver.base == FRAME}
+        title_of = cranks | {link: group.title for group in self.groups for link in group.links}
+        for group in self.groups:
+            driving = [titles[driver.link] for driver in group.drivers]
+            parts[group.title] = [*driving, *(title_of[link] for link in group.known if link != FRAME)]
+        return structural_formula(parts)
 
     @property
     def mechanism_class(self) -> int:
@@ -206,6 +212,32 @@ class Structure:
         return next(p for p in self.pairs if p.name == name)
 
 
+def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
+    """The formula of a structure whose parts are attached to one another.
+
+    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). What is attached to several parts, none
+    of which is attached to another of them, stands after their sum: I(0,1) + I(0,4) -> II(2,3).
+
+    Args:
+        parts: the title of each part (a driver or a group), in solving order, with the titles of those it is attached
+            to.
+    """
+    before: dict[str, set[str]] = {}
+    chains: list[list[tuple[str, ...]]] = []
+    for title, attached_to in parts.items():
+        before[title] = set(attached_to).union(*(before[other] for other in attached_to))
+        last = tuple(t for t in parts if t in attached_to and not any(t in before[other] for other in attached_to))
+        chain = next((chain for chain in chains if chain[-1] == last), None)
+        if chain is not None:
+            chain.append((title,))
+        else:
+            chains.append([last, (title,)] if last else [(title,)])
+    longer = [chain for chain in chains if len(chain) > 1]
+    heads = {title for chain in longer for title in chain[0]}
+    kept = [chain for chain in chains if chain in longer or chain[0][0] not in heads]
+    return ", ".join(" -> ".join(" + ".join(titles) for titles in chain) for chain in kept)
+
+
 def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
     """Structure of a linkage; never fails: what is wrong with it is in the result.
 
@@ -215,7 +247,7 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
     loosened = {tie.name for k, tie in enumerate(ties) if k in less and not tie.constraints}
     redundant_pairs = loosened - {hinge.point for hinge in linkage.hinges if len(hinge.links) > 2}
-    pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2)
+    pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2 and not h.attached_to)
     bodies = tuple(linkage.links)
     undriven = count(bodies, FRAME, ties, pins)
     driven = count(bodies, FRAME, [*ties, *(Tie("driver", d.base, d.link, 1) for d in linkage.drivers)], pins)
@@ -248,10 +280,12 @@ def _pin(hinge: Hinge) -> str:
 
 
 def ties_of(linkage: Linkage) -> Iterable[Tie]:
-    """Who is joined to whom; a compound hinge through its pin."""
+    """Who is joined to whom; a compound hinge through its pin, or as the file attaches its links."""
     for hinge in linkage.hinges:
         if len(hinge.links) == 2:
             yield Tie(hinge.point, *hinge.links, 2)
+        elif hinge.attached_to:
+            yield from (Tie(hinge.point, hinge.attached_to, x, 2) for x in hinge.links if x != hinge.attached_to)
         else:
             yield from (Tie(hinge.point, _pin(hinge), link, 2) for link in hinge.links)
     yield from (Tie(slide.name, slide.carrier, slide.runner, 2) for slide in linkage.slides)
@@ -259,20 +293,33 @@ def ties_of(linkage: Linkage) -> Iterable[Tie]:
 
 
 def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
-    """Pairs of the linkage; a compound hinge becomes a chain in solving order, or a star about the frame.
+    """Pairs of the linkage; in a compound hinge all links are attached to one of them.
 
-    In solving order, because then a group is always hinged to links that are placed before it.
+    `rank` is the number of a link's group in solving order.
     """
     order = {name: k for k, name in enumerate(linkage.links)}
     for hinge in linkage.hinges:
         links = sorted(hinge.links, key=lambda name: (rank[name], order[name]))
-        joined = [(FRAME, b) for b in links[1:]] if links[0] == FRAME else list(pairwise(links))
-        for number, (i, j) in enumerate(joined):
+        common = hinge.attached_to or _common_link(links, rank, linkage)
+        for number, link in enumerate(link for link in links if link != common):
+            i, j = sorted((common, link), key=links.index)
             yield Pair(hinge.point + ("'" * (number + 1) if number else ""), "R", i, j, hinge.point)
     for slide in linkage.slides:
         yield Pair(slide.name, "P", slide.carrier, slide.runner, slide.point, slide)
     for mesh in linkage.meshes:
         yield Pair(mesh.name, HIGHER[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
+
+
+def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
+    """The link to which the others in a hinge are attached unless the file says otherwise.
+
+    The frame, else the driver, else, within the group that is solved first, a link connected to the frame, else the
+    first. `links` stand in solving order.
+    """
+    cranks = [driver.link for driver in linkage.cranks]
+    first = [link for link in links if rank[link] == rank[links[0]]]
+    connected = (n for n in first if n in cranks or linkage.hinged_to_frame(n) or linkage.slides_on_frame(n))
+    return next(connected, first[0])
 
 
 def _group(
