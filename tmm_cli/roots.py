@@ -13,6 +13,8 @@ from tmm_cli.vectors import Real
 SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
 DEGREE = 8  # of the polynomial that tells where an extreme lies
 THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
+REFINEMENTS, PARTS = 16, 4  # of a step of a scan about a peak: finer grids, and their steps in one step of the last
+FLAT = 1e-12  # of the largest value: a peak that rises by less from its neighbours is rounding
 
 
 def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
@@ -86,6 +88,44 @@ def least(function: Callable[[Real], Real], low: Real | float, high: Real | floa
         ends = np.take_along_axis(places, np.clip([best - 1, best + 1], 0, 8), 0)
     middle = np.mean(ends, axis=0)
     return middle, function(np.ravel(middle)).reshape(np.shape(middle))[()]
+
+
+def greatest(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
+    """The largest values of curves that may jump or bend, (curves,); nan of those that have no value anywhere.
+
+    About every peak of a scan that may reach the largest value between two of its places, finer grids are laid, one
+    within another. Between places a curve is expected to rise by no more than twice what it rises to the next one.
+
+    Args:
+        curves: values, shape (k, n), of the curves with the numbers (k,) at places of each (k, n).
+        q: places at equal steps from one end to the other, of a cycle too, shape (places,).
+        values: of all curves there, (curves, places), nan where there is none.
+        turns: values are angles (rad), unwrapped.
+    """
+    y = np.where(np.isfinite(values), values, -np.inf)
+    best = np.max(y, axis=1)
+    before, after = np.column_stack([y[:, 0], y[:, :-1]]), np.column_stack([y[:, 1:], y[:, -1]])
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(y - before, y - after)
+        flat = FLAT * np.max(np.abs(y), axis=1, where=np.isfinite(y), initial=0.0)
+        near_top = (y >= before) & (y >= after) & (y + 2 * rise >= best[:, None]) & (rise > flat[:, None])
+    rows, place = np.nonzero(near_top & np.isfinite(y))
+    at, top_value, start = q[place], y[rows, place], y[rows, place][:, None]
+    step = abs(float(q[1] - q[0])) if len(q) > 1 else 0.0
+    for _ in range(REFINEMENTS if rows.size else 0):
+        grid = at[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
+        grid = np.clip(grid, np.min(q), np.max(q))
+        fine = curves(rows, grid)
+        if turns:
+            fine = start + np.remainder(fine - start + np.pi, 2 * np.pi) - np.pi
+        fine = np.where(np.isfinite(fine), fine, -np.inf)
+        highest = np.argmax(fine, axis=1)[:, None]
+        value = np.take_along_axis(fine, highest, 1)[:, 0]
+        at = np.where(value > top_value, np.take_along_axis(grid, highest, 1)[:, 0], at)
+        top_value = np.maximum(value, top_value)
+        step /= PARTS
+    np.maximum.at(best, rows, top_value)
+    return np.where(np.isfinite(best), best, np.nan)
 
 
 def top(function: Callable[[Real], Real], place: float, half: float) -> float:

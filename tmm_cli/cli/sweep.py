@@ -62,8 +62,9 @@ def sweep(
         points = 1
         for axis in mechanisms.axes:
             points *= len(axis.values)
-        refuse_points(problem, points, taped=taped, cores=None if scheduler else cores)
-        _announce(problem, points, taped)
+        peaks = any(not one.whole for one in mechanisms.shown)
+        refuse_points(problem, points, peaks=peaks, taped=taped, cores=None if scheduler else cores)
+        _announce(points, taped)
         for doubt in without_effect(tree, mechanisms.names):
             say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
         way = cluster(scheduler) if scheduler else processes(cores)
@@ -81,15 +82,10 @@ def sweep(
         raise typer.Exit(OK)
 
 
-def _announce(problem: Problem, points: int, taped: bool) -> None:
-    """How much work it is, before it starts."""
-    positions = len(problem.request.places) or problem.request.count
-    told = (
-        _("{points} mechanisms of {positions} positions, all at once")
-        if taped
-        else _("{points} mechanisms of {positions} positions, one after another")
-    )
-    say(told.format(points=points, positions=positions))
+def _announce(points: int, taped: bool) -> None:
+    """Print how much work it is, before it starts."""
+    text = _("{points} mechanisms, all at once") if taped else _("{points} mechanisms, one after another")
+    say(text.format(points=points))
 
 
 def _write(found: Swept, problem: Problem, out: Path) -> None:

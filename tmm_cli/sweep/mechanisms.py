@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -24,9 +24,9 @@ from tmm_cli.problem.tree import Tree
 from tmm_cli.sweep import looking
 from tmm_cli.sweep.grid import Axis
 from tmm_cli.sweep.looking import Looked, Wish, look, strokes_of
-from tmm_cli.sweep.quantities import PRESSURE, read_shown
+from tmm_cli.sweep.quantities import PRESSURE, Shown, read_shown
 from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
-from tmm_cli.sweep.taped import Turning, beyond
+from tmm_cli.sweep.taped import CYCLE, Turning, beyond
 from tmm_cli.synthesis import measures
 from tmm_cli.tape import DependsOnData
 from tmm_cli.variants.variant import NoTapeError, sketch_of
@@ -181,8 +181,11 @@ class Mechanisms:
         turning = self.turning
         assert turning is not None
         strokes = strokes_of(turning, columns, looked, varied)
-        q, at_positions = turning.at_positions(columns, strokes, varied)
-        found = np.full((len(q), len(self.shown)), np.nan)
+        q, at = turning.over_cycle(columns, strokes)
+        at_positions = [one.name for one in self.shown if not one.whole]
+        rows = np.arange(len(columns))
+        over = at(rows, np.broadcast_to(q, (len(columns), len(q))), at_positions) if at_positions else {}
+        found = np.full((len(columns), len(self.shown)), np.nan)
         for k, one in enumerate(self.shown):
             if one.name == PRESSURE:
                 peaks = [looked.peaks[name] for name in self._pressures()]
@@ -190,7 +193,8 @@ class Mechanisms:
             elif one.quantity is not None and one.whole:
                 found[:, k] = np.ravel(one.quantity.read(Read(strokes=strokes)))
             else:
-                found[:, k] = one.one(np.broadcast_to(at_positions[one.name], q.shape))
+                values = np.broadcast_to(over[one.name], (len(columns), len(q)))
+                found[:, k] = one.over_cycle(_curves_of(at, one.name), q, values)
         return found
 
     def _alone(self, point: Real) -> tuple[int, str, Real]:
@@ -228,7 +232,8 @@ class Mechanisms:
         """What is shown of a mechanism that was solved by the ordinary stages."""
         assert results.motion is not None
         searched = {"H": measures.stroke, "psi": measures.stroke, "k": measures.ratio, PRESSURE: measures.pressure}
-        sound = results.motion.moving & ~results.locked
+        q = results.closely(CYCLE * max(results.turns, 1) + 1)
+        read = _AtPlaces(results)
         found = []
         for one in self.shown:
             if one.name in searched:
@@ -236,5 +241,28 @@ class Mechanisms:
             elif one.quantity is not None and one.whole:
                 found.append(float(np.ravel(one.quantity.read(results))[0]))
             else:
-                found.append(float(one.one(np.where(sound, one.at_positions(results), np.nan)[None, :])[0]))
+                curves = partial(read.curves, one)
+                found.append(float(one.over_cycle(curves, q, curves(np.zeros(1), q[None, :]))[0]))
         return np.array(found)
+
+
+def _curves_of(
+    at: Callable[[Real, Real, Sequence[str]], Mapping[str, Real]], name: str
+) -> Callable[[Real, Real], Real]:
+    return lambda rows, q: np.broadcast_to(at(rows, q, [name])[name], q.shape)
+
+
+class _AtPlaces:
+    """A solved mechanism at other places of its driver; the last ones are kept, as several quantities are read there."""
+
+    def __init__(self, results: Results) -> None:
+        self.results, self.q, self.there = results, np.empty(0), results
+
+    def curves(self, one: Shown, rows: Real, q: Real) -> Real:
+        """Values of a quantity at places (k, n), the same mechanism in every row; nan where it cannot move."""
+        if not np.array_equal(q.ravel(), self.q):
+            self.q, self.there = q.ravel(), pipeline.at_places(self.results, q.ravel())
+        assert self.there.motion is not None
+        values = np.broadcast_to(one.at_positions(self.there), self.q.shape)
+        found: Real = np.where(self.there.motion.moving & ~self.there.locked, values, np.nan).reshape(q.shape)
+        return found

@@ -1,12 +1,12 @@
 """What can be shown over parameters: what students may be asked, as one number of a mechanism, and the pressure angle.
 
-Of what has a value a position the largest size at the positions of the file counts; of places, how far they go there.
+Of what has a value a position the largest size over the cycle counts; of places and angles, their range over the cycle.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from tmm_cli.grading.task import Task
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, unknown_name
 from tmm_cli.quantities import ANGLE, Dimension
+from tmm_cli.roots import greatest
 from tmm_cli.vectors import Real
 
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
@@ -48,26 +49,31 @@ class Shown:
         if self.whole:
             return {PRESSURE: _("largest pressure angle")}.get(self.name, self.name)
         if self.ranges:
-            return _("range of {quantity} at the positions").format(quantity=self.name)
-        return _("largest {quantity} at the positions").format(quantity=self.name)
+            return _("range of {quantity} over the cycle").format(quantity=self.name)
+        return _("largest {quantity} over the cycle").format(quantity=self.name)
 
     @property
     def ranges(self) -> bool:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
     def at_positions(self, solved: Solved) -> Any:
-        """What a tape is to give of it at positions, see `one`."""
+        """What a tape is to give of it at positions, see `over_cycle`."""
         assert self.quantity is not None
         found = self.quantity.read(solved)
         return found if self.ranges else np.abs(found)
 
-    def one(self, values: Real) -> Real:
-        """One number of each variant from those at positions, (variants, positions); of none that is there nan."""
+    def over_cycle(self, curves: Callable[[Real, Real], Real], q: Real, values: Real) -> Real:
+        """One number of each variant, (variants,): the largest value over the cycle, or the range; nan of none.
+
+        curves, q, values: see `roots.greatest`.
+        """
         if not self.ranges:
-            return np.asarray(np.fmax.reduce(values, axis=1))
+            return greatest(curves, q, values)
         assert self.quantity is not None
-        followed = np.unwrap(values, axis=1) if self.quantity.against == "angle" else values
-        return np.asarray(np.fmax.reduce(followed, axis=1) - np.fmin.reduce(followed, axis=1))
+        turns = self.quantity.against == "angle"
+        values = np.unwrap(values, axis=1) if turns else values
+        high = greatest(curves, q, values, turns=turns)
+        return high + greatest(lambda rows, at: -curves(rows, at), q, -values, turns=turns)
 
 
 def known(task: Task) -> Mapping[str, Shown]:

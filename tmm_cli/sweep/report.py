@@ -83,7 +83,7 @@ def _why(text: str, state: int) -> str:
 
 
 def _kind(one: Any) -> str:
-    return "of the mechanism" if one.whole else "range at the positions" if one.ranges else "largest at the positions"
+    return "of the mechanism" if one.whole else "range over the cycle" if one.ranges else "largest over the cycle"
 
 
 def _unit(dimension: Any) -> str:

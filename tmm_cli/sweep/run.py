@@ -18,6 +18,7 @@ from tmm_cli.sweep.grid import MOST, Axis, grid
 from tmm_cli.sweep.looking import SCAN
 from tmm_cli.sweep.mechanisms import Found, Mechanisms
 from tmm_cli.sweep.record import STATES, Mark, Swept
+from tmm_cli.sweep.taped import CYCLE
 from tmm_cli.vectors import Real
 
 CHUNK, FEW = 20_000, 20  # points of a job: by the tape, one by one
@@ -54,17 +55,19 @@ class Borders:
         return at(low), at(high), beyond.state, beyond.why
 
 
-def refuse_points(problem: Problem, points: int, *, taped: bool, cores: int | None) -> None:
-    """Refuse what would take longer than a minute on every core. cores: None of a cluster. Raises ProblemError."""
-    request = problem.request
-    refuse_work(problem.linkage, request)
-    positions = len(request.places) or request.count
+def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, cores: int | None) -> None:
+    """Refuse what would take longer than a minute on every core. Raises ProblemError.
+
+    peaks: something is shown whose peak over the cycle is searched for. cores: None of a cluster.
+    """
+    refuse_work(problem.linkage, problem.request)
+    positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
     each = parts(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
     most = MOST if cores is None else min(MOST, int(BUDGET * cores / each))
     if points > most:
         raise ProblemError(
             _("these are too many mechanisms"), file="--over",
-            found=_("{points} mechanisms of {positions} positions").format(points=points, positions=positions),
+            found=_("{points} mechanisms").format(points=points),
             allowed=_("at most {most}").format(most=most),
         )  # fmt: skip
 

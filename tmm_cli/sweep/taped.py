@@ -27,11 +27,11 @@ from tmm_cli.tape import Program, record
 from tmm_cli.tape.traced_number import TracedNumber
 from tmm_cli.tolerances import END_OF_SLOT
 from tmm_cli.variants.batch import CHECKS, SURE, solved
-from tmm_cli.variants.family import places_of
 from tmm_cli.variants.stack import each, stands
 from tmm_cli.variants.variant import Make, NoTapeError, Variant, stood_for
 from tmm_cli.vectors import Real
 
+CYCLE = 180  # steps of a turn of the driver between which peaks of what has a value a position are searched for
 FINELY = 1440  # places in a turn of the driver, as the ordinary stages look at
 
 
@@ -81,6 +81,7 @@ class Turning:
         )  # fmt: skip
         self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
         self._parts: dict[tuple[str, ...], Program] = {}
+        self._some: dict[tuple[str, ...], Program] = {}
 
     def part(self, *names: str) -> Program:
         """Some of the curves at places of each variant; made once."""
@@ -147,14 +148,28 @@ class Turning:
             apart |= np.broadcast_to(np.asarray(truth), (len(columns), 1))[:, 0]
         return replace(made, linkage=stands(made.linkage), request=stands(made.request)), apart
 
-    def at_positions(self, columns: Real, strokes: Strokes | None, varied: Variant) -> tuple[Real, Mapping[str, Real]]:
-        """Places of the driver, and what is wanted there, (variants, positions). Raises NoTapeError."""
-        q = places_of(varied.request, strokes, self.linkage.driver.sense, len(columns))
-        if q is None:
-            raise NoTapeError
+    def over_cycle(
+        self, columns: Real, strokes: Strokes | None
+    ) -> tuple[Real, Callable[[Real, Real, Sequence[str]], Mapping[str, Real]]]:
+        """Places of the driver over a cycle, (places,), and what is wanted at places of some variants.
+
+        The function takes numbers of variants (k,), places of each (k, n) and names.
+        """
         one = strokes.strokes[0] if strokes is not None and strokes.strokes else Stroke(0.0, 0.0, 0.0, 0.0, True)
-        numbers = [x + np.zeros((len(columns), 1)) for x in (one.start, one.length, one.low, one.run, q[:, :1])]
-        return q, self.forces(*each(columns), *numbers, q)
+        numbers = [x + np.zeros((len(columns), 1)) for x in (one.start, one.length, one.low, one.run)]
+        start, sense = self.linkage.sketch.at, self.linkage.driver.sense
+
+        def at(rows: Real, q: Real, names: Sequence[str]) -> Mapping[str, Real]:
+            program = self._wanted(*names)
+            return program(*each(columns[rows]), *(x[rows] for x in numbers), q[:, :1], q)
+
+        return start + sense * np.linspace(0, 2 * np.pi, CYCLE + 1), at
+
+    def _wanted(self, *names: str) -> Program:
+        """Some of what is wanted at positions; made once."""
+        if names not in self._some:
+            self._some[names] = self.forces.only(*names)
+        return self._some[names]
 
 
 @dataclass(frozen=True)
