@@ -8,6 +8,7 @@ import zipfile
 import pytest
 import xlsxwriter
 
+from tmm_cli.grading import cells
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.problem.errors import ProblemError
 
@@ -37,10 +38,10 @@ def test_a_single_column_keeps_its_decimal_commas(tmp_path):
     assert rows_of(path) == [["OA"], ["80,5"]]
 
 
-def book(path, cells):
+def book(path, content):
     with xlsxwriter.Workbook(path) as written:
         sheet = written.add_worksheet()
-        for place, value, *kept in cells:
+        for place, value, *kept in content:
             sheet.write(place, value, None, *kept)
     return path
 
@@ -91,7 +92,7 @@ SHEET = b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006
 
 
 @pytest.mark.parametrize(
-    "cells",
+    "row",
     [
         b"<c><v>1</v></c>",  # its place is that of the one before and one more: no bound
         b"""<c a=' r="A1"'><v>1</v></c>""",
@@ -99,13 +100,53 @@ SHEET = b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006
         b'<x:c xmlns:x="a"><v>1</v></x:c>',
     ],
 )
-def test_cells_that_do_not_say_where_they_stand_are_not_counted_through(cells, tmp_path):
+def test_cells_that_do_not_say_where_they_stand_are_not_counted_through(row, tmp_path):
     told = "a cell does not say where it stands\n  allowed: a file that a spreadsheet has saved"
-    assert refusal(rewritten(tmp_path / "t.xlsx", b"<row>" + cells + b"</row>")) == told
+    assert refusal(rewritten(tmp_path / "t.xlsx", b"<row>" + row + b"</row>")) == told
 
 
 def test_a_place_may_stand_behind_other_attributes(tmp_path):
     assert rows_of(rewritten(tmp_path / "t.xlsx", b"<row r='2'><c s = '0' r = 'B2'><v>1.5</v></c></row>")) == [["1.5"]]
+
+
+SHARED = '<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main" {count}><si><t>OA</t></si></sst>'
+
+
+@pytest.mark.parametrize(
+    "count", ['count="1" uniqueCount="4294967295"', "uniqueCount='200'", 'count="999999999999999"']
+)
+def test_more_texts_than_the_file_holds_are_refused_before_it_is_read(count, tmp_path):
+    path = tmp_path / "t.xlsx"
+    with zipfile.ZipFile(book(path, [("A1", "OA")])) as sound:
+        parts = {name: sound.read(name) for name in sound.namelist()}
+    path = packed(path, {**parts, "xl/sharedStrings.xml": SHARED.format(count=count)})
+    assert refusal(path).startswith("it announces more than it holds\n  found:   '")
+
+
+@pytest.mark.parametrize("ref", ["A1:B2000000", "A1:ZZZ3", "A0", "A1:B99999999999"])
+def test_a_range_that_no_sheet_has_is_refused(ref, tmp_path):
+    sheet = SHEET.replace(b"<sheetData>", f'<dimension ref="{ref}"/><sheetData>'.encode())
+    path = rewritten(tmp_path / "t.xlsx", b"<row r='1'><c r='A1'><v>1</v></c></row>")
+    with zipfile.ZipFile(path) as sound:
+        parts = {name: sound.read(name) for name in sound.namelist()}
+    parts["xl/worksheets/sheet1.xml"] = sheet.replace(b"ROWS", b"<row r='1'><c r='A1'><v>1</v></c></row>")
+    assert refusal(packed(path, parts)) == (
+        f"it announces more than it holds\n  found:   '{ref}'\n  allowed: a file that a spreadsheet has saved"
+    )
+
+
+def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one_is_read(tmp_path, capfd, monkeypatch):
+    path = tmp_path / "t.xlsx"
+    with zipfile.ZipFile(book(path, [("A1", "OA")])) as sound:
+        parts = {name: sound.read(name) for name in sound.namelist()}
+    many = SHARED.format(count='uniqueCount="4294967295"')  # memory for so many texts is reserved
+    path = packed(path, {**parts, "xl/sharedStrings.xml": many})
+    with monkeypatch.context() as blind:
+        blind.setattr(cells, "_inspect", lambda *unused: None)
+        told = "reading it takes too much memory, or ends the process that reads it\n  allowed: a table as CSV"
+        assert [refusal(path), refusal(path)] == [told, told]
+    assert rows_of(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
+    assert capfd.readouterr().err == ""
 
 
 def test_other_spreadsheets_than_xlsx_are_not_read_as_one(tmp_path):

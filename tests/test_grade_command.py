@@ -56,6 +56,8 @@ def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     assert "there is no variant of this student" in done.stdout and "there is no answer in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
+    again = graded(course, "--formats", "csv")
+    assert (again.returncode, again.stdout) == (1, done.stdout)
 
 
 def test_a_second_run_grades_what_has_changed_alone(course, monkeypatch):

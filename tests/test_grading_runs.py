@@ -13,7 +13,8 @@ import pytest
 from test_commands import ROOT
 
 from tmm_cli.grading import run, workers
-from tmm_cli.grading.record import Given, Submission, VariantTable
+from tmm_cli.grading.kept import keep, read_kept
+from tmm_cli.grading.record import Given, Mark, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.run import graded
 from tmm_cli.grading.task import read_task
 from tmm_cli.grading.workers import cluster, here, processes
@@ -57,6 +58,37 @@ def test_a_second_run_grades_only_what_has_changed(small, tmp_path):
     moved = replace(TABLE, rows=TABLE.rows | {"S7": ("92",)})
     second = graded(task(), moved, changed, counted(done), kept)
     assert done == [4, 4, 4, 2] and second[6] == first[6] and {m.state for m in second[5].marks} == {"missing"}
+
+
+FORMS = [
+    Mark(("H", None), "missing", 0.0, 1.0),
+    Mark(("H", None), "right", 1.0, 1.0, 0.0, 0.18, allowed=0.02),  # a real answer that is zero
+    Mark(
+        ("v of E", 3), "wrong", 0.0, 2.5, 1.5 - 2j, -1e-320 + 3e307j, True, 7.0, 0.5, 0.02, "mm/s", ("Why.",), ("sign",)
+    ),
+    Mark(("v of E", 0), "follows", 1 / 3, 1.0, complex("nan"), complex("inf"), text="Ω = \ud800 \n 1,5"),
+]
+
+
+@pytest.mark.parametrize("mark", FORMS, ids=lambda mark: mark.state)
+def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
+    marks = {
+        "key": StudentMarks("Ана", (mark, mark), ("there is no variant of this student",)),
+        "none": StudentMarks("", ()),
+    }
+    keep(tmp_path / ".graded", marks)
+    again = read_kept(tmp_path / ".graded", {"key", "none"})
+    assert repr(again) == repr(marks).replace("value=0.0", "value=0j").replace("right=0.18", "right=(0.18+0j)")
+
+
+@pytest.mark.parametrize("submission", [
+    Submission("nobody"), Submission("nobody", GIVEN), Submission("S1", problems=("broken",), unread=True),
+    Submission("S2", GIVEN | {("v of E", 99): Given(1.0)}), Submission("S3", {("H", None): Given(0.0)}),
+    Submission("S4", {("v of E", 3): Given(1.0, 2.0, "polar", "m/s", "deg", "1 at 2")}),
+], ids=lambda one: one.student)  # fmt: skip
+def test_marks_of_every_kind_of_submission_are_the_same_in_a_second_run(submission, tmp_path):
+    first, again = (graded(task(), TABLE, [submission], here, tmp_path / ".graded") for __ in range(2))
+    assert repr(again) == repr(first) == repr(graded(task(), TABLE, [submission]))
 
 
 def test_a_task_that_has_changed_is_graded_anew(tmp_path):

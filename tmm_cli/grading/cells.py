@@ -15,9 +15,11 @@ from datetime import date, datetime, time, timedelta
 from pathlib import Path
 from typing import Any
 
+from tmm_cli.grading.guarded import GuardedProcess, ProcessEndedError
 from tmm_cli.language import N_, _
 from tmm_cli.problem.errors import ProblemError, quote
 
+READER = GuardedProcess(memory=2 << 30)
 LARGEST = 2_000_000  # bytes of a file
 MOST_ROWS = 10_000
 MOST_COLUMNS = 500
@@ -32,6 +34,12 @@ PLACE = re.compile(  # a cell that says where it stands
 )
 TEXT = re.compile(rb"</(?:[\w.-]+:)?si\s*>")
 CELL = re.compile(rb"<" + _NAME + rb"c[\s/>]")
+COUNTING = re.compile(rb"<[^<>]*ount[^<>]*>")
+COUNT = re.compile(rb"""\s(uniqueC|c)ount\s*=\s*["'](\d+)["']""")  # a reader may reserve memory for so many
+DIMENSION = re.compile(rb"<" + _NAME + rb"""dimension\s[^<>]*?ref\s*=\s*["']([^"'<>]*)["']""")
+CORNER = re.compile(rb"\$?([A-Za-z]{1,3})\$?([1-9]\d{0,6})")
+SHEET = 1_048_576, 16_384  # rows and columns of a sheet, at most
+SHORTEST_TEXT = 5  # bytes: <si/>
 OTHERS = {"content.xml", "xl/workbook.bin"}  # in what is not XLSX, and might be read as a table all the same
 REFUSED = {  # parts of an XLSX
     "vbaproject": N_("it has macros: save it as .xlsx without them"),
@@ -113,24 +121,37 @@ def decoded(data: bytes) -> str:
 
 
 def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
+    """Rows of the first sheet, read in a process of its own: what ends that process is a refusal here."""
     _inspect(data, largest, most)
     try:
-        from python_calamine import CalamineError, CalamineWorkbook
+        return READER.call(_read_sheet, data)
     except ImportError:
         raise ProblemError(
             _("XLSX is read by python-calamine, which is not installed"),
             allowed=_("CSV; or: pip install 'tmm-cli[excel]'"),
         ) from None
+    except (MemoryError, ProcessEndedError):
+        raise ProblemError(
+            _("reading it takes too much memory, or ends the process that reads it"), allowed=_("a table as CSV")
+        ) from None
+    except ValueError as error:
+        raise _damaged(error) from None
+
+
+def _read_sheet(data: bytes) -> list[list[str]]:
+    """Raises ValueError, ImportError, MemoryError."""
+    from python_calamine import CalamineError, CalamineWorkbook
+
     try:
         with CalamineWorkbook.from_filelike(io.BytesIO(data)) as book:
             sheet = book.get_sheet_by_index(0)
             return [[_text(cell) for cell in row] for row in sheet.to_python()]
     except (CalamineError, OSError, ValueError, IndexError) as error:
-        raise _damaged(error) from None
+        raise ValueError(str(error)) from None
     except BaseException as error:
         if type(error).__name__ != "PanicException":  # of Rust: a file that it did not think of
             raise
-        raise _damaged(error) from None
+        raise ValueError(str(error)) from None
 
 
 def _damaged(error: BaseException) -> ProblemError:
@@ -150,9 +171,10 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
                     raise ProblemError(_(why))
             if "xl/workbook.xml" not in names or names & OTHERS:
                 raise ProblemError(_("this is no XLSX"), allowed=_("a table as CSV or XLSX"))
-            cells, longest = 0, 0
+            cells, longest, whole = 0, 0, sum(part.file_size for part in parts)
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
+                _refuse_announced(content, whole)
                 here = len(CELL.findall(content))
                 if b"sheetData" in content:
                     _refuse_far(content, here, most)
@@ -165,16 +187,39 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
         raise _damaged(error) from None
 
 
+def _refuse_announced(content: bytes, whole: int) -> None:
+    """Refuse counts and ranges that the file cannot hold. whole: bytes of all its parts. Raises ProblemError."""
+    for kind, digits in (count for tag in COUNTING.findall(content) for count in COUNT.findall(tag)):
+        most = len(content) // SHORTEST_TEXT if kind == b"uniqueC" else whole
+        if len(digits) > 12 or int(digits) > most:
+            raise ProblemError(
+                _("it announces more than it holds"), found=quote(digits[:20].decode()),
+                allowed=_("a file that a spreadsheet has saved"),
+            )  # fmt: skip
+    for cells in DIMENSION.findall(content):
+        for corner in cells.split(b":"):
+            match = CORNER.fullmatch(corner)
+            if match is None or int(match[2]) > SHEET[0] or _column(match[1]) > SHEET[1]:
+                raise ProblemError(
+                    _("it announces more than it holds"), found=quote(cells[:40].decode(errors="replace")),
+                    allowed=_("a file that a spreadsheet has saved"),
+                )  # fmt: skip
+
+
+def _column(letters: bytes) -> int:
+    column = 0
+    for letter in letters[:8].upper():
+        column = column * 26 + letter - 64
+    return column
+
+
 def _refuse_far(content: bytes, cells: int, most: int) -> None:
     """A cell far out makes a table of all the empty ones before it. cells: how many there are. Raises ProblemError."""
     places = PLACE.findall(content)
     if len(places) != cells:
         raise ProblemError(_("a cell does not say where it stands"), allowed=_("a file that a spreadsheet has saved"))
     for letters, digits in set(places):
-        column = 0
-        for letter in letters[:8].upper():
-            column = column * 26 + letter - 64
-        if len(digits) > 8 or int(digits) > most or column > MOST_COLUMNS:
+        if len(digits) > 8 or int(digits) > most or _column(letters) > MOST_COLUMNS:
             raise ProblemError(
                 _("a cell is too far out"), found=quote((letters + digits).decode()),
                 allowed=_("{rows} rows, {columns} columns").format(rows=most, columns=MOST_COLUMNS),

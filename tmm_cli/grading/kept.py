@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import fields
 from functools import cache
 from hashlib import blake2b
@@ -20,6 +21,7 @@ from tmm_cli.grading.task import Task
 from tmm_cli.language import language
 
 NAMES = tuple(field.name for field in fields(Mark))
+VECTORS = ("value", "right")
 
 
 def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
@@ -41,13 +43,17 @@ def _digest(*parts: object) -> str:
 
 def _line(key: str, marks: StudentMarks) -> str:
     """A line of the file, without its end."""
-    rows = [[getattr(mark, name) for name in NAMES] for mark in marks.marks]
-    text = json.dumps([marks.student, rows, marks.problems], default=_parts)
+    rows = [[_plain(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
+    text = json.dumps([marks.student, rows, marks.problems])
     return f"{key} {_digest(text)} {text}"
 
 
-def _parts(number: complex) -> tuple[float, float]:
-    return number.real, number.imag
+def _plain(value: Any, name: str) -> Any:
+    """A value of a mark as JSON has it: of a vector, which may be a real number, both components."""
+    if name not in VECTORS or value is None:
+        return value
+    number = complex(value)
+    return [number.real, number.imag]
 
 
 def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
@@ -59,7 +65,8 @@ def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
                 key, _, rest = line.rstrip("\n").partition(" ")
                 digest, _, text = rest.partition(" ")
                 if key in keys and digest == _digest(text):
-                    found[key] = _marks(text)
+                    with suppress(TypeError, ValueError, KeyError):  # of another form: graded again
+                        found[key] = _marks(text)
     except OSError:
         pass  # there is none yet, or none that can be read
     return found
@@ -71,11 +78,8 @@ def _marks(text: str) -> StudentMarks:
 
 
 def _mark(row: dict[str, Any]) -> Mark:
-    value = row["value"]
-    return Mark(**row | {
-        "key": tuple(row["key"]), "value": value and complex(*value), "right": complex(*row["right"]),
-        "reasons": tuple(row["reasons"]), "mistakes": tuple(row["mistakes"]),
-    })  # fmt: skip
+    vectors = {name: None if row[name] is None else complex(*row[name]) for name in VECTORS}
+    return Mark(**row | vectors | {name: tuple(row[name]) for name in ("key", "reasons", "mistakes")})
 
 
 def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:

@@ -67,7 +67,7 @@ class Mark:
     points: float
     of: float
     value: complex | None = None
-    right: complex = 0.0
+    right: complex = 0j
     size: bool = False
     scale: float = 1.0
     error: float = 0.0
