@@ -12,6 +12,7 @@ from tmm_cli.vectors import Vector, cross, dot
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
 OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
 SHORTEST = 0.4  # mm: smaller sizes are not drawn
+WIDEST = 45.0  # mm: largest radius of the arc of an angle
 INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
 LETTERED = 6.0  # mm about a lettered place: its letter needs room there
 AT_HEAD = 0.25  # of the price of what a text covers: of what is near a head
@@ -117,8 +118,10 @@ def _angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, na
         sheet.line([vertex + corner * way for way in (ways[0], sum(ways), ways[1])], DARK, 0.8, z=3.2)
         return
     turn = float(np.angle(ways[1] / ways[0]))
+    if abs(turn) * WIDEST < SHORTEST:
+        return
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))
-    radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), 45.0))
+    radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), WIDEST))
     angles = float(np.angle(ways[0])) + np.linspace(0, turn, 30)
     places = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
     sheet.line(places, DARK, 0.7, z=2.6)

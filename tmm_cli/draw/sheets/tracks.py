@@ -49,7 +49,7 @@ def extremes(results: Results) -> list[Extreme]:
         last = strokes.strokes[-1]
         if len(ends) == 1:
             ends.append(last.start + results.linkage.driver.sense * last.length)
-    elif travels:
+    elif travels and travels[0].high - travels[0].low > SAME_PLACE:
         cycle, ends = np.inf, [travels[0].low_at, travels[0].high_at]
     else:
         return []

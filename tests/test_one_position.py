@@ -1,0 +1,58 @@
+"""Every command on every problem of the bank when a single position is requested."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from bank import EVERY
+from models import DATA, PROBLEMS
+from test_commands import tmm
+
+from tmm_cli.problem.reader import read_text
+
+SAMPLE = ("boom-lift", "crank-rocker")  # a cylinder, and a crank that rotates fully
+REFUSED = {"lifting-boom": "how far the driver goes is wanted"}  # a single run has no single position
+COMMANDS = (
+    ("run", "--digits", "--tables", "csv-local"), ("note",), ("sheets",), ("sheets", "--positions", "all"),
+    ("kinematics", "--extremes", "--centres"), ("kinematics", "--assemblies"), ("forces", "--extremes", "--hodographs"),
+    ("structure", "--drawings"), ("dynamics",), ("explain",),
+)  # fmt: skip
+
+
+def with_one_position(name):
+    """The problem with its first position only; what it shows may need others."""
+    data = read_text((PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8"), name).data
+    data.pop("shows", None)
+    positions = data.get("positions") if isinstance(data.get("positions"), dict) else {}
+    kept = {key: value for key, value in positions.items() if key not in ("count", "at", "detail")}
+    return json.dumps(data | {"positions": {**kept, "count": 1}}, ensure_ascii=False)  # JSON is YAML
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in SAMPLE else pytest.param(name, marks=pytest.mark.bank) for name in EVERY]
+)
+def test_every_command_works_on_one_position(name, tmp_path):
+    file = tmp_path / "one.yaml"
+    file.write_text(with_one_position(name), encoding="utf-8")
+    for command, *options in COMMANDS:
+        out = () if command == "explain" else ("-o", tmp_path / "out")
+        done = tmm(command, file, *options, *out, cwd=tmp_path)
+        if name in REFUSED:
+            assert done.returncode == 2 and REFUSED[name] in done.stderr
+        elif done.returncode == 2:  # nothing to do for this command in this problem, said in its words
+            assert re.search(NOTHING_TO_DO.get(command, "$^"), done.stderr), done.stderr
+
+
+NOTHING_TO_DO = {"dynamics": "dynamics: nothing is asked of the law of motion or of balancing"}
+
+
+@pytest.mark.parametrize("command", ["run", "note", "sheets"])
+def test_a_rocker_in_one_position_has_no_swing_on_its_sheet(command, tmp_path):
+    """The output of a four-bar whose crank cannot rotate fully: its travel over one position is nothing."""
+    done = tmm(command, DATA / "one-position.yaml", "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    if command == "run":
+        drawing = (tmp_path / "one-position" / "mechanism.svg").read_text(encoding="utf-8")
+        assert "ψ =" not in drawing and "ends of the output" not in drawing
