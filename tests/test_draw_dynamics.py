@@ -13,8 +13,11 @@ from bank import drawn as sheets_of
 from bank import problem, solved
 from covering import covered
 from formulas import formulas
+from models import DATA
+from scipy.integrate import cumulative_trapezoid
+from test_commands import tmm
 
-from tmm_cli import solve
+from tmm_cli import load, solve
 from tmm_cli.draw.layout.contents import CONTENTS, chosen
 from tmm_cli.draw.paper.drawing import Circle, Line, Text
 from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION
@@ -179,3 +182,26 @@ def test_the_data_of_the_motor_are_told():
 @pytest.mark.parametrize(("name", "told"), [("shaper", False), ("shaper-motor", True)])
 def test_what_balances_is_told_from_what_drives_where_there_is_a_flywheel(name, told):
     assert ("The flywheel is not a link" in html(note(solved(name), drawn=False)).decode()) == told
+
+
+def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_path):
+    """With J = 0 the energy-mass diagram is a segment of the axis of energy, as long as the work of all moments varies.
+
+    The triangles have the peaks 2000 and 1500 N*m and each lasts half a turn, so the driving moment is 875 N*m; the
+    flywheel is the variation of work divided by delta omega^2.
+    """
+    results = solve(load(DATA / "two-triangles.yaml"))
+    phi = np.radians([0, 80, 180, 260, 360])
+    torque = np.array([0.0, 2000, 0, 1500, 0])
+    places = np.linspace(0, 2 * np.pi, 720_001)
+    work = cumulative_trapezoid(np.interp(places, phi, torque) - 875.0, places, initial=0.0)  # 875 = (2000 + 1500) / 4
+    sheet = dict(law_of_motion(results))["energy-mass"]
+    ends = [curve(sheet, colour, "--")[0] for colour in (LOAD, INERTIA)]
+    mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
+    assert abs(ends[0] - ends[1]) * mu == pytest.approx(np.ptp(work), rel=1e-6)
+    assert (ends[0] - ends[1]).real == 0
+    inertia = np.ptp(work) / (0.015 * (100 * np.pi / 30) ** 2)
+    assert results.steady.steady.law.flywheel == pytest.approx(inertia, rel=1e-6)
+    assert f"{inertia:.4g} kg·m²" in written(sheet)
+    for command in ("run", "note", "sheets"):
+        assert tmm(command, DATA / "two-triangles.yaml", "-o", tmp_path).returncode == 0

@@ -24,6 +24,7 @@ from tmm_cli.vectors import Real
 if TYPE_CHECKING:
     from tmm_cli.analysis.running import Running
     from tmm_cli.dynamics.flywheel import Tangent
+    from tmm_cli.dynamics.steady import Steady
 
 FAR = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet
 NARROW = 0.1  # of the largest inertia: the diagram is taken for so wide at least
@@ -64,7 +65,7 @@ def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
 
     whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
     start, longest = room(sheet)
-    axis = across(*_ends(whole.xs), start, longest)
+    axis = across(*_ends(whole.xs, _leaning(steady) / factor), start, longest)
     words = with_unit(_("reduced inertia of the links J"), MOMENT_OF_INERTIA, units)
     below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
     names = _("tangent of the largest speed"), _("tangent of the least speed")
@@ -94,13 +95,22 @@ def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
     return sheet.finish()
 
 
-def _ends(inertia: Any) -> tuple[float, float]:
-    """Of the axis: it begins at zero unless that is far off."""
+def _ends(inertia: Any, massless: float) -> tuple[float, float]:
+    """Of the axis: it begins at zero unless that is far off. massless: its end where all links are without inertia."""
     low, high = float(np.min(inertia)), float(np.max(inertia))
+    if high <= 0.0:
+        return 0.0, massless
     wide = max(high - low, NARROW * high)
     step = round_up(wide / 4)
     begins = step * math.floor((low - wide) / step) if low > FAR * wide else 0.0
     return begins, high + BEYOND * (high - begins)
+
+
+def _leaning(steady: Steady) -> float:
+    """The inertia (kg*m^2) over which a tangent rises as much as the work changes in the cycle; 1 where it does not."""
+    fastest, slowest = steady.tangents
+    rise = abs(fastest.offset - slowest.offset)
+    return rise / fastest.slope if rise > 0.0 else 1.0
 
 
 def _line(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> Curve:
