@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from bank import moved
 from higher import PROBLEMS
+from models import DATA
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
 from tmm_cli.draw.paper.axes import across, decades, equal, round_up, upwards
-from tmm_cli.draw.paper.chart import SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
+from tmm_cli.draw.paper.chart import LOWEST, SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
 from tmm_cli.draw.paper.drawing import POINT, Circle, Line, Text
 from tmm_cli.draw.paper.fonts import corners
+from tmm_cli.draw.paper.picture import Space, within
 from tmm_cli.draw.paper.sheet import Sheet
 from tmm_cli.draw.sheets.diagrams import LINES, diagrams
 from tmm_cli.plans.record import LANDSCAPE
@@ -165,6 +167,29 @@ def test_a_panel_of_many_curves_has_a_legend_of_several_rows_above_it():
     assert all(m.at.imag > panel.y.end and corners(m)[1].real < LANDSCAPE[0] for m in named)
     lines = [m for m in sheet.finish().marks if isinstance(m, Line)]
     assert sum(m.places[0].imag > panel.y.end and abs(m.places[-1] - m.places[0]) == SAMPLE for m in lines) == 9
+
+
+def test_panels_that_a_sheet_is_too_low_for_go_to_further_sheets():
+    """A radial engine of seven cylinders has 22 reactions; the field of a note is half as high as a page."""
+    results = solve(load(DATA / "radial-seven.yaml"))
+    with within(Space(170, (165, 235), written=False)):
+        sheets = dict(diagrams(results))
+    named = [sheet.texts() for stem, sheet in sheets.items() if re.fullmatch(r"reactions(-\d)?", stem)]
+    entries = [text for texts in named for text in texts if re.fullmatch(r"R.*\(.*\)", text)]
+    assert len(entries) == len(set(entries)) == len(results.structure.pairs) == 22
+    for stem, sheet in sheets.items():
+        low = min(mark.places[0].imag for mark in curves(sheet)), stem
+        assert low > (0, "")
+
+
+def test_a_legend_that_leaves_no_height_for_its_panel_is_cut():
+    sheet = Sheet("title", "caption", paper=LANDSCAPE)
+    x = np.linspace(0, 10, 5)
+    every = [Curve(x, k * x, f"a curve with a long name, number {k}") for k in range(200)]
+    over = Across(across(0, 10, *room(sheet)), "time, s")
+    (panel,) = chart(sheet, [Plot("value, N", every)], over)
+    assert panel.y.length >= LOWEST
+    assert 50 < sum(isinstance(m, Text) and m.text.startswith("a curve") for m in sheet.marks) < 200
 
 
 def test_values_that_there_are_not_interrupt_a_curve():

@@ -160,7 +160,7 @@ class Subject:
         sentence of the second drawing, and of those after it.
         """
         for stem, drawing in self.drawings(name, k).items():
-            if only and stem != only and not stem.startswith(f"{only}-sheet-"):
+            if only and not re.fullmatch(rf"{re.escape(only)}(-sheet)?(-\d+)?", stem):
                 continue
             yield said(sentence, figure=Ref(stem))
             yield Figure(caption or by_hand(getattr(drawing, "title", "")), drawing, stem)

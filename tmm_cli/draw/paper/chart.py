@@ -26,6 +26,7 @@ SAMPLE = 8.0  # mm of a curve in a legend
 APART = 5.0  # mm between entries of a legend
 EVERY = (11.0, 6.0)  # mm between numbers on an axis, across and upwards
 DOT = 0.55  # mm: radius
+LOWEST = 12.0  # mm: least height of a panel
 KEPT = 8  # of so many places of a curve one keeps labels off it
 
 
@@ -87,14 +88,38 @@ def room(sheet: Sheet) -> tuple[float, float]:
     return start, sheet.ground.high.real - RIGHT - start
 
 
+def count_fitting(sheet: Sheet, plots: Sequence[Plot], over: Across) -> int:
+    """Return how many of the panels, from the first one on, fit on the sheet with a height of at least LOWEST mm."""
+    needed = np.cumsum([ROW * len(_head(plot, over.axis.length)) for plot in plots])
+    free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
+    return max(1, int(np.count_nonzero(needed <= free)))
+
+
+def _height_for_panels(sheet: Sheet, over: Across, count: int) -> float:
+    """The height (mm) that so many panels of LOWEST mm leave for their heads."""
+    beside = (2 + bool(over.spans)) * ROW
+    return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_between(over) + LOWEST))
+
+
+def _between(over: Across) -> float:
+    """The height (mm) between a panel and the head of the next one."""
+    return 0.3 * ROW + (ROW if over.numbers else 0.6 * ROW)
+
+
 def chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool = False) -> list[Panel]:
-    """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes."""
+    """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes.
+
+    Entries of legends for which the sheet is too low are left out.
+    """
     start, most = room(sheet)
     x = replace(over.axis, start=start + (most - over.axis.length) / 2)
     top = sheet.ground.high.imag - (ROW if over.spans else 0.0)
-    under = ROW if over.numbers else 0.6 * ROW
+    under = _between(over) - 0.3 * ROW
     low = sheet.ground.low.imag + 2 * ROW
     heads = [_head(plot, x.length) for plot in plots]
+    allowed = _height_for_panels(sheet, over, len(plots)) / ROW
+    if sum(map(len, heads)) > allowed:
+        heads = [rows[: max(1, int(allowed / len(plots)))] for rows in heads]
     free = top - low - sum(ROW * (len(rows) + 0.3) + under for rows in heads)
     panels = []
     for plot, rows in zip(plots, heads, strict=True):

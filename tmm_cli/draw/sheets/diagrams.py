@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli import quantities
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.draw.paper.axes import Axis, across
-from tmm_cli.draw.paper.chart import Across, Curve, Jump, Plot, chart, room
+from tmm_cli.draw.paper.chart import Across, Curve, Jump, Plot, chart, count_fitting, room
 from tmm_cli.draw.paper.drawing import Drawing, Style
 from tmm_cli.draw.paper.script import Words
 from tmm_cli.draw.paper.sheet import (
@@ -75,9 +75,7 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
         (pressure, "pressure", over_cycle.pressure(results, motion)),
         (balancing, "shaking", over_cycle.shaking(results, places)),
     ):
-        for start in range(0, len(every), MOST_PANELS):
-            name = safe(stem) + (f"-{start // MOST_PANELS + 1}" if start else "")
-            yield name, over_turn(results, caption, motion.q, borders, every[start : start + MOST_PANELS])
+        yield from over_turn(results, safe(stem), caption, motion.q, borders, every)
 
 
 def closely(results: Results) -> tuple[Real, list[int]]:
@@ -129,8 +127,24 @@ def _turned(results: Results, q: Real) -> Any:
     return np.degrees(results.linkage.driver.sense * (q - results.start))
 
 
-def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], every: Sequence[Quantities]) -> Drawing:
-    """Quantities at places q of the driver, which may jump after those of the numbers `borders`."""
+def over_turn(
+    results: Results, stem: str, caption: str, q: Real, borders: Sequence[int], every: Sequence[Quantities]
+) -> Iterable[tuple[str, Drawing]]:
+    """Draw quantities at driver coordinates q, which may jump after those numbered `borders`, on one or more sheets.
+
+    stem: name of the first sheet; the further ones are numbered from 2 on.
+    """
+    left, number = list(every), 1
+    while left:
+        count, drawing = _panels_over_turn(results, caption, q, borders, left[:MOST_PANELS])
+        yield (f"{stem}-{number}" if number > 1 else stem), drawing
+        left, number = left[count:], number + 1
+
+
+def _panels_over_turn(
+    results: Results, caption: str, q: Real, borders: Sequence[int], every: Sequence[Quantities]
+) -> tuple[int, Drawing]:
+    """A sheet with as many of the quantities as it has room for, and how many these are."""
     assert results.motion is not None
     sheet = Sheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
     xs, marks, end = _turned(results, q), _turned(results, results.motion.q), 360 * results.turns
@@ -147,8 +161,10 @@ def over_turn(results: Results, caption: str, q: Real, borders: Sequence[int], e
         for (start, length, __), name in zip(strokes, _named(results, strokes), strict=True)
     ]
     over = Across(axis, words, sorted(numbers), spans)
-    chart(sheet, [plotted(one, results.problem.units, xs, marks, borders) for one in every], over)
-    return sheet.finish()
+    plots = [plotted(one, results.problem.units, xs, marks, borders) for one in every]
+    count = count_fitting(sheet, plots, over)
+    chart(sheet, plots[:count], over)
+    return count, sheet.finish()
 
 
 def _across(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[Axis, Words]:

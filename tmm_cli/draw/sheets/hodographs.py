@@ -66,10 +66,8 @@ def reactions(results: Results) -> Iterable[tuple[str, Drawing]]:
             yield safe(f"hodograph-{pair}"), hodograph(results, title, [one], "R")
             yield from _turned(results, whole, here, cycle, borders)
             over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
-            yield (
-                safe(f"reaction-{pair}"),
-                over_turn(results, over, places, borders, _parts(cycle.force, here.force)),
-            )
+            parts = _parts(cycle.force, here.force)
+            yield from over_turn(results, safe(f"reaction-{pair}"), over, places, borders, parts)
 
 
 def _turned(

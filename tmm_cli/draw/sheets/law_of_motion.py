@@ -42,9 +42,9 @@ def over_cycle(results: Results) -> Iterable[tuple[str, Drawing]]:
     way, borders = _closely(running)
     q, here = running.start + running.sense * way, running.way(results.motion.q)
     moments = _("Reduced moments, works and energies; what drives is positive; dots: computed positions")
-    yield "law-moments", over_turn(results, moments, q, borders, _acting(results, running, way, here))
+    yield from over_turn(results, "law-moments", moments, q, borders, _acting(results, running, way, here))
     motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
-    yield "law-motion", over_turn(results, motion, q, borders, _moving(results, running, way, here))
+    yield from over_turn(results, "law-motion", motion, q, borders, _moving(results, running, way, here))
 
 
 def diagram(results: Results) -> Iterable[tuple[str, Drawing]]:

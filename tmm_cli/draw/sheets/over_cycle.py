@@ -28,7 +28,7 @@ from tmm_cli.quantities import (
 from tmm_cli.results.reports.cycle import output_motion
 from tmm_cli.tolerances import NO_FORCE
 
-MOST = 6  # courses in a panel of reactions
+MOST = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,11 @@ def balances(whole: Results, results: Results) -> list[Quantities]:
         found[turns].append(Course(name, values, dots))
     moments = _("balancing moments") if several else _("balancing moment")
     forces = _("balancing forces") if several else _("balancing force")
-    every = (Quantities(moments, MOMENT, found[True]), Quantities(forces, FORCE, found[False]))
-    return [quantities for quantities in every if quantities.courses]
+    return [
+        Quantities(words, dimension, courses[first : first + MOST])
+        for words, dimension, courses in ((moments, MOMENT, found[True]), (forces, FORCE, found[False]))
+        for first in range(0, len(courses), MOST)
+    ]
 
 
 def reactions(whole: Results, results: Results) -> list[Quantities]:
@@ -159,9 +162,9 @@ def pressure(results: Results, motion: Motion) -> list[Quantities]:
         courses = [
             Course(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
         ]  # fmt: skip
-        if courses:
+        words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
+        for first in range(0, len(courses), MOST):
             allowed = np.full(np.shape(motion.q), here[0].allowed)
             limit = Course(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
-            words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
-            found.append(Quantities(words, ANGLE, [*courses, limit], "θ"))
+            found.append(Quantities(words, ANGLE, [*courses[first : first + MOST], limit], "θ"))
     return found
