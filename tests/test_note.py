@@ -14,15 +14,17 @@ import numpy as np
 import pytest
 from bank import NAMES, moved, solved, written
 from formulas import formula, formulas, maths
-from models import PROBLEMS
+from models import DATA, PROBLEMS
+from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import spoken
 from tmm_cli.note import note
 from tmm_cli.note.blocks import Heading, Rows
-from tmm_cli.note.expression import Found, Sum
+from tmm_cli.note.expression import EXACT, MOST_FIGURES, Found, Function, Leaf, Sum, evaluate, largest_term
 from tmm_cli.note.formats.html import html
+from tmm_cli.plans.record import Symbol
 from tmm_cli.quantities import KINDS
 from tmm_cli.results.as_json import sections
 from tmm_cli.results.text import json_text
@@ -58,6 +60,28 @@ def test_a_formula_with_a_sign_changed_is_not_written():
         wrong = replace(found, expression=Sum(((-sign, first), *others)))
         with pytest.raises(ValueError, match="is not"):
             wrong.printed()
+
+
+G, ARM = Leaf(Symbol("G"), 1234.5678), Leaf(Symbol("h"), 0.31)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        G * Function("sin", Leaf(Symbol("φ"), np.pi - 1e-9, angle=True)) * ARM,
+        ARM * (G - Leaf(Symbol("F"), 1234.5678 * (1 - 1e-12))),
+        (G * ARM - G * ARM) / Leaf(Symbol("m"), 1e-3),
+        Function("sqrt", G * G - Leaf(Symbol("F"), 1234.5678) ** 2),
+        G * ARM - G * Leaf(Symbol("k"), 0.31 * (1 + 3e-9)),
+    ],
+)
+def test_what_cancels_but_for_rounding_is_printed_as_zero(expression):
+    """Wherever in the expression: with 8 figures put in, all digits of its value may be wrong."""
+    for result in (evaluate(expression, EXACT), 2.6e-14, 0.0):
+        figures, text = Found(Symbol("M"), expression, result).printed()
+        assert abs(float(text)) <= 1e-6 * largest_term(expression) and figures <= MOST_FIGURES
+    with pytest.raises(ValueError, match=r"M: .* is not 100\.0"):
+        Found(Symbol("M"), expression, 100.0).printed()
 
 
 def test_a_sign_changed_in_the_page_is_seen():
@@ -213,3 +237,10 @@ def test_a_large_group_is_told_in_the_table_as_in_the_drawings():
         block for block in written("press-class-iii").blocks if isinstance(block, Rows) and block.key == "groups"
     )
     assert ("5R1P",) in groups.rows[0], "not RRRRRP"
+
+
+def test_the_note_of_a_mechanism_of_fifteen_links_is_written(tmp_path):
+    done = tmm("note", DATA / "radial-seven.yaml", "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "radial-seven" / "note.html").read_text(encoding="utf-8")
+    assert all(f"II({k},{k + 1})" in text for k in range(2, 16, 2))

@@ -21,6 +21,7 @@ MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
 EXACT = 15  # of what is compared, not printed
 WHOLE = 7  # figures before the point that are written out
 NOTHING = 1e-9  # of the largest term: a sum that is less is zero
+CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in common with its numbers, is zero
 
 
 class Joined:
@@ -154,15 +155,18 @@ class Found:
         """
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
+        terms = math.degrees(terms) if self.angle else terms
         shown = 0.0 if abs(result) <= NOTHING * terms else result
+        cancelled = max(abs(result), abs(self.value(EXACT))) <= CANCELLED * terms
         if self.whole and self.value(MOST_FIGURES) == result:
             return MOST_FIGURES, str(round(result))
-        for own in range(self.most, 0, -1):
-            text = fixed(shown, own, terms)
-            unit = last_digit(text)
-            for figures in range(FIGURES, MOST_FIGURES + 1):
-                if abs(self.value(figures) - float(text)) <= unit:
-                    return figures, text
+        for value in (shown, 0.0) if cancelled else (shown,):
+            for own in range(self.most, 0, -1):
+                text = fixed(value, own, terms)
+                unit = last_digit(text)
+                for figures in range(FIGURES, MOST_FIGURES + 1):
+                    if abs(self.value(figures) - float(text)) <= unit:
+                        return figures, text
         raise ValueError(f"{self.name.name}: {self.value(MOST_FIGURES)} is not {result}")
 
 
@@ -216,15 +220,26 @@ def evaluate(expression: Expression, figures: int) -> float:
 
 
 def largest_term(expression: Expression) -> float:
-    """The largest of the terms that a sum or a fraction of one is made of; zero where nothing can cancel."""
+    """The size of an expression in which nothing cancels: every sum is its largest term, every sine and cosine 1.
+
+    Rounding of what is put in changes the value of the expression in proportion to this size.
+    """
     match expression:
         case Sum(terms):
-            return max((abs(evaluate(term, MOST_FIGURES)) for _, term in terms), default=0.0)
+            return max((largest_term(term) for _, term in terms), default=0.0)
+        case Product(factors):
+            return math.prod(largest_term(factor) for factor in factors)
         case Quotient(over, under):
-            size = abs(evaluate(under, MOST_FIGURES))
-            return largest_term(over) / size if size else 0.0
+            divisor = abs(evaluate(under, EXACT))
+            return largest_term(over) / divisor if divisor else 0.0
+        case Raised(base, over, under):
+            return float(largest_term(base) ** (over / under)) if over > 0 else abs(evaluate(expression, EXACT))
+        case Function("cos" | "sin"):
+            return 1.0
+        case Function(name, argument):
+            return FUNCTIONS[name](largest_term(argument))
         case _:
-            return 0.0
+            return abs(evaluate(expression, EXACT))
 
 
 def letters(expression: Expression) -> paper.Node:
