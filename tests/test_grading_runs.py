@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import replace
 
 import pytest
@@ -147,24 +148,70 @@ def test_no_scheduler_is_one_line(monkeypatch):
         graded(task(), TABLE, GROUP, cluster("tcp://127.0.0.1:9"))
 
 
+@pytest.mark.parametrize("address", ["tls://127.0.0.1:9", "nonsense", "http://", "tcp://", "x://y:z", ""])
+def test_an_address_that_is_none_is_one_line(address, monkeypatch, capfd):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "ANSWERS", 0.2)
+    with pytest.raises(ProblemError, match="no scheduler answers there"):
+        graded(task(), TABLE, GROUP, cluster(address))
+    assert capfd.readouterr().err == ""
+
+
+def started(tmp_path, kind, *options, path=ROOT):
+    """A process of Dask. path: where it finds the program."""
+    note = tmp_path / "scheduler.json"
+    call = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--no-dashboard", "--scheduler-file", str(note)]
+    return subprocess.Popen(
+        [*call, *options], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(path)}, stderr=subprocess.DEVNULL
+    )
+
+
+def address_of(tmp_path):
+    """The address of the scheduler that was started."""
+    note = tmp_path / "scheduler.json"
+    while True:
+        with suppress(FileNotFoundError, json.JSONDecodeError):  # not there, or not whole yet
+            return json.loads(note.read_text(encoding="utf-8"))["address"]
+        time.sleep(0.05)
+
+
+def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_line(tmp_path, monkeypatch):
+    pytest.importorskip("distributed")
+    processes_of_dask = [started(tmp_path, "scheduler", "--host", "127.0.0.1", "--port", "0")]
+    try:
+        address = address_of(tmp_path)
+        monkeypatch.setattr(workers, "ANSWERS", 0.5)
+        with pytest.raises(ProblemError, match="the scheduler has no workers") as refused:
+            graded(task(), TABLE, GROUP, cluster(address))
+        assert refused.value.allowed == f"dask worker {address}"
+        monkeypatch.setattr(workers, "ANSWERS", 60)
+        (tmp_path / "old" / "tmm_cli").mkdir(parents=True)
+        (tmp_path / "old" / "tmm_cli" / "__init__.py").write_text('__version__ = "0.0.1"\n', encoding="utf-8")
+        worker = started(tmp_path, "worker", "--no-nanny", "--nthreads", "1", path=tmp_path / "old")
+        processes_of_dask.append(worker)
+        with pytest.raises(ProblemError, match="a worker has another version of tmm than this one"):
+            graded(task(), TABLE, GROUP, cluster(address))
+    finally:
+        for process in processes_of_dask:
+            process.kill()
+            process.wait()
+
+
+def test_a_job_that_reaches_a_worker_with_another_program_is_not_done():
+    with pytest.raises(ProblemError, match="another version of tmm"):
+        workers._of_program("another", "en", lambda: 1)
+    assert workers._of_program(workers.program_digest(), "en", lambda: 1) == 1
+
+
 @pytest.fixture
 def dask(tmp_path):
     """The address of a scheduler, and its two workers as processes."""
     distributed = pytest.importorskip("distributed")
-    note = tmp_path / "scheduler.json"
-
-    def started(kind, *options):
-        call = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--no-dashboard", "--scheduler-file", str(note)]
-        return subprocess.Popen(
-            [*call, *options], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=subprocess.DEVNULL
-        )
-
-    workers = [started("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]  # they wait for the scheduler
-    every = [started("scheduler", "--host", "127.0.0.1", "--port", "0"), *workers]
+    # they wait for the scheduler
+    workers = [started(tmp_path, "worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
+    every = [started(tmp_path, "scheduler", "--host", "127.0.0.1", "--port", "0"), *workers]
     try:
-        while not note.exists():
-            time.sleep(0.05)
-        address = json.loads(note.read_text(encoding="utf-8"))["address"]
+        address = address_of(tmp_path)
         with distributed.Client(address, set_as_default=False) as client:
             client.wait_for_workers(2, timeout=60)
         yield address, workers

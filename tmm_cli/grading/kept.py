@@ -10,14 +10,13 @@ import json
 from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import fields
-from functools import cache
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
-import tmm_cli
 from tmm_cli.grading.record import Mark, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.task import Task
+from tmm_cli.grading.workers import program_digest
 from tmm_cli.language import language
 
 NAMES = tuple(field.name for field in fields(Mark))
@@ -27,14 +26,7 @@ VECTORS = ("value", "right")
 def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
     """A digest of all that the marks of a student come from: program, task, variant, what was handed in."""
     row = table.rows.get(submission.student)
-    return _digest(_program(), language(), task.tree.data, table.names, row, submission)
-
-
-@cache
-def _program() -> str:
-    """Other marks may come from another version of it."""
-    files = sorted(Path(tmm_cli.__file__).parent.rglob("*.[pm][yo]"))
-    return _digest(*(file.read_bytes() for file in files))
+    return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
 
 
 def _digest(*parts: object) -> str:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import logging
 import signal
+import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from functools import partial
+from functools import cache, partial
+from hashlib import blake2b
 from importlib import import_module
 from multiprocessing import get_context
+from pathlib import Path
 from typing import Any
 
+import tmm_cli
 from tmm_cli.language import _, language, speaking
 from tmm_cli.problem.errors import ProblemError, quote
 
 RETRIES = 3  # of what a cluster failed at
-ANSWERS = 10  # s within which a scheduler answers
+ANSWERS = 10  # s within which a scheduler answers, and has a worker
+POLL = 0.02  # s
 
 Job = Callable[[], Any]  # may be pickled
 Stopped = Callable[[], bool]
@@ -69,16 +75,86 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         distributed: Any = import_module("distributed")  # typed in part alone
     except ImportError:
         raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what fails is reported here
     try:
         client = distributed.Client(address, timeout=ANSWERS, set_as_default=False)
-    except (OSError, ValueError):
-        raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
+    except Exception as error:  # of an address: whatever distributed raises, and no scheduler
+        reason = str(error).strip().partition("\n")[0] if isinstance(error, TypeError | ValueError) else ""
+        message = _("no scheduler answers there: {reason}") if reason else _("no scheduler answers there")
+        raise ProblemError(message.format(reason=reason), found=quote(address), allowed="tcp://host:8786") from None
     with client:
+        _refuse_other_programs(client, address)
         futures = {
-            client.submit(speaking, language(), job, retries=RETRIES, pure=False): number
+            client.submit(_of_program, program_digest(), language(), job, retries=RETRIES, pure=False): number
             for number, job in enumerate(jobs)
         }
-        for future in distributed.as_completed(futures, loop=client.loop):
+        for future in _finished(client, distributed.as_completed(futures, loop=client.loop), len(futures), address):
             yield futures[future], future.result()
             if stopped():
                 return
+
+
+def _finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
+    """Futures as they finish. Raises ProblemError when no worker is left for so long that none will come."""
+    worked = time.monotonic()
+    while count:
+        batch = completed.next_batch(block=False)
+        count -= len(batch)
+        yield from batch
+        if batch or client.nthreads():
+            worked = time.monotonic()
+        elif time.monotonic() - worked > ANSWERS:
+            raise _no_workers(address)
+        if not batch:
+            time.sleep(POLL)
+
+
+def _refuse_other_programs(client: Any, address: str) -> None:
+    """Refuse workers that would mark by other rules. Raises ProblemError."""
+
+    def version_there() -> tuple[str, str]:  # pickled by value: the worker may have no such function
+        try:
+            from importlib import import_module
+
+            module = import_module("tmm_cli.grading.workers")
+            return import_module("tmm_cli").__version__, module.program_digest()
+        except (ImportError, AttributeError):
+            return "", ""
+
+    try:
+        client.wait_for_workers(1, timeout=ANSWERS)
+        versions = client.run(version_there)
+    except TimeoutError:
+        raise _no_workers(address) from None
+    here = (tmm_cli.__version__, program_digest())
+    other = next(((worker, there) for worker, there in versions.items() if there != here), None)
+    if other is not None:
+        worker, (version, digest) = other
+        found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or one from before this check")
+        raise ProblemError(
+            _("a worker has another version of tmm than this one"), found=f"{worker}: {found}",
+            allowed=_("{version} on each worker").format(version=f"tmm {here[0]} ({here[1][:8]})"),
+        )  # fmt: skip
+
+
+def _no_workers(address: str) -> ProblemError:
+    return ProblemError(_("the scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
+
+
+def _of_program(program: str, spoken: str, job: Job) -> Any:
+    """What a job gives on a worker that has the same program; workers may join later. Raises ProblemError."""
+    if program_digest() != program:
+        raise ProblemError(_("a worker has another version of tmm than this one"))
+    return speaking(spoken, job)
+
+
+@cache
+def program_digest() -> str:
+    """A digest of the program and its translations: another one may give other marks."""
+    folder = Path(tmm_cli.__file__).parent
+    files = sorted(folder.rglob("*.[pm][yo]"), key=lambda file: file.relative_to(folder).as_posix())
+    digest = blake2b(digest_size=16)
+    for file in files:
+        digest.update(file.relative_to(folder).as_posix().encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
