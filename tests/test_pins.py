@@ -14,6 +14,9 @@ import random_linkages
 from test_commands import tmm
 
 from tmm_cli import solve
+from tmm_cli.grading.grade import grade
+from tmm_cli.grading.record import Given, Submission, VariantTable
+from tmm_cli.grading.task import read_task
 from tmm_cli.linkage import FRAME
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
@@ -229,3 +232,41 @@ def test_links_of_a_compound_hinge_are_attached_by_the_rule_in_random_chains(see
         pairs = [{p.i, p.j} for p in structure.pairs if p.point == hinge.point and p.kind == "R"]
         assert len(pairs) == len(hinge.links) - 1
         assert expected_link(linkage, structure, hinge) & set.intersection(*pairs)
+
+
+def marked(answers):
+    """States of the answers of a student of the V engine, sizes in N by quantity, at position 10."""
+    asked = ", ".join(f"{{of: {name}, at: 10}}" for name in answers)
+    task = read_task(read_text(V_ENGINE + f"grading: {{drawn: false, answers: [{asked}]}}\n", "task.yaml"))
+    given = {(name, 10): Given(size, unit="N") for name, size in answers.items()}
+    (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", given)])
+    return {mark.key[0]: (mark.state, abs(mark.right)) for mark in marks.marks}
+
+
+@pytest.mark.parametrize(
+    "answers, states",
+    [
+        ({"R_12": 4683.3, "R_14": 1583.5, "R_A": 5577.6}, ["right", "right", "right"]),
+        ({"R_12": 5577.6, "R_24": 1583.5}, ["right", "right"]),  # rod 4 attached to rod 2
+        ({"R_14": 5577.6, "R_42": 4683.3}, ["right", "right"]),  # rod 2 attached to rod 4
+        ({"R_12": 5200, "R_A": 4683.3}, ["wrong", "wrong"]),
+    ],
+)
+def test_grading_accepts_a_reaction_under_either_attachment(answers, states):
+    found = marked(answers)
+    assert [state for state, _right in found.values()] == states
+    for (state, right), size in zip(found.values(), answers.values(), strict=True):
+        assert state == "wrong" or right == pytest.approx(size, abs=0.05)
+
+
+def test_a_reaction_given_by_components_has_the_direction_of_its_attachment():
+    """R_12 of the rod alone and of the whole pin, and the whole pin with the sign of R_21."""
+    results = solve(build(read_text(V_ENGINE, "v-compressor.yaml")))
+    pin = {pin.link: pin.force[10] for pin in results.reactions.pins(results.linkage)}
+    task = read_task(read_text(V_ENGINE + "grading: {drawn: false, answers: [{of: R_12, at: 10}]}\n", "task.yaml"))
+    states = []
+    for force in (pin["2"], -pin["1"], pin["1"]):
+        given = {("R_12", 10): Given(force.real, force.imag, "components", "N")}
+        (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", given)])
+        states += [mark.state for mark in marks.marks]
+    assert states == ["right", "right", "wrong"]

@@ -83,9 +83,9 @@ links:
 driver: {link: 1, speed: 10 rad/s}
 sketch: {at: 30, B: [250, 0], K: [0, 120]}
 loads:
-  F: {on: 3, force: [-1000.1, 0]}
-  F1: {on: 3, force: [300.3, 0]}
-  F2: {on: 3, force: [699.8, 0]}
+  F: {on: 3, force: [-1000.3, 0]}
+  F1: {on: 3, force: [300.2, 0]}
+  F2: {on: 3, force: [700.1, 0]}
   Q: {on: 5, force: [0, -500]}
 """
 

@@ -132,15 +132,18 @@ class Reactions:
 
     def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
         """The forces of the pins of compound hinges on each of their links; those of one pin come to nothing."""
-        found = []
-        for hinge in linkage.hinges:
-            for link in hinge.links if len(hinge.links) > 2 else ():
-                own = [
-                    r for r in self.all if r.pair.kind == "R" and r.pair.point == hinge.point and link in (r.on, r.by)
-                ]
-                force = reduce(np.add, [r.onto(link) for r in own])
-                found.append(PinForce(hinge.point, link, tuple(r.pair.name for r in own), force))
-        return tuple(found)
+        return tuple(
+            PinForce(hinge.point, link, tuple(r.pair.name for r in self._at_pin(hinge.point, link)),
+                     self.pin_force(hinge.point, link))
+            for hinge in linkage.hinges if len(hinge.links) > 2 for link in hinge.links
+        )  # fmt: skip
+
+    def pin_force(self, point: str, link: str) -> Vector:
+        """The force (N) of the pin of a compound hinge on one of its links."""
+        return reduce(np.add, [reaction.onto(link) for reaction in self._at_pin(point, link)])
+
+    def _at_pin(self, point: str, link: str) -> list[Reaction]:
+        return [r for r in self.all if r.pair.kind == "R" and r.pair.point == point and link in (r.on, r.by)]
 
 
 def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from tmm_cli.grading.readings import read
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable
 from tmm_cli.grading.sheet import right
 from tmm_cli.grading.submissions.positions import at_positions
-from tmm_cli.grading.task import Task
+from tmm_cli.grading.task import Asked, Task
 from tmm_cli.language import _
 from tmm_cli.quantities import Dimension
 from tmm_cli.variants.family import Family, families
@@ -91,7 +92,40 @@ def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Ite
 def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Of the students of one family."""
     submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
-    wanted = right(family, task.asked)
+    found: dict[int, StudentMarks] = {}
+    for rows, asked in _by_attachment(task, family, submissions):
+        same = [submissions[n] for n in rows.tolist()]
+        part = family if len(rows) == len(submissions) else family.take(rows)
+        found |= dict(zip(rows.tolist(), _marks_of(task, asked, part, same), strict=True))
+    return [marks for _row, marks in sorted(found.items())]
+
+
+def _by_attachment(
+    task: Task, family: Family, submissions: Sequence[Submission]
+) -> Iterator[tuple[Real, tuple[Asked, ...]]]:
+    """Students with what is asked of them, reactions in compound hinges as each has attached the links there.
+
+    The other attachment counts for an answer that it makes right and the usual one does not.
+    """
+    other = tuple(replace(one, quantity=one.quantity.otherwise or one.quantity) for one in task.asked)
+    if other == task.asked:
+        yield np.arange(len(submissions)), task.asked
+        return
+    holds = []
+    for asked in (task.asked, other):
+        wanted = right(family, asked)
+        holds.append(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed)
+    patterns, which = np.unique(holds[1] & ~holds[0], axis=0, return_inverse=True)
+    for number, pattern in enumerate(patterns):
+        asked = tuple(b if chosen else a for a, b, chosen in zip(task.asked, other, pattern, strict=True))
+        yield np.flatnonzero(which.ravel() == number), asked
+
+
+def _marks_of(
+    task: Task, asked_all: tuple[Asked, ...], family: Family, submissions: Sequence[Submission]
+) -> list[StudentMarks]:
+    """Of students of one family of whom the same is asked."""
+    wanted = right(family, asked_all)
     written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
     claims = diagnose(family, wanted, written)
@@ -99,7 +133,7 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
     found = []
     for n, submission in enumerate(submissions):
         marks = []
-        for k, asked in enumerate(task.asked):
+        for k, asked in enumerate(asked_all):
             there, given = bool(written.there[n, k]), submission.answers.get(asked.key)
             state: State = "missing"
             if there or (n, k) in refused:
@@ -107,7 +141,7 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
             named = [claim for claim in claims.get(n, ()) if k in claim.answers]
             reasons = [refused[n, k]] if (n, k) in refused else [claim.told for claim in named]
             if state == "follows":
-                sources = ", ".join(task.asked[j].name for j in follows[n, k])
+                sources = ", ".join(asked_all[j].name for j in follows[n, k])
                 reasons = [_("It is right given your own {sources}.").format(sources=sources)]
             marks.append(Mark(
                 asked.key, state, asked.points if state in ("right", "follows") else 0.0, asked.points,

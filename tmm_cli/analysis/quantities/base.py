@@ -35,7 +35,8 @@ class Quantity:
     where it belongs to the mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size
     in the cycle, its range there (of a place), a radian (of an angle, taken modulo 360 degrees: the end of a link is
     then off by that share of its length), or nothing (it is exact, as a class is). thing: the link, point or pair that
-    it is of; on: the link on which a reaction acts.
+    it is of; on: the link on which a reaction acts. otherwise: the same reaction if the links of its compound hinge are
+    attached to the other of its two links, as students may do.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Quantity:
     against: Literal["largest", "range", "angle", "exact"] = "largest"
     thing: str = ""
     on: str = ""
+    otherwise: Quantity | None = None
 
     @property
     def order(self) -> int:

@@ -39,7 +39,8 @@ def tables(results: Results) -> Iterable[Table]:
         }
         title = _("Compound hinges: the force of the pin on each of its links")
         note = _(
-            "From the pairs that it is counted as; each link acts on the pin oppositely, and all together not at all."
+            "The link named with all pairs, to which the others are attached, bears the force of the whole pin; the "
+            "forces on all links add up to zero."
         )
         yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
