@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
 
 import numpy as np
 import pytest
 from models import solved_text
+from test_commands import tmm
 
 from tmm_cli.problem.errors import ProblemError
+from tmm_cli.structure.assur import Passive, analyse, ties_of
+
+WITH_A_DYAD = Path("tests/data/redundant-first.yaml").read_text(encoding="utf-8")
 
 PARALLELOGRAM = """tmm: 1
 points: {O: [0, 0], C: [300, 0]}
@@ -119,3 +126,46 @@ def test_a_second_parallel_guide_is_passive_and_an_inclined_one_locks():
         assert np.allclose(found, expected, rtol=0, atol=1e-15 * np.max(np.abs(expected)))
     with pytest.raises(ProblemError, match="mobility is not 1: pair y holds what is held already"):
         solved_text(GUIDES.replace("ANGLE", "5"))
+
+
+def in_order(text, *links):
+    """The same file with its links, one a line, in another order."""
+    lines = text.splitlines()
+    first = lines.index("links:") + 1
+    names = [line.split(":")[0].strip() for line in lines[first : first + len(links)]]
+    assert sorted(names) == sorted(links)
+    lines[first : first + len(links)] = [lines[first + names.index(link)] for link in links]
+    return "\n".join([*lines, ""])
+
+
+def test_whatever_the_order_of_links_each_group_is_solved_after_those_it_is_attached_to():
+    """A parallelogram with a dyad on its rocker: its redundant coupler is solved with the parallelogram."""
+    linkage = solved_text(WITH_A_DYAD, stage="structure").linkage
+    condition = next(k for k, tie in enumerate(ties_of(linkage)) if tie.name == "B" and "4" in (tie.a, tie.b))
+    passive = Passive("B", 1, ("3", "4"), ("0", "1", "2", "3", "4"))
+    for order in permutations("23456"):
+        reordered = replace(linkage, links={name: linkage.links[name] for name in ("0", "1", *order)})
+        structure = replace(analyse(reordered, {condition: 1}), passive=(passive,))
+        placed = {"0", "1"}
+        for group in structure.solved:
+            assert placed.issuperset(group.known), order
+            placed.update(group.links)
+        assert [sorted(group.links) for group in structure.solved] == [["2", "3", "4"], ["5", "6"]]
+
+
+@pytest.mark.parametrize("order", ["123456", "123564", "654321"])
+def test_a_dyad_on_a_parallelogram_with_two_couplers_moves_as_on_a_rotating_link(order):
+    """B moves on a circle, so the slider moves as that of a crank-slider of crank 120 mm and coupler 350 mm."""
+    results = solved_text(in_order(WITH_A_DYAD, *order), stage="kinematics")
+    angle = results.motion.q
+    height = 0.12 * np.sin(angle) + 0.15
+    expected = 0.4 + 0.12 * np.cos(angle) + np.sqrt(0.35**2 - height**2)
+    assert np.allclose(results.motion.spot("F").real, expected, rtol=0, atol=1e-14)
+
+
+def test_every_command_accepts_a_redundant_link_before_the_group_that_follows(tmp_path):
+    file = tmp_path / "x.yaml"
+    file.write_text(in_order(WITH_A_DYAD, *"123564") + "positions: {count: 2}\n", encoding="utf-8")
+    for command in ("structure", "explain", "forces"):
+        done = tmm(command, file, cwd=tmp_path)
+        assert (done.returncode, "Traceback" in done.stderr) == (0, False), (command, done.stderr)

@@ -6,7 +6,7 @@ idle wheel in a ring) holds nothing, and gives a group no higher class.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -74,6 +74,13 @@ class Group:
     def known(self) -> tuple[str, ...]:
         """The links that it hangs on, pair by pair."""
         return tuple(pair.other(self.own(pair)) for pair in self.outer)
+
+    @property
+    def depends_on(self) -> set[str]:
+        """All links that must be placed before the group: its neighbours, and the carriers of its gears."""
+        meshes = [pair.mesh for pair in (*self.inner, *self.outer) if pair.mesh is not None]
+        others = {*self.known, *(mesh.carrier for mesh in meshes), *(driver.base for driver in self.drivers)}
+        return others.difference(self.links)
 
     @property
     def order(self) -> int:
@@ -195,18 +202,35 @@ class Structure:
         Together they can pass where one of them alone is dead; that is what passive constraints are often for.
         """
         among = {link for passive in self.passive for link in passive.among}
-        held = [k for k, group in enumerate(self.groups) if among & set(group.links)]
+        held = [group for group in self.groups if among & set(group.links)]
         if len(held) < 2:
             return self.groups
-        first, last = held[0], held[-1] + 1
-        links = {link for group in self.groups[first:last] for link in group.links}
-        pairs = [p for p in self.pairs if {p.i, p.j} & links]
-        one = Group(
+        links = {link for group in held for link in group.links}
+        needed, dependent = set(links), set(links)
+        for group in reversed(self.groups):
+            if needed & set(group.links):
+                needed.update(group.links, group.depends_on)
+        for group in self.groups:
+            if dependent & group.depends_on:
+                dependent.update(group.links)
+        first = [group for group in self.groups if needed.issuperset(group.links)]
+        together = [group for group in first if dependent.issuperset(group.links)]
+        return (
+            *(group for group in first if group not in together),
+            self._united(together),
+            *(group for group in self.groups if group not in first),
+        )
+
+    def _united(self, groups: Sequence[Group]) -> Group:
+        """Several groups as one."""
+        links = {link for group in groups for link in group.links}
+        names = {pair.name for group in groups for pair in (*group.inner, *group.outer)}
+        pairs = [pair for pair in self.pairs if pair.name in names]
+        return Group(
             tuple(link for link in self.links if link in links), tuple(p for p in pairs if {p.i, p.j} <= links),
-            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.group_class for g in self.groups[first:last]), "",
-            tuple(d for g in self.groups[first:last] for d in g.drivers),
+            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.group_class for g in groups), "",
+            tuple(driver for group in groups for driver in group.drivers),
         )  # fmt: skip
-        return (*self.groups[:first], one, *self.groups[last:])
 
     def pair(self, name: str) -> Pair:
         return next(p for p in self.pairs if p.name == name)
