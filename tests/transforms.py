@@ -1,4 +1,5 @@
-"""The same linkage drawn otherwise: mirrored, turned, of another size, renamed, in another order, run backward.
+"""The same linkage drawn otherwise: mirrored, turned, moved, with other axes in its links, of another size, renamed, in
+another order, run backward.
 
 Each gives the linkage that a student would have written for the other drawing; what must come of it is in the tests.
 """
@@ -11,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Hinge, Linkage, Mesh
+from tmm_cli.linkage import FRAME, Hinge, Linkage, Mesh, Output
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 
 
@@ -34,6 +35,12 @@ def mirrored(it: Linkage) -> Linkage:
     def driver(d):
         return d if d.kind == "slide" else replace(d, sense=-d.sense, at=-d.at)
 
+    def load(x):
+        window = x.window and (-x.window[1], -x.window[0])
+        if x.resists:  # sizes only
+            return replace(x, at=back(x.at), window=window)
+        return replace(x, at=back(x.at), force=back(x.force), moment=-x.moment, window=window)
+
     return replace(
         it,
         links={
@@ -50,7 +57,7 @@ def mirrored(it: Linkage) -> Linkage:
             points={p: back(z) for p, z in it.sketch.points.items()},
             angles={n: -a for n, a in it.sketch.angles.items()},
         ),
-        loads=tuple(replace(x, at=back(x.at), force=back(x.force), moment=-x.moment) for x in it.loads),
+        loads=tuple(load(x) for x in it.loads),
         springs=tuple(
             replace(
                 s, at_i=back(s.at_i), at_j=back(s.at_j),
@@ -110,7 +117,13 @@ def turned(it: Linkage, by: float) -> Linkage:
         slides=tuple(slide(s) for s in it.slides), driver=drivers[0], others=tuple(drivers[1:]),
         meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(it.sketch, at=at, points={p: q * z for p, q in it.sketch.points.items()}, angles=angles),
-        loads=tuple(replace(x, force=x.force if x.follows else x.force * z) for x in it.loads),
+        loads=tuple(
+            replace(
+                x, force=x.force if x.follows or x.resists else x.force * z,
+                window=x.window and (x.window[0] + by, x.window[1] + by),
+            )
+            for x in it.loads
+        ),
         springs=tuple(spring(s) for s in it.springs), gravity=it.gravity * z,
     )  # fmt: skip
 
@@ -120,6 +133,92 @@ def _twisted(spring, by):
     if not spring.turns:
         return spring
     return replace(spring, free=spring.free + by * ((spring.i == FRAME) - (spring.j == FRAME)))
+
+
+def moved(it: Linkage, by: complex) -> Linkage:
+    """The whole drawing beside its place (m)."""
+
+    def slide(s):
+        if s.carrier == FRAME:
+            return replace(s, through=s.through + by)
+        return replace(s, at=s.at + by) if s.runner == FRAME else s
+
+    frame = it.links[FRAME]
+    return replace(
+        it,
+        links={**it.links, FRAME: replace(frame, points={p: z + by for p, z in frame.points.items()})},
+        slides=tuple(slide(s) for s in it.slides),
+        sketch=replace(it.sketch, points={p: z + by for p, z in it.sketch.points.items()}),
+        springs=tuple(
+            replace(s, at_i=s.at_i + by * (s.i == FRAME), at_j=s.at_j + by * (s.j == FRAME)) for s in it.springs
+        ),
+    )
+
+
+def with_other_axes(it: Linkage, seed: int, *, driver: bool = True) -> tuple[Linkage, dict[str, float]]:
+    """Axes of every link turned about, and moved by, anything; and by which angles (rad) they were turned.
+
+    driver: those of the first driver too, from which its place is counted.
+    """
+    random = np.random.default_rng(seed)
+    turns = {n: 0.0 if n == FRAME else float(random.uniform(-3, 3)) for n in it.links}
+    if not driver:
+        turns[it.driver.link] = turns[it.driver.base] = 0.0
+    offsets = {n: 0j if n == FRAME else complex(*random.uniform(-0.2, 0.2, 2)) for n in it.links}
+
+    def own(link, place):
+        return (place - offsets[link]) * cmath.exp(-1j * turns[link])
+
+    def at_place(d):
+        return replace(d, at=d.at + turns[d.link] - turns[d.base]) if d.kind == "turn" else d
+
+    it = replace(it, driver=replace(it.driver, at=it.sketch.at))
+    drivers = [at_place(d) for d in it.drivers]
+    places = {n: math.remainder(a + turns[n], 2 * math.pi) for n, a in it.sketch.angles.items()} | {FRAME: 0.0}
+    before = dict(it.sketch.angles) | {FRAME: 0.0}
+    for old, new in zip(it.drivers, drivers, strict=True):
+        if new.base == FRAME and new.kind == "turn":
+            places[new.link], before[new.link] = new.at, old.at
+
+    def mesh(m: Mesh) -> Mesh:
+        if m.kind == "cam":
+            law = replace(m.law, start=m.law.start + turns[m.i] - turns[m.carrier])
+            return replace(m, law=law, offset=m.offset + (0.0 if m.slide else turns[m.j] - turns[m.carrier]))
+
+        def row(at):
+            return (at[m.j] - at[m.carrier] if m.kind == "gear" else 0.0) - m.ratio * (at[m.i] - at[m.carrier])
+
+        return replace(m, offset=m.offset + row(places) - row(before))
+
+    def load(x):
+        force = x.force * cmath.exp(-1j * turns[x.link]) if x.follows and not x.resists else x.force
+        return replace(x, at=own(x.link, x.at), force=force)
+
+    return replace(
+        it,
+        links={
+            n: replace(x, points={p: own(n, z) for p, z in x.points.items()}, centre=own(n, x.centre))
+            for n, x in it.links.items()
+        },
+        slides=tuple(
+            replace(
+                s, through=own(s.carrier, s.through), at=own(s.runner, s.at), direction=s.direction - turns[s.carrier],
+                turned=s.turned + turns[s.runner] - turns[s.carrier],
+            )
+            for s in it.slides
+        ),
+        driver=drivers[0], others=tuple(drivers[1:]), meshes=tuple(mesh(m) for m in it.meshes),
+        sketch=replace(
+            it.sketch, at=drivers[0].at if it.driver.kind == "turn" else it.sketch.at,
+            angles={n: places[n] for n in it.sketch.angles},
+        ),
+        loads=tuple(load(x) for x in it.loads),
+        springs=tuple(
+            replace(s, at_i=own(s.i, s.at_i), at_j=own(s.j, s.at_j),
+                    free=s.free + (turns[s.j] - turns[s.i] if s.turns else 0.0))
+            for s in it.springs
+        ),
+    ), turns  # fmt: skip
 
 
 def sized(it: Linkage, size: float) -> Linkage:
@@ -181,6 +280,10 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
         joint = points[d.joint] if d.kind == "turn" else d.joint
         return replace(d, link=names[d.link], base=names[d.base], joint=joint, end=points.get(d.end, ""))
 
+    def output(o: Output) -> Output:
+        point, dot, axis = o.link.rpartition(".")
+        return replace(o, link=f"{points[point]}.{axis}" if dot else names[o.link])
+
     links = {
         names[n]: replace(
             it.links[n], name=names[n], points={points[p]: z for p, z in shuffled(it.links[n].points.items())}
@@ -202,13 +305,18 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
             it.sketch, points={points[p]: z for p, z in shuffled(it.sketch.points.items())},
             angles={names[n]: a for n, a in shuffled(it.sketch.angles.items())},
         ),
-        loads=tuple(replace(x, link=names[x.link]) for x in shuffled(it.loads)),
+        loads=tuple(
+            replace(x, link=names[x.link], base=names[x.base], point=points.get(x.point, ""))
+            for x in shuffled(it.loads)
+        ),
         springs=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.springs)),
+        friction=tuple(replace(f, pair=points.get(f.pair, f.pair)) for f in shuffled(it.friction)),
+        output=it.output and output(it.output), outputs=tuple(output(o) for o in it.outputs),
     ), names, points  # fmt: skip
 
 
 def reversed_in_time(it: Linkage) -> Linkage:
-    """Run backward through the sketch: what damps would drive."""
+    """Run backward through the sketch: what damps and what resists would drive."""
 
     def driver(d):
         return replace(d, sense=-d.sense, acceleration=-d.acceleration)
@@ -216,4 +324,5 @@ def reversed_in_time(it: Linkage) -> Linkage:
     return replace(
         it, driver=driver(it.driver), others=tuple(driver(d) for d in it.others),
         springs=tuple(replace(s, damping=-s.damping) for s in it.springs),
+        loads=tuple(replace(x, force=-x.force, moment=-x.moment) if x.resists else x for x in it.loads),
     )  # fmt: skip
