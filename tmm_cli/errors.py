@@ -83,11 +83,14 @@ class UnknownNameError(LinkageError):
 
 
 class MissingStrokesError(LinkageError):
-    """Strokes of the output are needed, by the key at `path` of the file, but it has none."""
+    """Strokes of the output are needed, by the key at `path` of the file, but it has none.
 
-    def __init__(self, link: str | None, path: tuple[str, ...]) -> None:
+    limits: range of a driver that does not turn fully, or moves between two ends (rad, or m).
+    """
+
+    def __init__(self, link: str | None, path: tuple[str, ...], limits: tuple[float, float] | None = None) -> None:
         super().__init__(".".join(path))
-        self.link, self.path = link, path
+        self.link, self.path, self.limits = link, path, limits
 
 
 class TableBeyondCycleError(LinkageError):

@@ -34,7 +34,8 @@ def _need_strokes(mechanism: Mechanism) -> None:
         if load.working_stroke_only and driver_range.full:
             raise MissingStrokesError(link, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":
-            raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"))
+            limits = None if driver_range.full else (driver_range.start, driver_range.end)
+            raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"), limits)
 
 
 def _need_rows(mechanism: Mechanism) -> None:

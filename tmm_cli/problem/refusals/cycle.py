@@ -30,6 +30,13 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     text = _("there is no working stroke")
     if block == "intermittent":
         return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output that has strokes"))
+    if error.limits is not None:
+        first, last = (shown(limit, problem.units) for limit in error.limits)
+        return ProblemError(
+            _("a table against the stroke needs a driver that turns fully, so that the output makes whole strokes"),
+            path=error.path, found=_("the driver moves from {first} to {last}").format(first=first, last=last),
+            allowed=_("against: crank angle"),
+        )  # fmt: skip
     found = _("no output is joined to the frame")
     if error.link is not None:
         found = _("link {link} has no ends of its stroke").format(link=error.link)
