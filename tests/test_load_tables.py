@@ -1,14 +1,22 @@
 """A table of a load goes no farther than what it is against: rows beyond the cycle are refused, not cut."""
 
+import math
+
 import blocks
 import numpy as np
 import pytest
 from fuzz import beyond
+from scipy.interpolate import CubicSpline
 from test_commands import ROOT, tmm
 
-from tmm_cli import load, solve
-from tmm_cli.accuracy.digits import judged
+from tmm_cli import load, prepare, solve
+from tmm_cli.accuracy.digits import bounds, judged
+from tmm_cli.analysis.pipeline import at_places
+from tmm_cli.analysis.running import reduced_machine
+from tmm_cli.double_double import DoubleDouble, rounded
+from tmm_cli.draw.sheets.diagrams import closely
 from tmm_cli.grading.task import Task
+from tmm_cli.interpolation import Table
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.results.given import given
@@ -212,3 +220,144 @@ def test_shares_are_told_as_they_are_written():
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
     assert told.title == "gas against the share of the stroke"
+
+
+SAW = [("0", 0), ("20", 0), ("20", 1500), ("80", 900), ("80", 300), ("100", 300)]  # N against mm of a stroke of 100 mm
+JUMPS = [("0.2", (0, 1500)), ("0.8", (900, 300))]
+
+
+def by_hand(x, rows):
+    """Values of a linear table with jumps: from the right in a row."""
+    at, sizes = np.array(rows, float).T
+    k = np.clip(np.searchsorted(at, x, side="right") - 1, 0, len(at) - 2)
+    return sizes[k] + (x - at[k]) * (sizes[k + 1] - sizes[k]) / (at[k + 1] - at[k])
+
+
+def test_two_equal_arguments_are_a_jump_with_the_value_from_the_left_before_and_from_the_right_after():
+    table = Table((0.0, 20.0, 20.0, 80.0, 80.0, 100.0), (0.0, 0.0, 1500.0, 900.0, 300.0, 300.0))
+    at = np.array([-1, 10, np.nextafter(20, 0) - 1e-9, 20, 50, 80 - 1e-9, 80, 90, 100, 200])
+    assert table(at) == pytest.approx([0, 0, 0, 1500, 1200, 900, 300, 300, 300, 300], abs=1e-7)
+    exact = Table(*(tuple(DoubleDouble.decimal(str(x)) for x in row) for row in (table.arguments, table.values)))
+    assert rounded(exact(at)) == pytest.approx(table(at), abs=1e-7)
+    each = Table(table.arguments, (0.0, 0.0, np.array([[1500.0], [15.0]]), 900.0, 300.0, 300.0))
+    assert each(at)[0] == pytest.approx(table(at), abs=1e-7) and each(at)[1][4] == pytest.approx((15 + 900) / 2)
+    assert table.slope(np.array([10, 20, 50, 80, 90])) == pytest.approx([0, -10, -10, 0, 0])
+
+
+def test_a_table_may_jump_in_its_first_and_in_its_last_row():
+    table = Table((30.0, 30.0, 90.0, 90.0), (1.0, 5.0, 8.0, 2.0))
+    assert table(np.array([0, 29, 30, 60, 90, 100])) == pytest.approx([1, 1, 5, 6.5, 2, 2])
+
+
+def test_between_two_jumps_a_smooth_table_is_a_spline_of_its_own_rows():
+    table = Table((0.0, 1.0, 2.0, 3.0, 3.0, 4.0, 6.0), (0.0, 2.0, 1.0, 4.0, 7.0, 5.0, 6.0), "smooth")
+    left, right = np.linspace(0, 2.99, 21), np.linspace(3, 6, 21)
+    first = CubicSpline([0, 1, 2, 3], [0, 2, 1, 4], bc_type="natural")
+    second = CubicSpline([3, 4, 6], [7, 5, 6], bc_type="natural")
+    assert table(left) == pytest.approx(first(left)) and table(right) == pytest.approx(second(right))
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+@pytest.mark.parametrize("against", ["stroke", "share of stroke"])
+def test_work_of_a_load_that_jumps_is_the_area_under_its_table(turns, against):
+    rows = SAW if against == "stroke" else [(f"{argument} %", size) for argument, size in SAW]
+    more = "dynamics: {flywheel: {inertia: 20}}\nmasses: {3: {mass: 1}}\n"
+    results = slider(against, rows, more=more, turns=turns)
+    area = 0.06 * (1500 + 900) / 2 + 0.02 * 300  # J
+    work = reduced_machine(results.mechanism, results.start).work_of_cycle
+    assert abs(work) == pytest.approx(area, rel=1e-12)
+    (load,) = [one for one in results.loads if one.name == "gas"]
+    first = results.strokes.strokes[0]
+    place = 50 * np.cos(results.motion.q) + np.sqrt(150**2 - (50 * np.sin(results.motion.q)) ** 2)
+    run = place - 100 if first.run > 0 else 200 - place
+    working = results.strokes.share(results.motion.q, results.linkage.driver.sense)
+    assert -load.force.real == pytest.approx(np.where(working, by_hand(run, SAW), 0), abs=1e-8)
+
+
+def test_energy_of_a_moment_that_jumps_is_exact_over_the_cycle():
+    """M = 10 N m over 120 deg, 40 N m over the rest; the drive is its mean, 30: the work swings by 20 N m * 120 deg."""
+    text = CRANK_SLIDER.split("loads:")[0].format()
+    text += (
+        "loads: {m: {on: 1, moment: {against: crank angle, table: [[0, 40], [60, 40], [60, 10], [180, 10], [180, 40], "
+        "[360, 40]]}}}\nmasses: {1: {mass: 0, inertia: 5}}\ndynamics: {flywheel: {inertia: 20}}\n"
+    )
+    for turns in ("ccw", "cw"):
+        own = text.replace("turns: cw", f"turns: {turns}")
+        results = solve(problem_of(read_text(f"{own}positions: {{at: [59, 60, 61, 179, 180, 181]}}\n", "x.yaml")))
+        mean = (10 * 120 + 40 * 240) / 360
+        work = np.radians(120) * (mean - 10)
+        largest = results.running.steady.law.energy
+        at = largest(largest.places())
+        assert np.ptp(at) == pytest.approx(work, rel=1e-12)
+        (load,) = [one for one in results.loads if one.name == "m"]
+        assert load.moment == pytest.approx([40, 10, 10, 10, 40, 40], rel=1e-12)
+
+
+def test_many_positions_at_once_and_digits_know_a_table_that_jumps():
+    text = CRANK_SLIDER.format(
+        against="crank angle", table="[[0, 0], [90, 0], [90, 5 kN], [200, 2 kN], [200, 0], [360, 0]]"
+    )
+    problem = problem_of(read_text(f"{text}positions: {{at: [10, 90, 120, 200, 300]}}\n", "x.yaml"))
+    results = solve(problem)
+    assert prepare(problem)(results.motion.q)["T.1"] == pytest.approx(results.reactions.balance.moment, abs=1e-9)
+    forces = np.radians([0, 5000, 5000 - 3000 * 30 / 110, 0, 0])
+    (load,) = [one for one in results.loads if one.name == "gas"]
+    assert np.radians(np.abs(load.force)) == pytest.approx(forces, abs=1e-9)
+    values, digits = bounds(results)
+    finite = [np.nanmax(bound / np.maximum(np.abs(values[key]), 1)) for key, bound in digits.bound.items()]
+    assert max(finite) < 1e-9
+
+
+def test_a_diagram_draws_the_jump_at_its_place_with_both_values():
+    results = slider("stroke", SAW, more=" ", turns="ccw")
+    q, borders = closely(results)
+    moments = at_places(results, q).reactions.balance.moment
+    first = results.strokes.strokes[0]
+    for argument, (before, after) in JUMPS:
+        place = 100 + 100 * float(argument) if first.run > 0 else 200 - 100 * float(argument)
+        cosine = (place**2 + 50**2 - 150**2) / (2 * place * 50)  # angle of the crank with the slider there
+        angle = np.arccos(cosine) if first.run < 0 else -np.arccos(cosine)
+        (k,) = [k for k in borders if abs((q[k] - angle + np.pi) % (2 * np.pi) - np.pi) < 1e-5]
+        arm = abs(results.motion.linkage.links["1"].points["A"])  # the moment is proportional to the force
+        assert arm == 0.05 and moments[k + 1] * before == pytest.approx(moments[k] * after, rel=1e-4, abs=1e-9)
+        assert abs(moments[k + 1] - moments[k]) > 1
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ("[[0, 0], [20, 0], [20, 5], [20, 9], [90, 0]]", "table[3][0]: the first column must grow\n  found:   20\n"
+         "  allowed: two rows: the value before the jump, and the value after it\n"),
+        ("[[0, 0], [20, 0], [10, 5]]", "table[2][0]: the first column must grow\n  found:   10\n"),
+        ("[[0, 0], [20, 0], [20, 5]], between: step", "table[2][0]: the first column must grow\n  found:   20\n"
+         "  allowed: each value once\n"),
+    ],
+)  # fmt: skip
+def test_what_is_no_jump_is_refused(tmp_path, table, told):
+    ended = forces(tmp_path, against="stroke", table=table)
+    assert ended.returncode == 2
+    assert ended.stderr.endswith(f"loads.gas.force.{told}")
+
+
+def test_a_table_against_the_stroke_of_a_driver_that_does_not_turn_fully_is_refused_with_the_reason(tmp_path):
+    (tmp_path / "x.yaml").write_text("""tmm: 1
+points: {O: [0, 0], C: [300, 0]}
+links:
+  1: {points: [O, A], length: 250}
+  2: {points: [A, B], length: 200}
+  3: {points: [C, B], length: 100}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 20 deg, B: [380, 60]}
+loads: {M: {on: 3, moment: {against: stroke, table: [[0, 0], [20, 10]]}}}
+output: 3
+""")
+    ended = tmm("forces", "x.yaml", cwd=tmp_path)
+    least, most = (math.degrees(math.acos((250**2 + 300**2 - rod**2) / (2 * 250 * 300))) for rod in (100, 300))
+    first, last = f"{least:.6g}", f"{most:.6g}"
+    assert ended.stderr.endswith(
+        "error: x.yaml:9:28: loads.M.moment: a table against the stroke needs a driver that turns fully, so that the "
+        "output makes whole strokes\n"
+        f"  found:   the driver moves from {first} deg to {last} deg\n"
+        "  allowed: against: crank angle\n"
+    )
+    assert ended.returncode == 2

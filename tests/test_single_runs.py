@@ -74,6 +74,19 @@ def test_works_are_the_change_of_kinetic_energy(task):
     assert found.ending in ("way", "standstill")
 
 
+@pytest.mark.parametrize("against", ["time", "way"])
+def test_a_drive_that_jumps_is_constant_before_and_after(against):
+    """J = 2: 6 N m give 3 rad/s2; from the jump on 50 N m give 25 rad/s2."""
+    at = 0.8 if against == "time" else 3 * 0.8**2 / 2
+    found = run(machine(), RunTask(drive=Profile(against, (0.0, at, at, 99.0), (6.0, 6.0, 50.0, 50.0))))
+    way, speed = 3 * 0.8**2 / 2, 3 * 0.8
+    last = np.sqrt(speed**2 + 2 * 25 * (TURN - way))
+    assert found.speed[-1] == pytest.approx(last, rel=1e-10)
+    assert found.time[-1] == pytest.approx(0.8 + (last - speed) / 25, rel=1e-10)
+    assert found.driven[-1] == pytest.approx(6 * way + 50 * (TURN - way), rel=1e-10)
+    assert len(found.time) < 40  # the jump costs no small steps
+
+
 def test_what_drives_less_than_the_load_does_not_start():
     with pytest.raises(StandstillError) as stands:
         run(machine(load=-80.0), RunTask(drive=lambda t, x: 79.0 + 0 * t))

@@ -105,10 +105,39 @@ def test_a_driver_may_stand_in_a_position():
     assert np.all(np.isnan(results.motion.time))
 
 
-def test_digits_of_a_law_by_table_are_judged():
-    values, digits = bounds(solved(table(swaying)))
+@pytest.mark.parametrize("between", ["linear", "smooth"])
+def test_digits_of_a_law_by_table_are_judged(between):
+    values, digits = bounds(solved(table(swaying, between=between)))
     worst = max(np.nanmax(bound / max(np.nanmax(np.abs(values[key])), 1)) for key, bound in digits.bound.items())
     assert worst < 1e-11
+
+
+@pytest.mark.parametrize("between", ["linear", "smooth"])
+def test_near_a_dead_position_the_speed_is_that_of_the_table(between):
+    """A crank-slider whose crank is as long as its rod: its group is dead at 90 deg."""
+    text = MACHINE.replace("length: 150", "length: 50").replace("B: [140, 0]", "B: [60, 0]").replace("at: 90", "at: 53")
+    rows = "[[0, 4], [90, 6], [180, 8]]"
+    law = f"driver: {{link: 1, speed: {{against: crank angle, between: {between}, table: {rows}}}}}"
+    text = text.replace("driver: {link: 1, speed: 60 rpm, turns: ccw}", law)
+    results = solve(problem_of(read_text(f"{text}{BODIES}positions: {{at: [45, 89.99999]}}\n", "x.yaml")))
+    assert results.motion.where is not None and results.motion.where.tolist() == [False, True]
+    if between == "linear":
+        assert results.motion.rate[1] == pytest.approx(np.sqrt(16 + 20 * 89.99999 / 90), rel=1e-14)
+    phi, omega = np.radians(89.99999), results.motion.rate[1]
+    assert results.motion.named("B").v[1].real == pytest.approx(-0.1 * np.sin(phi) * omega, rel=1e-9)
+
+
+def test_accelerations_may_jump_but_speeds_may_not():
+    told = refused("speed: {against: crank angle, table: [[0, 4], [90, 4], [90, 6], [360, 4]]}")
+    assert told == (
+        "x.yaml:9:75: driver.speed.table[2][0]: the first column must grow\n  found:   90\n  allowed: each value once"
+    )
+    results = solved(
+        "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, "
+        "acceleration: {against: crank angle, between: linear, table: [[0, 3], [90, 3], [90, -1], [360, 3]]}",
+        BODIES + "positions: {at: [45, 90, 225]}",
+    )
+    assert results.motion.acceleration == pytest.approx([3, -1, 1])
 
 
 def test_what_was_understood_of_it_is_told():

@@ -2,6 +2,8 @@
 
 The spline's slopes follow from continuous second derivatives; at its ends these are zero, or it closes on itself. C. de
 Boor, A Practical Guide to Splines (2001), ch. 4. Numbers may be of any precision, or arrays (variants, 1).
+
+Two rows with the same argument are a jump: the value of the first holds up to it, that of the second from it on.
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ LOOKED_AT = 17  # places between two rows
 class Table:
     """Rows by growing arguments. step: each row's value holds up to the next row; smooth: a cubic spline.
 
-    closed: the spline goes on from its last row to its first, which has the same value.
+    closed: the spline goes on from its last row to its first, which has the same value. With jumps it does not: the
+    rows between two of them have a spline of their own.
     """
 
     arguments: tuple[Any, ...]
@@ -35,7 +38,8 @@ class Table:
 
     def __call__(self, argument: Real) -> Real:
         found: Real
-        if self.between == "linear" and self._plain:
+        argument = self._as_precise(argument)
+        if self.between == "linear" and self._plain and not self.jumps:
             found = np.interp(argument, self.arguments, self.values)
             return found
         from_row, pieces = self._from_row(argument)
@@ -44,7 +48,7 @@ class Table:
 
     def slope(self, argument: Real) -> Real:
         """Its derivative; in a row where it jumps, that after it, and none of a jump itself."""
-        from_row, (_, first, second, third) = self._from_row(argument)
+        from_row, (_, first, second, third) = self._from_row(self._as_precise(argument))
         found: Real = first + from_row * (2 * second + 3 * from_row * third)
         return found
 
@@ -61,6 +65,16 @@ class Table:
         row = int(np.argmax(beyond))
         return row, float(beyond[row] / span) if span > 0 else 0.0
 
+    @cached_property
+    def jumps(self) -> tuple[int, ...]:
+        """Rows (from 0) with the argument of the row before them."""
+        return tuple(k + 1 for k, (a, b) in enumerate(pairwise(self.arguments)) if np.all(a == b))
+
+    def _as_precise(self, argument: Real) -> Real:
+        """The argument in the precision of the rows: NumPy finds no double-doubles in a list of them."""
+        first = self.arguments[0]
+        return argument if isinstance(first, int | float | np.ndarray) else argument + 0 * first
+
     @property
     def _plain(self) -> bool:
         return not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values))
@@ -68,9 +82,10 @@ class Table:
     def _from_row(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
         """How far each argument is from the row before it, and the coefficients of its piece by powers of that."""
         within = np.minimum(np.maximum(argument, self.arguments[0]), self.arguments[-1])
-        # rounding does not take a place in a row to the piece before it
-        at = within + SEAM * (1 + np.abs(within))
-        starts = self.arguments if self.between == "step" else self.arguments[:-1]
+        # rounding does not take an argument in a row to the piece before it
+        at = argument + SEAM * (1 + np.abs(argument))
+        ends = self.between == "step" or len(self.arguments) - 1 in self.jumps  # the last value begins in its row
+        starts = self.arguments if ends else self.arguments[:-1]
         row, *pieces = (self._held(at, starts, held) for held in (starts, *zip(*self._pieces, strict=True)))
         return within - row, tuple(pieces)
 
@@ -91,15 +106,34 @@ class Table:
         """Coefficients of each piece by powers of the way from its row."""
         if self.between == "step":
             return [(value, 0.0, 0.0, 0.0) for value in self.values]
-        steps = [end - start for start, end in pairwise(self.arguments)]
-        rises = [(end - start) / step for (start, end), step in zip(pairwise(self.values), steps, strict=True)]
+        borders = [0, *self.jumps, len(self.arguments)]
+        found: list[tuple[Any, ...]] = []
+        for first, last in pairwise(borders):
+            found += self._smooth_or_linear(self.arguments[first:last], self.values[first:last])
+            found.append((self.values[last - 1], 0.0, 0.0, 0.0))  # up to the jump, over no distance
+        return found if len(self.arguments) - 1 in self.jumps else found[:-1]
+
+    def _smooth_or_linear(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
+        """Coefficients of the pieces between rows without a jump; none of one row."""
+        if len(arguments) < 2:
+            return []
+        steps = [end - start for start, end in pairwise(arguments)]
+        rises = [_rise(end - start, step) for (start, end), step in zip(pairwise(values), steps, strict=True)]
         if self.between == "linear":
-            return [(value, rise, 0.0, 0.0) for value, rise in zip(self.values, rises, strict=False)]
-        slopes = _closed(steps, rises) if self.closed and len(steps) > 2 else _open(steps, rises)
+            return [(value, rise, 0.0, 0.0) for value, rise in zip(values, rises, strict=False)]
+        round_and_round = self.closed and not self.jumps and len(steps) > 2
+        slopes = _closed(steps, rises) if round_and_round else _open(steps, rises)
         return [
             (value, m, (3 * rise - 2 * m - n) / step, (m + n - 2 * rise) / (step * step))
-            for value, rise, step, (m, n) in zip(self.values, rises, steps, pairwise(slopes), strict=False)
+            for value, rise, step, (m, n) in zip(values, rises, steps, pairwise(slopes), strict=False)
         ]
+
+
+def _rise(change: Any, step: Any) -> Any:
+    """Change over a step, for each variant; none where a variant has a jump there."""
+    if not np.any(step == 0):
+        return change / step
+    return np.where(step == 0, 0.0, change) / np.where(step == 0, 1.0, step)
 
 
 def _open(steps: list[Any], rises: list[Any]) -> list[Any]:

@@ -22,26 +22,45 @@ def jumps(mechanism: Mechanism) -> Iterable[float]:
     """Places of a crank that turns fully (rad), in any order and turn."""
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
-    again = range(max(1, mechanism.driver_range.turns // linkage.turns))
-    strokes = mechanism.strokes.strokes if mechanism.strokes else ()
-    first = strokes[0].start if strokes else linkage.sketch.at
-    for stroke in strokes:
+    for stroke in mechanism.strokes.strokes if mechanism.strokes else ():
         yield from (stroke.start, stroke.start + sense * stroke.length)
     for load in linkage.loads:
         if load.window is not None:
-            yield from (place + cycle * k for place in load.window for k in again)
-        if load.table is not None and load.table.against == "stroke":
-            yield from _rows_of_strokes(mechanism, load.table)
-        elif load.table is not None:
-            by_angle = load.table.against == "crank angle"
-            begin, way = (0.0, 1) if by_angle else (first, sense)
-            yield from (begin + way * row + cycle * k for row in (*load.table.arguments, 0.0) for k in again)
+            yield from (place + cycle * k for place in load.window for k in _cycles(mechanism))
+        if load.table is not None:
+            yield from _reached(mechanism, load.table, (*load.table.arguments, 0.0))
         if load.resists:
             yield from _turns_back(mechanism, load)
 
 
-def _rows_of_strokes(mechanism: Mechanism, table: LoadTable) -> Iterable[float]:
-    """Where the output comes to the rows of a table against its stroke."""
+def table_jumps(mechanism: Mechanism) -> Iterable[float]:
+    """Driver coordinates (rad) at which tables of loads jump, in any order and turn."""
+    for load in mechanism.linkage.loads:
+        if load.table is not None and load.table.jumps:
+            rows = [load.table.arguments[k] for k in load.table.jumps]
+            yield from _reached(mechanism, load.table, rows)
+
+
+def _cycles(mechanism: Mechanism) -> range:
+    """Numbers of the cycles of the loads in the cycle of the motion."""
+    return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
+
+
+def _reached(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+    """Driver coordinates (rad) at which these arguments of a table are reached."""
+    if table.against == "stroke":
+        yield from _reached_in_strokes(mechanism, table, arguments)
+        return
+    linkage = mechanism.linkage
+    begin, sense, cycle = 0.0, 1, 2 * np.pi * linkage.turns
+    if table.against == "crank turn":
+        strokes = mechanism.strokes.strokes if mechanism.strokes else ()
+        begin, sense = strokes[0].start if strokes else linkage.sketch.at, linkage.driver.sense
+    yield from (begin + sense * argument + cycle * k for argument in arguments for k in _cycles(mechanism))
+
+
+def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+    """Driver coordinates (rad) at which the output reaches arguments of a table against its stroke, within strokes."""
     linkage, strokes = mechanism.linkage, mechanism.strokes
     if strokes is None or not strokes.strokes:
         return
@@ -49,7 +68,7 @@ def _rows_of_strokes(mechanism: Mechanism, table: LoadTable) -> Iterable[float]:
     first = strokes.strokes[0]
     for stroke in strokes.strokes:
         middle = stroke.low + stroke.run / 2
-        for row in table.arguments:
+        for row in arguments:
             wanted = first.low + (first.run if table.shares else np.sign(first.run)) * row
             # at the ends themselves the output rests: rounding would put the row a little beside them
             if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):

@@ -8,7 +8,7 @@ for its load by that of Petzold and Hindmarsh (LSODA), which is stiff.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import count, pairwise
@@ -90,7 +90,7 @@ def run(machine: Reduced, task: RunTask) -> Run:
         raise StandstillError(0.0)
     times, states, steps, time, left = [], [], [], 0.0, count(MOST, -1)
     ending: Ending = "time"
-    for low, high in _pieces(machine.moment):
+    for low, high in _pieces(machine.moment, task.way_edges):
         for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
             done = _until(machine, task, (low, high), (time, end), state, left)
             times.append(done.t)
@@ -112,10 +112,12 @@ def _until(
 ) -> Any:  # fmt: skip
     """A piece, to its end, to rest, or as long as that. left: evaluations. Raises LongRunError where none is left."""
 
+    last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
+
     def rates(t: float, y: Real) -> list[float]:
         if not next(left):
             raise LongRunError(t, float(y[0]), MOST)
-        return _rates(machine, task, piece, t, y)
+        return _rates(machine, task, piece, min(t, last), y)
 
     def gone(t: float, y: Real) -> float:
         return float(y[0] - piece[1])
@@ -175,12 +177,13 @@ def _driving(task: RunTask, t: float, x: Real, speed: float) -> float:
     return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
 
 
-def _pieces(moment: Curve) -> Iterator[tuple[float, float]]:
-    """Between the places where a moment jumps."""
+def _pieces(moment: Curve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
+    """Pieces of the way between which the moment of the loads jumps, or what drives may bend or jump."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
     jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
-    yield from pairwise([0.0, *jumps, moment.length])
+    edges = {edge for edge in way_edges if 0 < edge < moment.length} | set(jumps.tolist())
+    yield from pairwise([0.0, *sorted(edges), moment.length])
 
 
 def _record(machine: Reduced, task: RunTask, time: Real, states: Real, ending: Ending) -> Run:

@@ -34,7 +34,10 @@ class SteadyTask:
 
 @dataclass(frozen=True)
 class Profile:
-    """A moment (N m), or a force (N), by the time (s) or the way of the driver, linear between its rows."""
+    """A moment (N m), or a force (N), by the time (s) or the way of the driver, linear between its rows.
+
+    Two equal arguments are a jump: the second value holds from there on.
+    """
 
     against: Literal["time", "way"]
     arguments: tuple[float, ...]
@@ -68,3 +71,8 @@ class RunTask:
     def edges(self) -> tuple[float, ...]:
         """Times at which what drives may bend."""
         return self.drive.arguments if isinstance(self.drive, Profile) and self.drive.against == "time" else ()
+
+    @property
+    def way_edges(self) -> tuple[float, ...]:
+        """Distances that the driver has moved (rad, or m) at which what drives may bend or jump."""
+        return self.drive.arguments if isinstance(self.drive, Profile) and self.drive.against == "way" else ()

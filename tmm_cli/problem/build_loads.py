@@ -231,7 +231,7 @@ def _table(part: Part, want: Dimension, linkage: Linkage) -> LoadTable:
     elif against == "stroke":
         link = output_link(linkage, analyse(linkage).groups)
         argument = ANGLE if link is None or linkage.output_swings(link) else LENGTH
-    arguments, sizes = part.columns("table", argument, want)
+    arguments, sizes = part.columns("table", argument, want, jumps=given.between != "step")
     if shares:
         _refuse_beyond_stroke(part, arguments)
     round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])

@@ -59,7 +59,7 @@ def mean(part: Part) -> float:
 
 def _columns(part: Part, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     own = Part(getattr(part.given, key), (*part.path, key), part.values)
-    return own.columns("table", ANGLE, want)
+    return own.columns("table", ANGLE, want, jumps=key == "acceleration")
 
 
 def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:

@@ -41,7 +41,9 @@ class Profile(Strict):
     """What drives, by a table; linear between its rows."""
 
     against: Literal["time", "way"] = Field(description="s since the beginning, or the way that the driver has gone")
-    table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [argument, size]")
+    table: list[Vector] = Field(
+        min_length=2, max_length=10_000, description="rows [argument, size]; two with one argument: a jump"
+    )
     area: Value | None = Field(default=None, description="of a piston: the table is then of pressures")
 
 

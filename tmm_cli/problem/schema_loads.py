@@ -43,7 +43,10 @@ class Tabulated(Strict):
         "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
     )
     table: list[Vector] | None = Field(
-        default=None, min_length=2, max_length=10_000, description="rows [argument, size]"
+        default=None,
+        min_length=2,
+        max_length=10_000,
+        description="rows [argument, size]; two with one argument: a jump",
     )
     between: Literal["linear", "step", "smooth"] = Field(
         default="linear", description="rows; step: each holds up to the next, smooth: a cubic spline"

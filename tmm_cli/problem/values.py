@@ -195,14 +195,28 @@ class Part:
     def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
         return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
 
-    def columns(self, key: str, argument: Dimension, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Both columns of a table, of which the first one grows."""
+    def columns(
+        self, key: str, argument: Dimension, want: Dimension, *, jumps: bool = True
+    ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Both columns of a table (SI), of which the first one grows. jumps: two of its rows may be equal there.
+
+        Raises ProblemError.
+        """
         rows, path = getattr(self.given, key), (*self.path, key)
         first = tuple(self.values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows))
         second = tuple(self.values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows))
         for k in range(1, len(first)):
-            if first[k] <= first[k - 1]:
-                raise ProblemError(_("the first column must grow"), path=(*path, k, 0), found=str(rows[k][0]))
+            if first[k] > first[k - 1]:
+                continue
+            allowed = None
+            if first[k] == first[k - 1]:
+                if jumps and (k < 2 or first[k - 2] < first[k]):
+                    continue
+                allowed = _("two rows: the value before the jump, and the value after it")
+                if not jumps:
+                    allowed = _("each value once")
+            message = _("the first column must grow")
+            raise ProblemError(message, path=(*path, k, 0), found=str(rows[k][0]), allowed=allowed)
         return first, second
 
     def known(self, key: str, names: Iterable[str], what: str) -> str:

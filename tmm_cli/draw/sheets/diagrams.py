@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli import quantities
+from tmm_cli.analysis.jumps import table_jumps
 from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.draw.paper.axes import Axis, across
 from tmm_cli.draw.paper.chart import Across, Curve, Jump, Plot, chart, count_fitting, room
@@ -79,13 +80,16 @@ def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def closely(results: Results) -> tuple[Real, list[int]]:
-    """Places of the driver close together, and after which of them a stroke ends: there a load may begin or end."""
+    """Places of the driver close together, and after which of them a stroke ends or a table of a load jumps."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
         return places, []
     gone, end = sense * (places - results.start), 2 * np.pi * turns
-    borders = sorted({stop for start, length, __ in _strokes(results) for stop in (start, start + length)} - {0.0})
+    stops = {stop for start, length, __ in _strokes(results) for stop in (start, start + length)}
+    stops |= {float(sense * (q - results.start)) % end for q in table_jumps(results.mechanism)}
+    borders = [stop for stop in sorted(stops - {0.0}) if stop > 2 * BESIDE]
+    borders = [stop for k, stop in enumerate(borders) if not k or stop - borders[k - 1] > 4 * BESIDE]
     for border in borders:
         gone = gone[np.abs(gone - border) > 2 * BESIDE]
         gone = np.append(gone, [border - BESIDE, min(border + BESIDE, end)])
