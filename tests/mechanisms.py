@@ -24,10 +24,13 @@ ROWS = 33
 LACKING: dict[int, str] = {
     14: "structure only: its links move in space",
     18: "what holds the flange while it stands, the other slide in its slot, is in no contact in the calculation",
-    20: "Figs. 23, 28 and 29 set one length or angle of a link, which `--set` does with any file; Fig. 26 sets by "
-    "wedges what Fig. 25 sets by a sleeve",
-    21: "Fig. 31b has no file: its text names no stop against which the spring holds the levers, and without one the "
-    "rod gives under any load; of Fig. 34 the control cylinder is left out",
+    19: "the shafts of Fig. 22 cross at 45 degrees, so its links move in space; the file has parallel shafts, "
+    "whose ratio is the same",
+    20: "Fig. 26 sets by wedges what Fig. 25 sets by a sleeve",
+    21: "Fig. 30 also tilts the guide out of the plane of the mechanism, which a planar calculation does not see; the "
+    "text of Fig. 31b names no stop, its file takes one; of Fig. 34 the control cylinder is left out",
+    22: "the bevel gears that carry the rotation on to the part, and the springs that let it begin later, are motions "
+    "in space and of clearances",
     26: "ratchet-feed takes both places of its pin as given; ratchet-return is what moves it while the shaft stands",
     31: "structure only: its links move in space",
 }

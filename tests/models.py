@@ -52,9 +52,14 @@ def solved_text(text: str, stage: Literal["kinematics", "forces"] = "forces") ->
     return solve(build(read_text(text, "x.yaml")), stage)
 
 
+def file_of(name: str) -> Path:
+    """A problem of the bank by its name, or a linkage that only tests use (tests/data/linkages)."""
+    return next(path for folder in (PROBLEMS, DATA / "linkages") if (path := folder / f"{name}.yaml").exists())
+
+
 def linkage_of(name: str) -> Linkage:
     """The linkage of a problem of the bank."""
-    return load(PROBLEMS / f"{name}.yaml").linkage
+    return load(file_of(name)).linkage
 
 
 def reference(name: str) -> dict[str, Any]:

@@ -105,7 +105,7 @@ def test_nearness_to_a_change_point_is_found_between_the_positions(tmp_path):
 
 
 def test_a_place_that_is_zero_but_for_rounding_is_told_as_zero():
-    results = solved("tilter")
+    results = solved("planet-on-rocker")
     assert abs(results.pressure[0].place) < 1e-12, "rad"
     table = next(table for table in tables(results) if table.name == "checks")
     places = dict(zip(table.columns[0].values, table.columns[4].values, strict=True))

@@ -116,9 +116,9 @@ def test_lengths_have_the_names_of_the_file_s_parameters():
     assert texts[texts.index("guide x from O") :][1:3] == ["e", "40"]
     texts = sheet_of("crank-rocker")[1].texts()
     assert texts[texts.index("OD") : texts.index("OD") + 3] == ["OD", "l4", "400"]
-    texts = sheet_of("planetary-dwell-press")[1].texts()  # a wheel in a ring of three times its radius
+    texts = sheet_of("planetary-dwell-press")[1].texts()  # a wheel in a ring of five times its radius
     wheels = [texts[k + 1 : k + 3] for k, text in enumerate(texts) if text == "r"]
-    assert wheels == [["0", "150"], ["2", "50"]]
+    assert wheels == [["0", "125"], ["2", "25"]]
     texts = sheet_of("shaper")[1].texts()  # parameters are called like lengths
     assert texts[texts.index("CD") : texts.index("CD") + 2] == ["CD", "650"]
     assert texts[texts.index("guide x from O") + 1] == "270"

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bank import NAMES, problem, solved
-from models import PROBLEMS
+from models import PROBLEMS, file_of
 from multibody import compared
 
 from tmm_cli import load, solve
@@ -35,8 +35,8 @@ FORMULAS = {
     "class-iv": "I(0,1) -> IV(2,3,4,5)",
     "cardan-gear": "I(0,1) -> II(2) -> II(4,3)",
     "planetary-dwell-press": "I(0,1) -> II(2) -> II(3,4)",
-    "tilter": "I(0,1) -> II(2,3) -> II(4)",
-    "gear-doubling": "I(0,1) -> II(2,3) -> II(4) -> II(5,6)",
+    "tilter": "I(0,1) -> II(2) -> II(3,4) -> II(5)",
+    "gear-doubling": "I(0,1) -> II(2,3) -> II(4) -> II(5,6) -> II(7,8)",
     "gear-straight-line": "I(0,1) -> II(2) -> II(3,4)",
     "summing-lever": "I(0,1) -> II(2) -> III(3,4,5,6)",
     "cam-lever": "I(0,1) -> II(2) -> II(3,4)",
@@ -123,14 +123,10 @@ def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
 # the property of each
 
 
-def test_positioner_by_cosines_and_both_jaws_alike():
+def test_positioner_turns_its_bell_crank_by_the_law_of_cosines():
     results = solved("positioner")
     arm = 180 - np.degrees(turned(results, "3"))
-    expected = [by_cosines(250, 150, 1000 * s) for s in results.motion.q]
-    assert arm == pytest.approx(expected, abs=1e-12)
-    assert arm[[0, -1]] == pytest.approx([math.degrees(math.acos(0.6)), 90], abs=1e-12)
-    one, two = turned(results, "5"), turned(results, "7")
-    assert one - one[0] == pytest.approx(two - two[0], abs=1e-13)
+    assert arm == pytest.approx([by_cosines(250, 150, 1000 * s) for s in results.motion.q], abs=1e-12)
 
 
 def test_clamp_meets_symmetrically_and_presses_harder_and_harder():
@@ -146,7 +142,7 @@ def test_clamp_meets_symmetrically_and_presses_harder_and_harder():
 
 
 def test_hanger_carries_its_own_weight_and_keeps_the_shelf_level():
-    results = solved("hanger")
+    results = solved("balanced-hanger")
     q = results.motion.q
     assert results.reactions.balance.moment == pytest.approx(20 * np.cos(q), abs=1e-12)
     assert np.max(np.abs(results.motion.link("3").angle)) < 1e-14
@@ -229,7 +225,7 @@ def test_cardan_gear_draws_an_exact_straight_line():
 
 
 def test_planetary_press_dwells_where_its_rod_is_the_radius_of_curvature():
-    results = solved("planetary-dwell-press")
+    results = solved("three-lobes")
     d = results.motion.named("D")
     assert math.degrees(results.motion.q[12]) == pytest.approx(270)
     assert abs(d.v[12]) < 1e-14
@@ -242,8 +238,8 @@ def test_planetary_press_dwells_where_its_rod_is_the_radius_of_curvature():
     assert results.motion.link("2").first == pytest.approx(-2.0, abs=1e-14)
 
 
-def test_tilter_turns_the_part_by_twice_the_swing():
-    results = solved("tilter")
+def test_planet_on_a_rocker_turns_by_twice_the_swing():
+    results = solved("planet-on-rocker")
     assert math.degrees(results.strokes.travel) == pytest.approx(90, abs=1e-12)
     assert results.motion.link("4").first == pytest.approx(2 * results.motion.link("3").first, abs=1e-14)
     part = turned(results, "4")
@@ -251,8 +247,8 @@ def test_tilter_turns_the_part_by_twice_the_swing():
     assert results.strokes.k == pytest.approx(1, abs=1e-12)
 
 
-def test_gears_double_the_strokes():
-    results = solved("gear-doubling")
+def test_a_toothed_sector_doubles_the_strokes():
+    results = solved("sector-and-wheel")
     stroke = 50 + 170 - math.sqrt(170**2 - 50**2)
     assert [abs(s.run) * 1000 for s in results.strokes.strokes] == pytest.approx([stroke] * 4, abs=1e-11)
     assert stroke == pytest.approx(57.519, abs=5e-4)
@@ -275,7 +271,7 @@ def test_geared_cranks_draw_an_exact_straight_line():
 @pytest.mark.parametrize("ratio", ["teeth: [100, 40]", "teeth: [61, 53]", "ratio: sqrt(2)"])
 def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
     """The sector only swings, so that its wheel is back when it is; of wheels that go round teeth would tell."""
-    text = (PROBLEMS / "gear-doubling.yaml").read_text(encoding="utf-8")
+    text = file_of("sector-and-wheel").read_text(encoding="utf-8")
     results = solve(build(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics")
     assert (results.driver_range.full, results.driver_range.turns, results.driver_range.repeats) == (True, 1, True)
     run = at_places(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x

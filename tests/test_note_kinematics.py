@@ -72,7 +72,7 @@ def test_each_position_in_detail_has_its_numbers_and_the_method_is_told_once():
 
 def test_wheels_racks_and_followers_are_found_from_their_pairs():
     planet = next(one for one in found("planetary-dwell-press") if one.name.name == "ω₂")
-    assert planet.result == pytest.approx(-2 * subject("planetary-dwell-press").results.linkage.driver.rate)
+    assert planet.result == pytest.approx(-4 * subject("planetary-dwell-press").results.linkage.driver.rate)
     assert {"ω₄", "vRR₃"} <= {one.name.name for one in found("rack-doubling")}
     assert "vB" in [one.name.name for one in found("valve-drive")]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from test_commands import ROOT
+from models import file_of
 
 from tmm_cli import solve
 from tmm_cli.problem.errors import ProblemError
@@ -16,7 +16,7 @@ from tmm_cli.synthesis.reading import build, task_of
 
 
 def text_of(name, *edits):
-    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8")
+    text = file_of(name).read_text(encoding="utf-8")
     for pattern, new in edits:
         text, count = re.subn(pattern, new, text, count=1)
         assert count == 1, pattern
@@ -26,7 +26,7 @@ def text_of(name, *edits):
 SHORT = "positions: 24\n  population: 8\n  generations: 3\n"
 OPTIMAL = {
     "class III": ("press-class-iii", (("CE: 310, ", ""),), "{CE: [300, 325]}", "pressure", ""),
-    "wheels": ("tilter", (("DB: 200, ", ""),), "{DB: [150, 250]}", "moment", "{of: pressure, most: 50 deg}"),
+    "wheels": ("planet-on-rocker", (("DB: 200, ", ""),), "{DB: [150, 250]}", "moment", "{of: pressure, most: 50 deg}"),
     "stroke loads": (
         "shaper", ((r"  CD: 650\n", ""),), "{CD: [600, 700]}", "moment",
         "{of: stroke, most: 430}",
@@ -123,7 +123,7 @@ def test_a_stroke_has_no_k():
 
 def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
     """The radii 3 OA/2 and OA/2 roll alike for every OA: the cycle is the same for all."""
-    text = text_of("planetary-dwell-press", ("OA: 100, ", ""), (r"points: \{", block("{OA: [90, 110]}", "box", "")))
+    text = text_of("three-lobes", ("OA: 100, ", ""), (r"points: \{", block("{OA: [90, 110]}", "box", "")))
     assert Candidates(task_of(read_text(text, "x.yaml"))).closed
     with pytest.raises(ProblemError) as caught:
         build(read_text(text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm"), "x.yaml"))

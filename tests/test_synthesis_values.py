@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from test_commands import ROOT
+from models import file_of
 
 from tmm_cli import solve
 from tmm_cli.problem.errors import ProblemError
@@ -21,7 +21,7 @@ def measure(of, results, name=""):
 
 
 def text_of(name, edits, task):
-    text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8")
+    text = file_of(name).read_text(encoding="utf-8")
     for old, new in edits:
         assert old in text, old
         text = text.replace(old, new, 1)
@@ -76,7 +76,7 @@ FIVE_BAR = (("speed: 120 rpm", "speed: n2"), ("l: 180, ", ""))
 def test_a_ratio_that_may_be_any_number_leaves_a_rocking_wheel_its_cycle():
     """Its partner swings, so all is back after a turn; bare bounds of a ratio are no lengths."""
     text = text_of(
-        "gear-doubling", (("teeth: [120, 40], module: 2", "ratio: i"),),
+        "sector-and-wheel", (("teeth: [120, 40], module: 2", "ratio: i"),),
         "vary: {i: [2, 4]}\n  objective: {of: stroke, target: 80}\n  population: 8\n  generations: 4",
     )  # fmt: skip
     found, results = best_of(text)
@@ -218,7 +218,7 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
 
 def test_bounds_of_a_number_of_teeth_are_refused():
     text = text_of(
-        "gear-doubling", (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
+        "sector-and-wheel", (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
         "vary: {z1: [99.5, 140.2]}\n  objective: stroke",
     )  # fmt: skip
     assert "a number of teeth is whole" in refusal_of(text)

@@ -18,8 +18,8 @@ TASKS = {
     "class III, margin": ("press-class-iii", (("CE: 310, ", ""),), "{CE: [250, 400]}", "margin"),
     "class IV": ("class-iv", (("BD: 260, ", ""), *ALWAYS), "{BD: [255, 265]}",
                  "{of: reaction, pair: D}"),
-    "wheels with a lever group": ("gear-doubling", (("AB: 280, ", ""), *ALWAYS), "{AB: [270, 295]}", "moment"),
-    "wheels that come round after turns": ("planetary-dwell-press", (("OA: 100, ", ""), ALWAYS[0]), "{OA: [90, 110]}",
+    "wheels with a lever group": ("sector-and-wheel", (("AB: 280, ", ""), *ALWAYS), "{AB: [270, 295]}", "moment"),
+    "wheels that come round after turns": ("three-lobes", (("OA: 100, ", ""), ALWAYS[0]), "{OA: [90, 110]}",
                                            "moment"),
     "two cranks": ("five-bar", (("l: 180, ", ""),), "{l: [175, 195]}", "moment"),
 }  # fmt: skip
