@@ -70,8 +70,58 @@ def test_a_table_up_to_the_end_of_the_cycle_is_taken(tmp_path, against):
     assert forces(tmp_path, against=against, table="[[0, 0], [90, 5 kN], [360, 0]]").returncode == 0
 
 
-def test_a_table_against_the_stroke_may_reach_beyond_it(tmp_path):
-    assert forces(tmp_path, against="stroke", table="[[0, 0], [500, 5 kN]]").returncode == 0
+@pytest.mark.parametrize("last", [500, 1000])
+def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path, last):
+    ended = forces(tmp_path, against="stroke", table=f"[[0, 0], [{last}, 5 kN]]")
+    assert ended.returncode == 0
+    assert ended.stderr.endswith(
+        f"warning: the table of load gas goes on to {last} mm, but the stroke is 100 mm: its last rows are never "
+        "reached. Is the unit right? Rows in shares fit every stroke (against: share of stroke)\n"
+    )
+
+
+@pytest.mark.parametrize(("last", "short", "long"), [(99, 1, 0), (100, 0, 0), (101, 0, 0), (103, 0, 1)])
+def test_a_table_that_ends_with_the_stroke_has_no_warning(last, short, long):
+    results = slider("stroke", [("0", 0), (last, 900)])
+    said = list(warnings(results))
+    assert sum("its end value is held; rows in shares" in one for one in said) == short
+    assert sum(f"goes on to {last} mm, but the stroke is 100 mm" in one for one in said) == long
+
+
+MANY = (
+    "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row is 100 mm, their "
+    "strokes are 80 mm to 120 mm. Rows in shares fit every stroke (against: share of stroke)\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("against", "table", "told"),
+    [("stroke", "[[0, 0], [100, 900]]", MANY), ("stroke", "[[0, 0], [2*OA, 900]]", ""),
+     ("share of stroke", "[[0, 0], [1, 900]]", "")],
+)  # fmt: skip
+def test_a_sweep_tells_of_tables_that_do_not_fit_all_its_strokes(tmp_path, against, table, told):
+    text = CRANK_SLIDER.format(against=against, table=table).replace("length: 50", "length: OA")
+    (tmp_path / "x.yaml").write_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"))
+    ended = tmm("sweep", "x.yaml", "--over", "OA=40..60:3", "--show", "H", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert told in ended.stderr and ("does not end with the stroke" in ended.stderr) == bool(told)
+
+
+def test_a_setting_that_makes_a_table_too_short_or_too_long_is_warned_of(tmp_path):
+    text = CRANK_SLIDER.format(against="stroke", table="[[0, 0], [100, 900]]").replace("length: 50", "length: OA")
+    (tmp_path / "x.yaml").write_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"))
+    short, long = (tmm("forces", "x.yaml", "--set", f"OA={crank}", cwd=tmp_path).stderr for crank in (60, 40))
+    assert "the table of load gas does not reach as far as the stroke goes: its end value is held; rows" in short
+    assert "the table of load gas goes on to 100 mm, but the stroke is 80 mm: its last rows are never" in long
+
+
+def test_variants_tell_of_tables_that_do_not_fit_all_their_strokes(tmp_path):
+    text = CRANK_SLIDER.format(against="stroke", table="[[0, 0], [100, 900]]").replace("length: 50", "length: OA")
+    text = text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}\nvariants: {OA: {from: 40, to: 60, step: 10}}")
+    (tmp_path / "x.yaml").write_text(text)
+    ended = tmm("variants", "x.yaml", "--count", 3, "-o", "out", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert MANY.replace("warning: x: ", "warning: ") in ended.stderr
 
 
 def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
@@ -200,18 +250,16 @@ def test_a_longer_crank_shifts_rows_of_shares_with_the_stroke_in_digits():
 
 
 def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
-    table = "[[0, 0], [0.3, 900], [1, 100]]"
-    text = CRANK_SLIDER.format(against="share of stroke", table=table)
-    text = text.replace("length: 50", "length: OA").replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}")
-    tree = read_text(text, "x.yaml")
-    mechanisms = Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:3"]), ["M_b"])
-    found = swept(mechanisms)
-    assert found.taped
-    for (crank,), (peak,) in zip(found.points, found.values, strict=True):
-        lengths = f"[[0, 0], [{0.6 * crank}, 900], [{2 * crank}, 100]]"
-        own = CRANK_SLIDER.format(against="stroke", table=lengths).replace("length: 50", f"length: {crank}")
-        moment = solve(problem_of(read_text(own, "x.yaml"))).reactions.balance.moment
-        assert peak == pytest.approx(np.max(np.abs(moment)), rel=1e-12)
+    def peaks(against, table):
+        text = CRANK_SLIDER.format(against=against, table=table).replace("length: 50", "length: OA")
+        tree = read_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"), "x.yaml")
+        return swept(Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:3"]), ["M_b"]))
+
+    shares = peaks("share of stroke", "[[0, 0], [0.3, 900], [1, 100]]")
+    lengths = peaks("stroke", "[[0, 0], [0.6 * OA, 900], [2 * OA, 100]]")
+    assert shares.taped and not lengths.taped
+    assert np.ptp(lengths.values) > 5
+    assert shares.values == pytest.approx(lengths.values, rel=1e-9)
 
 
 def test_shares_are_told_as_they_are_written():

@@ -10,7 +10,7 @@ import typer
 
 from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
 from tmm_cli.cli.opening import introduce, tree_of
-from tmm_cli.cli.talk import OK, say
+from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.draw.formats import files as drawings
 from tmm_cli.draw.sheets.sweep import sheets
 from tmm_cli.grading.task import Task
@@ -21,6 +21,7 @@ from tmm_cli.results.files import RECORD, Staged, folder_name, refuse_place
 from tmm_cli.results.terminal import show as show_table
 from tmm_cli.results.text import csv_text, json_text, plain
 from tmm_cli.results.understood import without_effect
+from tmm_cli.results.warnings.forces import tables_of_many
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.record import Swept
@@ -71,6 +72,8 @@ def sweep(
         with bars() as shown:
             work = shown.add_task(_("solved"), total=points)
             found = swept(mechanisms, way, lambda count: shown.advance(work, count))
+        for slip in tables_of_many(problem.linkage, problem.units, found.reach):
+            warn(f"{problem.name}: {slip}")
         if as_json:
             emit_json(plain(dict(sections(found, problem))))
         else:

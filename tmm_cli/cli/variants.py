@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import console, progress, refusing
-from tmm_cli.cli.talk import say, speak_as
+from tmm_cli.cli.talk import say, speak_as, warn
 from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
 from tmm_cli.grading.choices import with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
 from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.soundness import tables_apart
 from tmm_cli.grading.tables import csv_of, read_students, rows_of_table, xlsx_of
 from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.task_sheets import TaskSheets
@@ -57,6 +58,8 @@ def variants(
             table = draw_for(variety, seed, [*first, *sorted(set(listed) - set(first))])
             count = len(listed)
         _tell(variety, table)
+        for slip in tables_apart(task, table):
+            warn(slip)
         if len(table.rows) < count:
             raise ProblemError(
                 _("there are only {found} variants that are sound and unlike one another").format(

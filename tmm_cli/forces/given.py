@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.linkage import FRAME, Linkage, Load, LoadTable
 from tmm_cli.tolerances import SAME_PLACE, SEAM
 from tmm_cli.vectors import Real, Vector, cross, pi
+
+BEFORE_END = 1e-3  # of the stroke: a table that ends before its end by less is rounded
+BEYOND_END = 0.02  # of the stroke: likewise beyond it
 
 
 def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
@@ -111,6 +115,23 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
     worked: Real = run / first.run if table.shares else run * np.sign(first.run)
     return worked
+
+
+def reach_of_tables(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
+    """Each load tabulated against the stroke in lengths or angles, its last row and the stroke (m or rad).
+
+    Both are arrays (variants, 1) where the linkage is one of many variants.
+    """
+    if strokes is None or not strokes.strokes:
+        return
+    for load in linkage.loads:
+        if load.table is not None and load.table.against == "stroke" and not load.table.shares:
+            yield load, load.table.arguments[-1], np.abs(strokes.strokes[0].run)
+
+
+def ends_with_stroke(last: Any, stroke: Any) -> Any:
+    """Whether the last row of a table is at the end of the stroke, neither before nor beyond it."""
+    return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
 
 
 def _turned(angle: Real, cycle: Real | float) -> Real:

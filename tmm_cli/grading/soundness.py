@@ -7,14 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tmm_cli.forces.given import reach_of_tables
+from tmm_cli.grading.grade import numbers_of
+from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.task import Task
 from tmm_cli.groups.sequence import LinkStates, link_states
 from tmm_cli.kinematics.pressure import angle, followers, named
 from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import _, numeral
 from tmm_cli.library import solve
+from tmm_cli.results.warnings.forces import tables_of_many
 from tmm_cli.tolerances import END_OF_SLOT
-from tmm_cli.variants.family import Family
+from tmm_cli.variants.family import Family, families
 from tmm_cli.vectors import Real
 
 SCAN = 48  # places in a turn of the driver: extremes between them are found by parabolas
@@ -65,6 +69,21 @@ class Faults:
                     beyond = _("its pressure angle goes beyond {limit} deg")
                     told = beyond.format(limit=numeral(np.degrees(limit), ".4g"))
                     yield _top(angle(states, kernel, at, lead)) <= limit, told
+
+
+def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
+    """Load tables that do not end with the stroke of the variants of a table. Raises ProblemError."""
+    linkage = task.problem.whole.linkage
+    if not any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
+        return
+    dimensions, columns = numbers_of(task, table, list(table.rows))
+    reach: dict[str, list[tuple[float, float]]] = {}
+    for __, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+        if isinstance(family, Family):
+            for load, last, stroke in reach_of_tables(family.linkage, family.strokes):
+                rows = np.broadcast_arrays(np.ravel(last), np.ravel(stroke), np.zeros(len(family)))
+                reach.setdefault(load.name, []).extend(zip(rows[0].tolist(), rows[1].tolist(), strict=True))
+    yield from tables_of_many(linkage, task.units, reach)
 
 
 def faults_of(task: Task) -> Faults:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Load, LoadTable
+from tmm_cli.linkage import FRAME, Linkage, Load, LoadTable
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
     ANGLE,
@@ -17,6 +17,7 @@ from tmm_cli.quantities import (
     MASS,
     MOMENT,
     NUMBER,
+    Dimension,
 )  # fmt: skip
 from tmm_cli.results.shown import FILE_WORDS, show, show_vector
 from tmm_cli.results.stages import heavy
@@ -67,14 +68,19 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     return load.name, link, place, size, when
 
 
+def argument_dimension(linkage: Linkage, table: LoadTable) -> Dimension:
+    """What the first column of a load's table measures."""
+    if table.shares:
+        return NUMBER
+    if table.against != "stroke":
+        return ANGLE
+    link = output_link(linkage, analyse(linkage).groups)
+    return ANGLE if link is None or linkage.output_swings(link) else LENGTH
+
+
 def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
     """The rows of a load's table; of a force, its direction too."""
-    linkage, measure = problem.linkage, ANGLE
-    if table.shares:
-        measure = NUMBER
-    elif table.against == "stroke":
-        link = output_link(linkage, analyse(linkage).groups)
-        measure = ANGLE if link is None or linkage.output_swings(link) else LENGTH
+    linkage, measure = problem.linkage, argument_dimension(problem.linkage, table)
     rows = [
         (show(problem, at, measure), show(problem, size, FORCE if load.force else MOMENT))
         for at, size in zip(table.arguments, table.values, strict=True)

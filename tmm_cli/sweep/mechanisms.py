@@ -12,11 +12,14 @@ import numpy as np
 from tmm_cli.analysis import pipeline
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.errors import AssemblyError, LinkageError
+from tmm_cli.forces.given import reach_of_tables
 from tmm_cli.forces.plan import Reactions
 from tmm_cli.grading.task import Task
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.kinematics.strokes import Strokes
 from tmm_cli.language import _
 from tmm_cli.library import inputs_of
+from tmm_cli.linkage import Linkage
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals import refusal
@@ -54,11 +57,16 @@ class Read:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Of points (points,): how they go, why (a limit, or a refusal); what is shown of them, (points, quantities)."""
+    """Of points (points,): how they go, why (a limit, or a refusal); what is shown of them, (points, quantities).
+
+    reach: of each load tabulated against the stroke in lengths, its last row and the stroke (points, loads, 2), m or
+    rad; nan where there is none.
+    """
 
     state: Real
     why: list[str]
     values: Real
+    reach: Real
 
 
 class Mechanisms:
@@ -71,7 +79,12 @@ class Mechanisms:
         self.names = tuple(axis.name for axis in axes)
         self.dimensions = tuple(axis.dimension for axis in axes)
         self.factors = np.array([axis.factor for axis in axes])
-        self.allowed = self.task.problem.whole.pressure_limits
+        problem = self.task.problem.whole
+        self.allowed = problem.pressure_limits
+        self.tables = tuple(
+            load.name for load in problem.linkage.loads
+            if load.table is not None and load.table.against == "stroke" and not load.table.shares
+        )  # fmt: skip
 
     def __reduce__(self) -> tuple[type[Mechanisms], tuple[Any, ...]]:
         """What it found is found again in another process."""
@@ -117,7 +130,8 @@ class Mechanisms:
     def at(self, points: Real, *, values: bool = True) -> Found:
         """Points as they are written (points, parameters). values: else it is only told how they go."""
         count = len(points)
-        found = Found(np.zeros(count, dtype=int), [""] * count, np.full((count, len(self.shown)), np.nan))
+        found = Found(np.zeros(count, dtype=int), [""] * count, np.full((count, len(self.shown)), np.nan),
+                      np.full((count, len(self.tables), 2), np.nan))  # fmt: skip
         if self.turning is None:
             self._one_by_one(points, np.arange(count), found)
             return found
@@ -131,13 +145,13 @@ class Mechanisms:
             found.why[row] = _("one of very many that are built otherwise than the file's own")
         self._one_by_one(points, otherwise[:DOUBTS], found)
         for row in unsure[:DOUBTS]:
-            state, found.why[row], found.values[row] = self._alone(points[row])
+            state, found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
             found.state[row] = found.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
         return found
 
     def _one_by_one(self, points: Real, rows: Iterable[int], found: Found) -> None:
         for row in rows:
-            found.state[row], found.why[row], found.values[row] = self._alone(points[row])
+            found.state[row], found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
 
     def _taped(self, points: Real, part: Real, found: Found, values: bool) -> tuple[Real, Real]:
         """Fill in what the tape tells; which rows other stages tell, and which are built otherwise."""
@@ -163,7 +177,9 @@ class Mechanisms:
                 whole = len(rows) == len(part)
                 own = varied if whole else turning.varied(columns[rows])[0]
                 try:
-                    found.values[part[rows]] = self._values(columns[rows], looked.take(rows), own)
+                    found.values[part[rows]], found.reach[part[rows]] = self._values(
+                        columns[rows], looked.take(rows), own
+                    )
                 except NoTapeError:
                     return part, nothing
         return part[unsure], part[otherwise]
@@ -176,8 +192,8 @@ class Mechanisms:
         angles = [one for one in self.turning.limited if one.kind == "pressure"]
         return [one.name for one in angles if one.link == self.turning.output] or [one.name for one in angles]
 
-    def _values(self, columns: Real, looked: Looked, varied: Any) -> Real:
-        """What is shown of variants that work."""
+    def _values(self, columns: Real, looked: Looked, varied: Any) -> tuple[Real, Real]:
+        """What is shown of variants that work, and how far their tables of loads reach."""
         turning = self.turning
         assert turning is not None
         strokes = strokes_of(turning, columns, looked, varied)
@@ -195,27 +211,38 @@ class Mechanisms:
             else:
                 values = np.broadcast_to(over[one.name], (len(columns), len(q)))
                 found[:, k] = one.over_cycle(_curves_of(at, one.name), q, values)
+        return found, self._reach(varied.linkage, strokes, len(columns))
+
+    def _reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
+        """Last rows of tables against the stroke, and strokes, (variants, loads, 2)."""
+        found = np.full((count, len(self.tables), 2), np.nan)
+        for load, last, stroke in reach_of_tables(linkage, strokes):
+            k = self.tables.index(load.name)
+            found[:, k, 0], found[:, k, 1] = np.ravel(last), np.ravel(stroke)
         return found
 
-    def _alone(self, point: Real) -> tuple[int, str, Real]:
-        """A point by the ordinary stages: how it goes, why, what is shown."""
-        nothing = np.full(len(self.shown), np.nan)
+    def _alone(self, point: Real) -> tuple[int, str, Real, Real]:
+        """A point by the ordinary stages: how it goes, why, what is shown, how far its tables reach."""
+        nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(one.forces for one in self.shown)
         try:
             problem = self._as_own(self.task.variant(texts).whole)
         except ProblemError as error:
-            return REFUSED, error.message, nothing
+            return REFUSED, error.message, *nothing
         try:
             results = pipeline.solve(inputs_of(problem), "forces" if forces else "kinematics", problem=problem)
         except LinkageError as error:
-            return (APART if isinstance(error, AssemblyError) else REFUSED), refusal(error, problem).message, nothing
+            state = APART if isinstance(error, AssemblyError) else REFUSED
+            return state, refusal(error, problem).message, *nothing
         if self.goes and not measures.goes_its_way(results):
-            return STOPS, "", nothing
+            return STOPS, "", *nothing
         over = [f"pressure {one.link}" for one in results.pressure if not one.holds]
         over += [f"slot {one.slide.name}" for one in results.slots if one.ways]
         with np.errstate(all="ignore"):
-            return (LIMIT, over[0], self._of(results)) if over else (WORKS, "", self._of(results))
+            reach = self._reach(results.linkage, results.strokes, 1)[0]
+            state, why = (LIMIT, over[0]) if over else (WORKS, "")
+            return state, why, self._of(results), reach
 
     def _as_own(self, problem: Problem) -> Problem:
         """The same, sketched in the assembly of the file's own variant where a tape knows that for all."""

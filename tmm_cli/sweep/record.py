@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.language import N_
@@ -35,7 +36,8 @@ class Mark:
 class Swept:
     """A sweep. state: how the mechanism goes, (points,); values: (points, quantities), SI, nan where it does not go.
 
-    Points are in the order of sweep.grid. taped: whether a tape did it.
+    Points are in the order of sweep.grid. taped: whether a tape did it. reach: by the name of each load tabulated
+    against the stroke in lengths, its last row and the stroke of each point that has one (m or rad).
     """
 
     axes: tuple[Axis, ...]
@@ -46,6 +48,7 @@ class Swept:
     values: Real
     marks: tuple[Mark, ...]
     taped: bool
+    reach: Mapping[str, Sequence[tuple[float, float]]]
 
     @property
     def shape(self) -> tuple[int, ...]:

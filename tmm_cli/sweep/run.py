@@ -87,7 +87,11 @@ def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] =
     why = [text for part in whole for text in part.why]
     values = np.concatenate([part.values for part in whole])
     marks = _marks(mechanisms, _edges(axes, points, state, why), way)
-    return Swept(axes, mechanisms.shown, points, state, why, values, marks, taped)
+    reach = np.concatenate([part.reach for part in whole])
+    of_loads = {
+        name: reach[np.all(np.isfinite(reach[:, k]), axis=1), k].tolist() for k, name in enumerate(mechanisms.tables)
+    }
+    return Swept(axes, mechanisms.shown, points, state, why, values, marks, taped, of_loads)
 
 
 @dataclass(frozen=True, eq=False)

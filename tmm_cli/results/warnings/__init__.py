@@ -24,6 +24,7 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     pairs.impacts,
     forces.driving_loads,
     forces.short_tables,
+    forces.long_tables,
     forces.open_tables,
     forces.without_strokes,
     forces.unmet_demands,

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.forces.applied import Applied
-from tmm_cli.forces.given import given_loads, in_window, table_argument
+from tmm_cli.forces.given import ends_with_stroke, given_loads, in_window, reach_of_tables, table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral
-from tmm_cli.linkage import Load, LoadTable
+from tmm_cli.linkage import Linkage, Load, LoadTable
+from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, FORCE, MOMENT
+from tmm_cli.results.given_loads import argument_dimension
 from tmm_cli.results.reports.synthesis import missed
 from tmm_cli.results.table import with_unit
 from tmm_cli.results.warnings.motion import driver_place
@@ -130,9 +132,51 @@ def short_tables(results: Results) -> Iterable[str]:
     """Tables of loads that end before the motion does."""
     for load in results.linkage.loads if results.loads else ():
         if load.table is not None and _short(results, load, load.table):
-            yield _(
+            told = _(
                 "the table of load {load} does not reach as far as the {against} goes: its end value is held"
             ).format(load=load.name, against=_(load.table.against))
+            if load.table.against == "stroke" and not load.table.shares:
+                told = _("{slip}; rows in shares reach over every stroke (against: share of stroke)").format(slip=told)
+            yield told
+
+
+def long_tables(results: Results) -> Iterable[str]:
+    """Tables of loads that go on beyond the stroke."""
+    units = results.problem.units
+    for load, last, stroke in reach_of_tables(results.linkage, results.strokes) if results.loads else ():
+        assert load.table is not None
+        if last > stroke and not ends_with_stroke(last, stroke):
+            measure = argument_dimension(results.linkage, load.table)
+            yield _(
+                "the table of load {load} goes on to {last}, but the stroke is {stroke}: its last rows are never "
+                "reached. Is the unit right? Rows in shares fit every stroke (against: share of stroke)"
+            ).format(load=load.name, last=with_unit(units, last, measure), stroke=with_unit(units, stroke, measure))
+
+
+def tables_of_many(
+    linkage: Linkage, units: UnitSystem, reach: Mapping[str, Sequence[tuple[float, float]]]
+) -> Iterable[str]:
+    """Tables of loads that do not end with the stroke, among many mechanisms of one kind.
+
+    Args:
+        linkage: any of the mechanisms.
+        units: those of the file.
+        reach: by the name of the load, the last row of its table and the stroke of each mechanism (m or rad).
+    """
+    for load in linkage.loads:
+        lasts, strokes = np.array(reach.get(load.name) or np.zeros((0, 2))).T
+        apart = ~ends_with_stroke(lasts, strokes)
+        if load.table is not None and np.any(apart):
+            measure = argument_dimension(linkage, load.table)
+            yield _(
+                "the table of load {load} does not end with the stroke in {apart} of {count} mechanisms: its last row "
+                "is {last}, their strokes are {least} to {largest}. Rows in shares fit every stroke (against: share of "
+                "stroke)"
+            ).format(
+                load=load.name, apart=np.count_nonzero(apart), count=len(apart),
+                last=with_unit(units, lasts[apart][0], measure), least=with_unit(units, np.min(strokes), measure),
+                largest=with_unit(units, np.max(strokes), measure),
+            )  # fmt: skip
 
 
 def open_tables(results: Results) -> Iterable[str]:
