@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import typer
+from test_commands import tmm
 
 from tests import messages
 from tmm_cli import load, solve
@@ -131,6 +132,24 @@ def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tm
             speaking(lambda files=files: each(files, work))(lang=asked)
     assert heard == ["ru", "en", "sr"]
     assert language() == "en"
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"tmm: 1\nlang: ru\ntitle: a: b\n", "x.yaml:3:9: ':' там, где его быть не может"),
+        (b"\xef\xbb\xbf{tmm: 1,\n 'lang': 'ru',\n title: [1, 2}\n", "x.yaml:3:9: '[' не закрыта"),
+        (b"title: a\ttmm: 1\nlang: sr # srpski\n\ttmm: 1\n", "x.yaml:3:1: za uvlačenje je upotrebljen tabulator"),
+        (b'tmm: 1\ntitle: "\xcf\xf0"\nlang: sr\n', "x.yaml:2:9: fajl nije UTF-8 tekst"),
+        (b"tmm: 1\ntitle: a: b # lang: ru\n", "x.yaml:2:9: a ':' where none can be"),
+    ],
+)
+@pytest.mark.parametrize("command", ["structure", "grade", "variants"])
+def test_a_file_that_cannot_be_read_is_refused_in_its_language(tmp_path, content, told, command):
+    (tmp_path / "x.yaml").write_bytes(content)
+    ended = tmm(command, "x.yaml", *(["--template", "sheet.csv"] if command == "grade" else []), cwd=tmp_path)
+    assert ended.returncode == 2
+    assert told in ended.stderr.splitlines()[0]
 
 
 TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grading/exports")

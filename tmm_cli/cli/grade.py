@@ -13,8 +13,8 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
-from tmm_cli.cli.opening import introduce
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say, speak_as
+from tmm_cli.cli.opening import introduce, read_in_its_language
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
 from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
@@ -27,7 +27,6 @@ from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import _
 from tmm_cli.problem.errors import chosen_names
-from tmm_cli.problem.reader import read_file
 from tmm_cli.results.files import refuse_place
 from tmm_cli.results.terminal import show
 
@@ -61,7 +60,7 @@ def grade(
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
     """
     with refusing():
-        task = read_task(speak_as(read_file(file)))
+        task = read_task(read_in_its_language(file))
         if template is not None:
             write_template(task, template)
             say(_("written: {files}").format(files=template))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tmm_cli.cli.talk import say, speak_as, warn
-from tmm_cli.language import _
+from tmm_cli.language import ENGLISH, _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.reader import decoded, file_bytes, language_in, read_text
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Tree
@@ -18,7 +18,19 @@ from tmm_cli.results.understood import bare_units, doubts, understood
 
 def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
     """The file as it is read, with other parameters; its language is spoken from here on. Raises ProblemError."""
-    return with_settings(speak_as(read_file(file)), settings or ())
+    return with_settings(read_in_its_language(file), settings or ())
+
+
+def read_in_its_language(file: str) -> Tree:
+    """The file as it is read; its language is spoken from here on, also by what refuses to read it.
+
+    Raises ProblemError.
+    """
+    data = file_bytes(file)
+    speak_as(language_in(data))
+    tree = read_text(decoded(data, file), file)
+    speak_as(tree.data.get("lang", ENGLISH))
+    return tree
 
 
 def opened(

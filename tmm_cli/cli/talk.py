@@ -11,7 +11,6 @@ from typing import Annotated, Any, Literal, get_args
 import typer
 
 from tmm_cli.language import ENGLISH, _, speak, spoken
-from tmm_cli.problem.tree import Tree
 
 OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
 
@@ -54,9 +53,7 @@ def speaking(command: Callable[..., None]) -> Callable[..., None]:
     return spoken_command
 
 
-def speak_as(tree: Tree) -> Tree:
-    """The same file; its language is spoken from here on, unless the command was asked for another."""
-    own = tree.data.get("lang", ENGLISH)
-    if _asked_for.get() is None and own in get_args(Language):
-        speak(own)
-    return tree
+def speak_as(language: object) -> None:
+    """Speak the language of a file from here on, unless the command was asked for another."""
+    if _asked_for.get() is None and language in get_args(Language):
+        speak(str(language))

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import console, progress, refusing
-from tmm_cli.cli.talk import say, speak_as, warn
+from tmm_cli.cli.opening import read_in_its_language
+from tmm_cli.cli.talk import say, warn
 from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
 from tmm_cli.grading.choices import with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
@@ -19,7 +20,6 @@ from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.task_sheets import TaskSheets
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file
 from tmm_cli.results.files import Staged, refuse_place
 from tmm_cli.results.table import table_of_words
 from tmm_cli.results.terminal import show
@@ -47,7 +47,7 @@ def variants(
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
         refuse_place(out, folder=True)
-        task = read_task(with_vary(speak_as(read_file(file)), vary or ()))
+        task = read_task(with_vary(read_in_its_language(file), vary or ()))
         variety = Variety(task)
         if students is None:
             table = draw(variety, seed, count)

@@ -23,6 +23,7 @@ from tmm_cli.problem.yaml_errors import tab_error
 
 MAX_BYTES: Final = 1_000_000
 
+_LANG = re.compile(rb"^[{ \t]*[\"']?lang[\"']?\s*:\s*[\"']?(en|ru|sr)\b", re.MULTILINE)
 _TAB = re.compile(r"^ *\t[ \t]*[^\s#]", re.MULTILINE)
 
 
@@ -40,6 +41,17 @@ def read_file(path: str | os.PathLike[str]) -> Tree:
 
 def file_text(file: str) -> str:
     """The text of a file of bounded size. Raises ProblemError."""
+    return decoded(file_bytes(file), file)
+
+
+def language_in(data: bytes) -> str | None:
+    """The language that a problem file names in a line `lang: ru`, even if it cannot be read as a whole."""
+    named = _LANG.search(data.removeprefix(codecs.BOM_UTF8))
+    return None if named is None else named[1].decode()
+
+
+def file_bytes(file: str) -> bytes:
+    """The content of a file of bounded size. Raises ProblemError."""
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
@@ -56,7 +68,7 @@ def file_text(file: str) -> str:
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason), file=file) from None
     if len(data) > MAX_BYTES:
         raise _too_large(file, f"more than {MAX_BYTES} bytes")
-    return _decoded(data, file)
+    return data
 
 
 def _too_large(file: str, found: str) -> ProblemError:
@@ -64,7 +76,8 @@ def _too_large(file: str, found: str) -> ProblemError:
     return ProblemError(_("the file is too large"), found=found, allowed=allowed, file=file)
 
 
-def _decoded(data: bytes, file: str) -> str:
+def decoded(data: bytes, file: str) -> str:
+    """The content of a file as text. Raises ProblemError when it is not UTF-8."""
     body = data.removeprefix(codecs.BOM_UTF8)
     try:
         return body.decode()
