@@ -426,3 +426,8 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
         expected = [wide[False, "slides", k, row] for row in range(2)]
         error = np.abs(column.values - np.stack(expected, axis=1).ravel())
         assert np.all(error <= column.bound), header
+
+
+def test_a_load_by_the_stroke_is_judged_in_files_too(tmp_path):
+    """Its strokes are computed anew with each length changed; then the largest of their travels is one of arrays."""
+    assert tmm("forces", ROOT / "problems" / "toggle-press.yaml", "--digits", "-o", tmp_path).returncode == 0

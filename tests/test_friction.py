@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
-from models import linkage_of, results_of
+from models import linkage_of, results_of, solved_text
 from transforms import turned
 
 from tmm_cli.analysis.mechanism import Inputs
 from tmm_cli.analysis.pipeline import solve
 from tmm_cli.linkage import Friction, Request
+from tmm_cli.results.cells import computed_tables
+from tmm_cli.results.digits import accuracy
 
 G = 9.81
 SLIDER = {
@@ -141,3 +144,50 @@ def test_a_machine_without_a_useful_load_has_an_efficiency_of_zero_and_without_f
     }  # fmt: skip
     assert results_of(idle | {"friction": {"coefficient": 0.1, "radius": 0.02}}).losses.efficiency == 0
     assert results_of(idle | {"friction": {"coefficient": 1e-20, "radius": 0.02}}).losses.efficiency is None
+
+
+CRANK_PRESS = """tmm: 1
+points: {O: [0, 0]}
+guides: {x: {through: O, angle: 0}}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: [A, B], length: 400}
+  3: {points: [B], slides: {on: x}}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [440, 0]}
+loads: {F: {on: 3, at: B, force: [-5000, 0]}}
+friction: {coefficient: 0.1, radius: 30, pairs: {x: {coefficient: 0.15}, B: {radius: 20}}}
+gravity: 0
+positions: {at: [-120, -60, -20]}
+"""
+
+
+def moment_by_friction_circles(degrees):
+    """The driving moment (N*m) of the press above on its way to the load, in 50 digits.
+
+    The rod has no mass: its force S is a tangent to the friction circles of A (radius 0.1 * 30 = 3 mm) and of B (2 mm),
+    so it deviates from AB by asin((3 + 2) / 400), or by asin((3 - 2) / 400) beyond the upright crank, where the rod
+    rotates back. The guide's force is at its friction angle: F + mu N = S cos(beta), N = S sin(beta).
+    I. I. Artobolevsky, Theory of Mechanisms, ch. 11.
+    """
+    with mp.workdps(50):
+        r, rod, F, mu = mp.mpf("0.1"), mp.mpf("0.4"), mp.mpf(5000), mp.mpf("0.15")
+        phi = mp.radians(-degrees)  # mirrored: the crank is above the guide, and the slider moves outwards
+        lean, radius_A, radius_O = mp.asin(r * mp.sin(phi) / rod), mp.mpf("0.003"), mp.mpf("0.003")
+        beta = lean + mp.asin(
+            (radius_A + mp.sign(mp.cos(phi)) * mp.mpf("0.002")) / l
+        )  # friction turns the rod's force away from the guide
+        S = F / (mp.cos(beta) - mu * mp.sin(beta))
+        # arm of S about O: the crank's own, and both friction circles; the line passes A at the radius of its circle
+        return S * (r * mp.sin(phi + beta) + radius_A + radius_O)
+
+
+@pytest.mark.parametrize(("number", "degrees"), [(0, -120), (1, -60), (2, -20)])
+def test_a_press_needs_the_moment_of_its_friction_circles_and_digits_bound_it(number, degrees):
+    results = solved_text(CRANK_PRESS)
+    table = accuracy(results).table(next(one for one in computed_tables(results) if one.name == "balance"))
+    balance = next(column for column in table.columns if column.header == "M_b")
+    exact = moment_by_friction_circles(degrees)
+    value = results.reactions.balance.moment[number]
+    assert value == pytest.approx(float(exact), rel=1e-12)
+    assert abs(mp.mpf(float(value)) - exact) <= balance.bound[number] < 1e-6 * abs(value)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tmm_cli.double_double import array
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.plan import Reaction, Reactions, power, react
 from tmm_cli.groups.linear import solve
@@ -88,7 +89,7 @@ def solve_friction(
     names = [f.pair for f in given]
     ones = np.ones(np.shape(motion.q))
     units = [tuple(_loads(f, motion, free, ones)) for f in given]
-    response = np.array([_forces(react(motion, structure, unit), names) for unit in units])  # friction, pair, position
+    response = array([_forces(react(motion, structure, unit), names) for unit in units])  # friction, pair, position
     start = _forces(free, names)
     reactions, locked = free, np.zeros(np.shape(motion.q), dtype=bool)
     rubbed: tuple[Applied, ...] = ()
@@ -101,9 +102,9 @@ def solve_friction(
             off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
         if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
             break
-        start = new - np.einsum("kjn,kn->jn", response, sizes)
+        start = new - np.sum(response * sizes[:, None], axis=0)
     work = {f.pair: _work(f, motion, reactions) for f in given}
-    stacked = np.nan_to_num(np.abs(np.array(list(work.values()))))
+    stacked = np.nan_to_num(np.abs(array(list(work.values()))))
     worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
     locked = locked & motion.moving
     if bool(np.any(locked)):
@@ -115,7 +116,8 @@ def solve_friction(
 
 def _forces(reactions: Reactions, names: list[str]) -> Vector:
     """Forces in the given pairs, (pair, position)."""
-    return np.array([reactions.of(name).force for name in names])
+    found: Vector = array([reactions.of(name).force for name in names])
+    return found
 
 
 def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
@@ -131,7 +133,7 @@ def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
             part = response * (stage / STAGES)
             last = np.full(count, np.inf)
             for _ in range(ROUNDS):
-                force = start + np.einsum("kjn,kn->jn", part, sizes)
+                force = start + np.sum(part * sizes[:, None], axis=0)
                 along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
                 slope = (np.conj(along)[None] * part).real  # of |force j| by f_k
                 matrix = np.eye(number)[None] - np.moveaxis(slope, (0, 1, 2), (2, 1, 0))

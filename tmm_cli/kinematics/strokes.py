@@ -55,7 +55,7 @@ class Strokes:
     @property
     def travel(self) -> float:
         """Stroke H (m) or swing psi (rad)."""
-        return max((abs(s.run) for s in self.strokes), default=0.0)
+        return max((abs(s.run) for s in self.strokes), key=np.max, default=0.0)
 
     @property
     def k(self) -> float:
