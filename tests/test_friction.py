@@ -174,9 +174,8 @@ def moment_by_friction_circles(degrees):
         r, rod, F, mu = mp.mpf("0.1"), mp.mpf("0.4"), mp.mpf(5000), mp.mpf("0.15")
         phi = mp.radians(-degrees)  # mirrored: the crank is above the guide, and the slider moves outwards
         lean, radius_A, radius_O = mp.asin(r * mp.sin(phi) / rod), mp.mpf("0.003"), mp.mpf("0.003")
-        beta = lean + mp.asin(
-            (radius_A + mp.sign(mp.cos(phi)) * mp.mpf("0.002")) / l
-        )  # friction turns the rod's force away from the guide
+        turned = mp.sign(mp.cos(phi))  # in which sense the rod rotates
+        beta = lean + mp.asin((radius_A + turned * mp.mpf("0.002")) / rod)  # S leans away from the guide by friction
         S = F / (mp.cos(beta) - mu * mp.sin(beta))
         # arm of S about O: the crank's own, and both friction circles; the line passes A at the radius of its circle
         return S * (r * mp.sin(phi + beta) + radius_A + radius_O)
