@@ -5,6 +5,7 @@ import math
 import blocks
 import numpy as np
 import pytest
+from bank import EVERY, PROBLEMS, solved
 from fuzz import beyond
 from scipy.interpolate import CubicSpline
 from test_commands import ROOT, tmm
@@ -19,6 +20,7 @@ from tmm_cli.grading.task import Task
 from tmm_cli.interpolation import Table
 from tmm_cli.library import problem_of
 from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.templates import template_text
 from tmm_cli.results.given import given
 from tmm_cli.results.warnings import warnings
 from tmm_cli.sweep.grid import read_axes
@@ -89,8 +91,8 @@ def test_a_table_that_ends_with_the_stroke_has_no_warning(last, short, long):
 
 
 MANY = (
-    "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row is 100 mm, their "
-    "strokes are 80 mm to 120 mm. Rows in shares fit every stroke (against: share of stroke)\n"
+    "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row is 100 mm, "
+    "their strokes are 80 mm to 120 mm. Rows in shares fit every stroke (against: share of stroke)\n"
 )
 
 
@@ -409,3 +411,24 @@ output: 3
         "  allowed: against: crank angle\n"
     )
     assert ended.returncode == 2
+
+
+def test_the_template_of_a_shaper_shows_a_table_in_shares_that_runs():
+    text = template_text("shaper")
+    lines = text.splitlines()
+    (first,) = (k for k, line in enumerate(lines) if "share of stroke, table" in line)
+    table = "\n".join(line.replace("  #", "  ", 1) for line in lines[first : first + 2])
+    whole = text.replace("  F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}", table)
+    results = solve(problem_of(read_text(whole, "shaper.yaml")))
+    assert not [one for one in warnings(results) if "table" in one]
+    (load,) = [one for one in results.loads if one.name == "F"]
+    share = (results.motion.named("E").x.real - results.strokes.strokes[0].low) / results.strokes.strokes[0].run
+    works = results.strokes.share(results.motion.q, 1)
+    assert load.force.real == pytest.approx(np.where(works & (share > 0.05) & (share < 0.95), 1500, 0))
+
+
+def test_tables_of_the_bank_against_the_stroke_end_with_it():
+    names = [name for name in EVERY if "against: stroke" in (PROBLEMS / f"{name}.yaml").read_text("utf-8")]
+    assert len(names) >= 2
+    for name in names:
+        assert not [one for one in warnings(solved(name)) if "table of load" in one], name

@@ -31,8 +31,8 @@ TWINS = "this name looks like another one, but its letters differ"
 ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
     "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
-    "links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, output, "
-    "cycle, intermittent, positions, checks, dynamics, balancing, sheet"
+    "links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, "
+    "output, cycle, intermittent, positions, checks, dynamics, balancing, sheet"
 )
 
 

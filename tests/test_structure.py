@@ -210,6 +210,6 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
     )
     said = list(warnings(solve(build(read_text(text, "x.yaml")))))
     assert said == [
-        "the table of load F does not reach as far as the stroke goes: its end value is held; rows in shares reach over "
-        "every stroke (against: share of stroke)"
+        "the table of load F does not reach as far as the stroke goes: its end value is held; rows in shares reach "
+        "over every stroke (against: share of stroke)"
     ]
