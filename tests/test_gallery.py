@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -125,6 +126,17 @@ def test_texts_of_files_are_data(tmp_path):
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)
+
+
+def test_the_page_says_nothing_of_the_machine_that_it_was_written_on(tmp_path):
+    (tmp_path / "bank" / "presses").mkdir(parents=True)
+    files = [tmp_path / "bank" / "sine.yaml", tmp_path / "bank" / "presses" / "press.yaml"]
+    for file in files:
+        shutil.copy(PROBLEMS / "sine.yaml", file)
+    html = page([card(str(file)) for file in files])
+    assert str(tmp_path) not in html and "<code>sine.yaml</code>" in html
+    assert f"<code>{Path('presses', 'press.yaml')}</code>" in html
+    assert "<code>sine.yaml</code>" in page([card(str(files[0]))])
 
 
 def test_a_broken_file_is_said_and_left_out(tmp_path):

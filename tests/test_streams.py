@@ -1,6 +1,7 @@
 """Streams and files that fail the commands: closed, full, broken off, in another encoding; interruptions."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import sys
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
+from tmm_cli.library import problem_of
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column, Table, table_of_words
@@ -160,3 +162,96 @@ def test_characters_that_the_font_lacks_are_one_note(tmp_path):
     note = "note: the font of the drawings lacks these characters, boxes stand for them: 摇 杆\n"
     assert done.returncode == 0
     assert after_the_echo(done.stderr) == f"{note}written: {tmp_path / 'sine'}\n"
+
+
+SHAPER_FILE = ROOT / "problems" / "shaper.yaml"
+NAMED = [
+    "run", "structure", "kinematics", "forces", "dynamics", "explain", "check", "note", "sheets", "animate", "gallery",
+    "synthesis", "import", "export",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", NAMED)
+def test_control_characters_of_a_name_do_not_reach_the_terminal(command, tmp_path):
+    name = "a\x1b]0;mine\x07\x1b[31mred\r\x9b2J\u202e.yaml"
+    (tmp_path / name).write_text(SINE.read_text(encoding="utf-8"), encoding="utf-8")
+    further = ["--to", "pylinkage"] if command == "export" else []
+    done = tmm(command, name, *further, cwd=tmp_path)
+    assert done.stdout + done.stderr
+    assert not set("\x1b\x07\r\x9b\u202e") & set(done.stdout + done.stderr)
+    several = tmm("structure", name, name, cwd=tmp_path)  # whose tables come under their names
+    assert several.returncode == 0 and not set("\x1b\x07\r\x9b\u202e") & set(several.stdout + several.stderr)
+
+
+def test_a_line_break_in_a_name_makes_no_line_of_its_own(tmp_path):
+    name = "a\nerror: all is lost.yaml"
+    (tmp_path / name).write_text(SINE.read_text(encoding="utf-8"), encoding="utf-8")
+    for words in (("structure", name), ("run", name, "--no-drawings", "-o", "o\nut"), ("run", "none\n.yaml")):
+        done = tmm(*words, cwd=tmp_path)
+        assert all(not line.startswith(("error: all", "ut", ".yaml")) for line in done.stderr.splitlines())
+
+
+WITH_PLACES = [
+    ("run", "f"), ("structure", "f"), ("kinematics", "f"), ("forces", "f"), ("dynamics", "f"), ("note", "f"),
+    ("sheets", "f"), ("animate", "f"), ("gallery", "f"), ("synthesis", "f"), ("import", "f"),
+    ("export", "f", "--to", "pylinkage"), ("new", "shaper"), ("sweep", "f", "--over", "r=20..80:4"),
+    ("schemes", "--links", "4"), ("grade", "f", "--variants", "v", "--submissions", "s"),
+    ("variants", "f", "--count", "3"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", WITH_PLACES, ids=lambda words: words[0])
+def test_an_address_of_a_network_is_no_place_of_results(words, tmp_path):
+    for address in ("s3://bucket/results", "file:///results", "https://host/x"):
+        done = tmm(*words, "-o", address, cwd=tmp_path)
+        assert done.returncode == 2 and done.stdout == ""
+        said = address.replace(":///", "://")
+        assert done.stderr == (
+            f"error: {said} is an address of a network: results are written to a local folder or file\n"
+        )
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_of_its_own(monkeypatch):
+    def broken(tree):
+        return 1 / 0
+
+    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", broken)
+    done = tmm("forces", SINE)
+    assert done.returncode == 3 and done.stdout == ""
+    assert re.fullmatch(
+        r"internal fault: ZeroDivisionError at tmm_cli/cli/opening\.py:\d+ \(tmm 0\.1\.0, command forces\): "
+        r"please report this line and the file; TMM_TRACEBACK=1 prints the traceback\n",
+        done.stderr,
+    )
+    monkeypatch.setenv("TMM_TRACEBACK", "1")
+    told = tmm("forces", SINE).stderr
+    assert told.startswith("Traceback (most recent call last):") and told.endswith(done.stderr)
+
+
+def test_a_fault_of_one_file_does_not_keep_the_others_from_being_worked_on(monkeypatch):
+    def broken(tree, sound=problem_of):
+        return sound(tree) if tree.name == "shaper" else 1 / 0
+
+    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", broken)
+    done = tmm("forces", SINE, SHAPER_FILE)
+    assert done.returncode == 3 and done.stderr.count("internal fault") == 1
+    assert f"== {SHAPER_FILE} ==" in done.stdout and "M_b" in done.stdout
+
+
+def test_want_of_memory_is_one_line(monkeypatch):
+    def greedy(tree):
+        raise MemoryError
+
+    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", greedy)
+    done = tmm("forces", SINE)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == "error: there is not enough memory; fewer positions, variants or drawings take less\n"
+
+
+def test_a_wrong_backend_of_matplotlib_does_not_matter(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "tmm_cli", "run", str(SINE), "-o", str(tmp_path)], capture_output=True, encoding="utf-8",
+        env={**os.environ, "PYTHONPATH": str(ROOT), "MPLBACKEND": "nonsense"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr

@@ -11,7 +11,7 @@ from tmm_cli import solve
 from tmm_cli.animate.page import page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
-from tmm_cli.cli.talk import say, warn
+from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.language import _
 from tmm_cli.results.files import folder_name, refuse_place, write_whole
 from tmm_cli.results.warnings import warnings
@@ -39,4 +39,4 @@ def animate(
         write_whole(target, page(results).encode())
         for warning in warnings(results):
             warn(warning)
-        say(_("written: {folder}").format(folder=target))
+        say(_("written: {folder}").format(folder=printable(target)))

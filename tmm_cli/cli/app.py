@@ -13,7 +13,7 @@ import typer
 
 from tmm_cli import __version__
 from tmm_cli.cli.commands import add_commands
-from tmm_cli.cli.talk import BAD_INPUT, OK, say
+from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, tell_fault
 from tmm_cli.language import _
 
 COMMANDS = {
@@ -75,6 +75,7 @@ def main() -> None:
     gc.set_threshold(100_000)  # a short run makes little rubbish, and importing makes much that only looks like it
     # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    os.environ["MPLBACKEND"] = "agg"  # whatever the environment has: no window is opened
     _open_streams()
     try:
         application(sys.argv[1:])()
@@ -84,6 +85,8 @@ def main() -> None:
     except OSError as error:
         say(_told(error))
         sys.exit(_flushed(BAD_INPUT))
+    except Exception as error:
+        sys.exit(_flushed(tell_fault(error, sys.argv[1:])))
 
 
 def _open_streams() -> None:
@@ -109,4 +112,4 @@ def _flushed(code: Any) -> Any:
 
 
 def _told(error: OSError) -> str:
-    return _("error: {error}").format(error=f"{error.filename or _('output')}: {error.strerror}")
+    return _("error: {error}").format(error=f"{printable(error.filename or _('output'))}: {error.strerror}")

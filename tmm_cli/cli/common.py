@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn
 
 import typer
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import Progress, track
+from rich.segment import Segment
 
-from tmm_cli.cli.talk import BAD_INPUT, OK, say
+from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, tell_fault
 from tmm_cli.language import _, language, spoken
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.errors import ProblemError, visible
 from tmm_cli.results.files import folder_name, refuse_place
 from tmm_cli.results.for_people import Kind
 
@@ -66,9 +67,18 @@ def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthes
     return found
 
 
+class _VisibleConsole(Console):
+    """A console that escapes control characters of texts; its own commands to the terminal stay."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        for segment in super().render(renderable, options):
+            text = segment.text if segment.control else visible(segment.text)
+            yield segment if text == segment.text else Segment(text, segment.style)
+
+
 def console() -> Console:
     """For results: standard output, as wide as the tables need when it is not a terminal."""
-    return Console(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
+    return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 
 def each(
@@ -87,12 +97,16 @@ def each(
             refuse_place(out, folder=True)
     for file in progress(files):
         if headed and len(files) > 1 and not as_json:
-            console().print(f"== {file} ==", style="bold")
+            console().print(f"== {printable(file)} ==", style="bold")
         try:
             with spoken(language()), refusing(as_json):
                 code = work(file)
         except typer.Exit as refused:
             code = refused.exit_code
+        except OSError:
+            raise
+        except Exception as error:  # of this file: the others are worked on
+            code = tell_fault(error, sys.argv[1:])
         worst = max(worst, code)
     raise typer.Exit(worst)
 
@@ -113,7 +127,7 @@ def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as error:
-        say(_("error: {error}").format(error=f"{error.filename or name or _('output')}: {error.strerror}"))
+        say(_("error: {error}").format(error=f"{printable(error.filename or name or _('output'))}: {error.strerror}"))
         raise typer.Exit(BAD_INPUT) from None
 
 
@@ -123,7 +137,11 @@ def _refuse_one_name(files: Sequence[str]) -> None:
     for file in files:
         other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
         if Path(other).resolve() != Path(file).resolve():
-            say(_("error: {first} and {second} have one name, and so one folder").format(first=other, second=file))
+            say(
+                _("error: {first} and {second} have one name, and so one folder").format(
+                    first=printable(other), second=printable(file)
+                )
+            )
             raise typer.Exit(BAD_INPUT)
 
 
@@ -133,7 +151,9 @@ def new_file(file: Path, text: str) -> bool:
         typer.echo(text, nl=False)
         return False
     if file.exists():
-        raise ProblemError(_("{file} is there already").format(file=file), allowed=_("another file, with -o"))
+        raise ProblemError(
+            _("{file} is there already").format(file=printable(file)), allowed=_("another file, with -o")
+        )
     with file.open("x", encoding="utf-8") as stream:
         stream.write(text)
     return True
@@ -144,7 +164,7 @@ def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Pat
     depths = ("*.yaml", "*/*.yaml")
     files = [f for p in paths for f in ([f for d in depths for f in sorted(p.glob(d))] if p.is_dir() else [p])]
     if not files and not further:
-        folders = ", ".join(map(str, paths))
+        folders = ", ".join(map(printable, paths))
         say(_("error: no problems (*.yaml) in {folders}").format(folders=folders))
         raise typer.Exit(BAD_INPUT)
     return list(dict.fromkeys([*files, *further]))

@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.opening import opened
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import chosen_names
@@ -30,6 +30,6 @@ def export(
         text, left = EXPORTS[name](solve(opened(file), "kinematics"))
         target = out or Path(f"{Path(file).stem}.json")
         if new_file(target, text):
-            say(_("written: {file}").format(file=target))
+            say(_("written: {file}").format(file=printable(target)))
         for line in left:
             say(_("not taken over: {line}").format(line=line))

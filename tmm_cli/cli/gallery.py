@@ -12,7 +12,7 @@ from tmm_cli.animate.gallery.card import Card, card
 from tmm_cli.animate.gallery.page import page
 from tmm_cli.cli.common import problems_in, refusing
 from tmm_cli.cli.drawing import by_all_cores
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, say
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.files import refuse_place, write_whole
@@ -40,7 +40,7 @@ def gallery(
     with refusing():
         target = out / "index.html"
         write_whole(target, page(cards).encode())
-        say(_("written: {folder}").format(folder=target))
+        say(_("written: {folder}").format(folder=printable(target)))
     if len(cards) < len(made):
         say(_("left out: {count}").format(count=len(made) - len(cards)))
         raise typer.Exit(CHECK_FAILED)

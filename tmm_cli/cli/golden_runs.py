@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 from tmm_cli import __version__
 from tmm_cli.cli.common import console
 from tmm_cli.cli.reporting import computed
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
 from tmm_cli.grading.examples import grades
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
@@ -93,7 +93,7 @@ def show_outcomes(outcomes: Sequence[Outcome]) -> None:
         show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
     for outcome in outcomes:
         if outcome.wrong:
-            say(_("error: {name}: {wrong}").format(name=outcome.name, wrong=outcome.wrong))
+            say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
 
 
 def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:

@@ -14,7 +14,7 @@ import typer
 
 from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
 from tmm_cli.cli.opening import introduce, read_in_its_language
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
 from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
@@ -63,7 +63,7 @@ def grade(
         task = read_task(read_in_its_language(file))
         if template is not None:
             write_template(task, template)
-            say(_("written: {files}").format(files=template))
+            say(_("written: {files}").format(files=printable(template)))
             raise typer.Exit(OK)
         if variants is None or submissions is None:
             say(_("error: --variants and --submissions are wanted, or --template"))
@@ -126,5 +126,5 @@ def _verdict(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: P
     left = sum(one.unread or own.problems != one.problems for one, own in both)
     none = sum(not (one.unread or one.answers or one.by_angle) for one, own in both if own.problems == one.problems)
     told = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
-    say(told.format(folder=out, count=len(both) - none - left, none=none, left=left))
+    say(told.format(folder=printable(out), count=len(both) - none - left, none=none, left=left))
     return CHECK_FAILED if left else OK

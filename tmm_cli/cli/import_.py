@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import new_file, refusing
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.errors import ProblemError, clean, path_text
@@ -38,6 +38,6 @@ def import_(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None
         if new_file(target, text):
-            say(_("written: {file}; next: tmm run {file}").format(file=target))
+            say(_("written: {file}; next: tmm run {file}").format(file=printable(target)))
         for line in foreign.left:
             say(_("not taken over: {line}").format(line=clean(line, 300)))

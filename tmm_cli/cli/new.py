@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.cli.common import new_file, refusing
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest
 from tmm_cli.problem.templates import template_text, templates
@@ -34,4 +34,4 @@ def new(
             )  # fmt: skip
         file = out or Path(f"{template}.yaml")
         if new_file(file, template_text(template)):
-            say(_("written: {file}; next: tmm run {file}").format(file=file))
+            say(_("written: {file}; next: tmm run {file}").format(file=printable(file)))

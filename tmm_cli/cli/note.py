@@ -10,7 +10,7 @@ import typer
 from tmm_cli import solve
 from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import opened, variant_settings
-from tmm_cli.cli.talk import OK, say, warn
+from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.draw import remarks
 from tmm_cli.language import _
 from tmm_cli.note import note as note_of
@@ -40,7 +40,7 @@ def note(
         for name in wanted:
             target = out / folder_name(results.problem.name) / f"note.{name}"
             write_whole(target, FORMATS[name](written))
-            say(_("written: {folder}").format(folder=target))
+            say(_("written: {folder}").format(folder=printable(target)))
         return OK
 
     each(files, work, out=out, headed=False)

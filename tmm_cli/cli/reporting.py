@@ -10,7 +10,7 @@ from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, introduce, tree_of
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say, warn
+from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import count, problem_of, redrive, solve, structure_of
 from tmm_cli.problem.build import is_chain
@@ -146,12 +146,16 @@ def say_written(written: Written) -> None:
     """Where the results are, what went of earlier ones, and what stays."""
     folder, removed, kept = written
     if kept is None:
-        say(_("written: {folder}").format(folder=folder))
+        say(_("written: {folder}").format(folder=printable(folder)))
     else:
-        say(_("written: {folder}; {kept} keeps the results of another run").format(folder=folder, kept=kept))
+        say(
+            _("written: {folder}; {kept} keeps the results of another run").format(
+                folder=printable(folder), kept=printable(kept)
+            )
+        )
     if removed:
         text = _("removed from {folder}, written by an earlier run and not by this one: {files}")
-        say(text.format(folder=folder, files=", ".join(removed)))
+        say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 
 def show(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli.cli.common import Json, console, emit_json, progress, refusing
 from tmm_cli.cli.scheme_files import named_types, wanted_chains, wanted_schemes, write_skeletons
-from tmm_cli.cli.talk import say
+from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.units import UnitSystem
@@ -59,4 +59,4 @@ def schemes(
             raise ProblemError(_("what is wanted?"), allowed=wanted)
     if out is not None and written:
         count = sum(x is not None for x in written)
-        say(_("written: {count} files in {out}; next: tmm run {out}/FILE").format(count=count, out=out))
+        say(_("written: {count} files in {out}; next: tmm run {out}/FILE").format(count=count, out=printable(out)))

@@ -10,7 +10,7 @@ import typer
 
 from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
 from tmm_cli.cli.opening import introduce, tree_of
-from tmm_cli.cli.talk import OK, say, warn
+from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.draw.formats import files as drawings
 from tmm_cli.draw.sheets.sweep import sheets
 from tmm_cli.grading.task import Task
@@ -103,4 +103,4 @@ def _write(found: Swept, problem: Problem, out: Path) -> None:
         names = sorted(staged.names)
         with spoken(ENGLISH):
             staged.write(RECORD, json_text([*sections(found, problem), ("files", names)]))
-    say(_("written: {files}").format(files=folder))
+    say(_("written: {files}").format(files=printable(folder)))

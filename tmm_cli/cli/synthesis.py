@@ -8,7 +8,7 @@ from pathlib import Path
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each, emit_json
 from tmm_cli.cli.opening import introduce, tree_of
-from tmm_cli.cli.talk import CHECK_FAILED, OK, say, warn
+from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import solve
 from tmm_cli.problem.errors import ProblemError
@@ -60,7 +60,7 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
             for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
-        say(_("written: {folder}").format(folder=folder))
+        say(_("written: {folder}").format(folder=printable(folder)))
     for fault in missed(measured or (), units):
         warn(fault)
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED

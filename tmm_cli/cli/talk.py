@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import re
+import traceback
+from collections.abc import Callable, Mapping, Sequence
 from contextvars import ContextVar
 from functools import wraps
 from inspect import Parameter, signature
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 import typer
 
+import tmm_cli
 from tmm_cli.language import ENGLISH, _, speak, spoken
+from tmm_cli.problem.errors import clean, visible
 
-OK, CHECK_FAILED, BAD_INPUT = 0, 1, 2
+OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
+TRACEBACK = "TMM_TRACEBACK"  # environment variable: 1 prints the traceback of an internal fault
+ADDRESS = re.compile(r"[a-z][a-z0-9+.-]+:[/\\]", re.IGNORECASE)  # s3://bucket as a Path has it; a drive has one letter
 
 Language = Literal["en", "ru", "sr"]
 Lang = Annotated[
@@ -24,13 +32,54 @@ _asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
 
 
 def say(text: str) -> None:
-    """Talk goes to standard error."""
-    typer.echo(text, err=True)
+    """Talk goes to standard error, with control characters escaped."""
+    typer.echo(visible(text), err=True)
 
 
 def warn(text: str) -> None:
     """Say a warning."""
     say(_("warning: {warning}").format(warning=text))
+
+
+def printable(path: object) -> str:
+    """A path on one line, safe to print."""
+    return clean(str(path), 300)
+
+
+def tell_fault(error: Exception, words: Sequence[str]) -> int:
+    """Say in one line what to report of an internal fault, or that the memory is exhausted; the exit code.
+
+    words: of the command line. The traceback is printed where the environment variable TMM_TRACEBACK asks for it.
+    """
+    if os.environ.get(TRACEBACK, "0") not in ("", "0"):
+        traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        say(_("error: there is not enough memory; fewer positions, variants or drawings take less"))
+        return FAULT
+    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    home = Path(tmm_cli.__file__).parent
+    own = [f"{file.relative_to(home.parent).as_posix()}:{line}" for file, line in frames if home in file.parents]
+    command = next((word for word in words if not word.startswith("-")), "")
+    told = _(
+        "internal fault: {name} at {place} (tmm {version}, command {command}): please report this line and the file; "
+        "{variable}=1 prints the traceback"
+    )
+    name, place = type(error).__name__, own[-1] if own else "?"
+    say(
+        told.format(name=name, place=place, version=tmm_cli.__version__, command=clean(command, 40), variable=TRACEBACK)
+    )
+    return FAULT
+
+
+def refuse_addresses(named: Mapping[str, Any]) -> None:
+    """Refuse an address of a network as the place of results. Raises typer.Exit."""
+    for name in ("out", "template", "junit"):
+        path = named.get(name)
+        if isinstance(path, Path) and ADDRESS.match(str(path)):
+            address = re.sub(r"^([^:]+):[/\\]+", r"\1://", str(path))
+            told = _("error: {address} is an address of a network: results are written to a local folder or file")
+            say(told.format(address=printable(address)))
+            raise typer.Exit(BAD_INPUT)
 
 
 def speaking(command: Callable[..., None]) -> Callable[..., None]:
@@ -41,6 +90,7 @@ def speaking(command: Callable[..., None]) -> Callable[..., None]:
         before = _asked_for.set(lang)
         try:
             with spoken(lang or ENGLISH):
+                refuse_addresses(named)
                 command(*arguments, **named)
         finally:
             _asked_for.reset(before)

@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli.cli.common import console, progress, refusing
 from tmm_cli.cli.opening import read_in_its_language
-from tmm_cli.cli.talk import say, warn
+from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
 from tmm_cli.grading.choices import with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
@@ -101,4 +101,4 @@ def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
         for student in progress(list(table.rows)):
             for name, content in sheets.of(student):
                 folder.write(name, [content])
-    say(_("written: {files}").format(files=out))
+    say(_("written: {files}").format(files=printable(out)))

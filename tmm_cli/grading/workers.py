@@ -114,8 +114,6 @@ def _refuse_other_programs(client: Any, address: str) -> None:
 
     def version_there() -> tuple[str, str]:  # pickled by value: the worker may have no such function
         try:
-            from importlib import import_module
-
             module = import_module("tmm_cli.grading.workers")
             return import_module("tmm_cli").__version__, module.program_digest()
         except (ImportError, AttributeError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import difflib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, Self
@@ -12,6 +13,10 @@ from tmm_cli.language import _
 from tmm_cli.problem.tree import Mark, Path, Tree
 
 CLOSE = 0.66  # a name that is nearer to another by difflib's measure was meant for it: a third of letters is wrong
+
+CONTROLS = re.compile(  # escape sequences, carriage returns, bidirectional overrides, zero widths, lone surrogates
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
+)
 
 # Cyrillic letters that look like Latin ones on paper and screen: the commonest invisible mistake in a key.
 _LOOKALIKES = str.maketrans("АВЕКМНОРСТУХаеорсухкмІіЅѕЈј", "ABEKMHOPCTYXaeopcyxkmIiSsJj")
@@ -140,6 +145,11 @@ def clean(text: str, limit: int = 60) -> str:
 def _escape(char: str) -> str:
     # Not printable are controls, bidirectional overrides, line separators and spaces that only look like one.
     return char if char.isprintable() else char.encode("unicode_escape").decode("ascii")
+
+
+def visible(text: str) -> str:
+    """The text with characters escaped that command a terminal or hide text; lines and tabs stay."""
+    return CONTROLS.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def quote(value: object) -> str:

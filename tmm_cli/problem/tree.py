@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePath
@@ -53,8 +54,8 @@ class Tree:
 
     @property
     def name(self) -> str:
-        """That of the problem: its file's without the ending; what of it is no text is lost."""
-        return PurePath(self.file).stem.encode(errors="replace").decode()
+        """That of the problem: its file's without the ending; what of it is no text is lost, and it is one line."""
+        return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:
         """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""

@@ -5,6 +5,7 @@ It asks nothing of any network: its policy allows its own style and its own scri
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -41,7 +42,7 @@ def page(cards: Sequence[Card]) -> str:
         groups=_options({group: group for group in sorted(groups)}, groups),
         purposes=_options({key: translated(words) for key, words in PURPOSES.items() if purposes[key]}, purposes),
         facts="".join(f'<option value="{_text(name)}">' for name in sorted(names)),
-        cards="\n".join(map(_card, cards)),
+        cards="\n".join(map(_card, cards, _names_of_files([card.file for card in cards]))),
         data=data_text({"place": PLACE, "turn": TURN, "cards": [_data(card) for card in cards]}),
     )
 
@@ -59,7 +60,17 @@ def _data(card: Card) -> dict[str, Any]:
     }
 
 
-def _card(card: Card) -> str:
+def _names_of_files(files: Sequence[str]) -> list[str]:
+    """Names for readers: of what was named by a full path, the part below the folder that all of these have."""
+    full = [os.path.dirname(file) for file in files if os.path.isabs(file)]
+    try:
+        above = os.path.commonpath(full) if full else ""
+    except ValueError:  # on several drives of Windows
+        return [os.path.basename(file) for file in files]
+    return [os.path.relpath(file, above) if os.path.isabs(file) else file for file in files]
+
+
+def _card(card: Card, file: str) -> str:
     tongue = f' lang="{card.language}"' if card.language in LANGUAGES else ""
     tags = [
         *(("number", card.number, _("class {number}").format(number=card.number)) for __ in card.number[:1]),
@@ -73,7 +84,7 @@ def _card(card: Card) -> str:
     return (
         f'<li class="card">{_picture(card)}<h2{tongue}>{_text(card.title)}</h2>{source}'
         f'<div class="tags">{"".join(_tag(*tag) for tag in tags)}</div>{formula}<table>{facts}</table>'
-        f"<details><summary>{_text(_('what it is'))}</summary>{about}<p><code>{_text(card.file)}</code></p></details>"
+        f"<details><summary>{_text(_('what it is'))}</summary>{about}<p><code>{_text(file)}</code></p></details>"
         "</li>"
     )
 
