@@ -56,8 +56,8 @@ REFUSED = {
     "{task: crank-slider, stroke: 50, e: 0, k: 1}":
         "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n",
     "{task: crank-slider, stroke: 20, k: 1.1}":
-        "synthesis: these keys do not determine a mechanism\n  found:   k\n"
-        "  allowed: ratio and nu; or ratio and k; or pressure and nu; or pressure and k; or e and k",
+        "synthesis: these keys do not determine a mechanism; missing: ratio or pressure or e\n  found:   k\n"
+        "  allowed: ratio and nu; or ratio and e; or ratio and k; or pressure and nu; or pressure and k; or e and k",
     "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}":
         "synthesis.strok: unknown key\n  found:   'strok'\n"
         "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",

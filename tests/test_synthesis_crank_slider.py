@@ -111,6 +111,43 @@ def test_stroke_and_k_come_back_from_the_ratio(drawn):
 
 @settings(max_examples=2)
 @given(thousand)
+def test_stroke_and_offset_come_back_from_the_ratio(drawn):
+    a, b, c = drawn
+    ratio, stroke = 1.05 + 9 * a, metres(c)
+    e = 0.97 * b * stroke * (ratio - 1) / (2 * np.sqrt(ratio))
+    assert find(Task(stroke=stroke, ratio=ratio, e=e)).e == pytest.approx(e, rel=MET)
+    comes_back(Task(stroke=stroke, ratio=ratio, e=e))
+
+
+def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
+    """Task 1 of the source, H, e and L, as it prints the crank; here with 17 digits of its numbers."""
+    h, e, length = 150.0, 20.0, 3.7
+    more = (length**2 + 1) * h**2
+    r = math.sqrt((more + math.sqrt(more**2 - 4 * length**2 * h**2 * (h**2 + 4 * e**2))) / (8 * length**2))
+    found = find(Task(stroke=h, e=e, ratio=length))
+    assert found.r == pytest.approx(r, rel=1e-14)
+    assert (found.r, found.l) == pytest.approx((74.788276, 276.716621), abs=5e-7)
+    assert math.degrees(found.pressure) == pytest.approx(20.0321, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    "keys, message",
+    [
+        ("e: 20", "missing: ratio or k\n  found:   e\n"),
+        ("e: 20, ratio: 3.7, k: 1.1", "too many: k or e or ratio\n  found:   ratio, e, k\n"),
+        ("e: 112, ratio: 3.7", "synthesis.e: the crank does not turn fully: it needs l > r + e\n  found:   112\n"
+         "  allowed: the nearest is e: 105.274 mm"),
+        ("e: -1, ratio: 3.7", "synthesis.e: the offset is a distance"),
+    ],
+)  # fmt: skip
+def test_offset_and_ratio_are_refused_where_they_give_no_crank(keys, message):
+    with pytest.raises(ProblemError) as refused:
+        problem({"stroke": 150} | dict(key.split(": ") for key in keys.split(", "))).linkage  # noqa: B018
+    assert message in str(refused.value)
+
+
+@settings(max_examples=2)
+@given(thousand)
 def test_stroke_k_and_pressure_come_back_from_the_shortest_rod(drawn):
     a, b, c = drawn
     k = 1 + 1.2 * a

@@ -47,16 +47,30 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 def one_of(
     shape: Block, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:  # fmt: skip
-    """Which of these sets of keys is given, and none else of them, nor of others. Raises ProblemError: the refusal."""
+    """Return the set of keys that the block has, with no other of them and none of `others`.
+
+    Raises ProblemError: the refusal, with the keys that are missing or too many.
+    """
     keys = dict.fromkeys([*(key for one in sets for key in one), *others])
     here = tuple(key for key in keys if getattr(shape, key) is not None)
     for one in sets:
         if set(one) == set(here):
             return one
+    missing = [tuple(key for key in one if key not in here) for one in sets if here and set(here) < set(one)]
+    surplus = [tuple(key for key in here if key not in one) for one in sets if one and set(one) < set(here)]
+    mend = ""
+    if missing:
+        mend = _("; missing: {keys}").format(keys=_alternatives(missing))
+    elif surplus:
+        mend = _("; too many: {keys}").format(keys=_alternatives(surplus))
     raise ProblemError(
-        translated(refusal), found=", ".join(here) or _("none of them"),
+        translated(refusal) + mend, found=", ".join(here) or _("none of them"),
         allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets), key=True,
     )  # fmt: skip
+
+
+def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
+    return _(" or ").join(dict.fromkeys(_(" and ").join(keys) for keys in sets))
 
 
 def numbers(shape: Block, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:

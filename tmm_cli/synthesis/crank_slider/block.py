@@ -12,11 +12,11 @@ from tmm_cli.synthesis.blocks import Block, numbers, one_of
 from tmm_cli.synthesis.crank_slider.solver import QUANTITIES, Task
 
 STROKES = (("stroke",), ("speed", "crank_speed"))
-PAIRS = (("ratio", "nu"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
+PAIRS = (("ratio", "nu"), ("ratio", "e"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
 
 
 class Shape(Block):
-    """A crank-slider by its stroke (or mean speed) and two of L, nu, k, pressure angle."""
+    """A crank-slider by its stroke (or mean speed) and two of L, nu, e, k, pressure angle."""
 
     task: Literal["crank-slider"]
     stroke: Value | None = Field(default=None, description="stroke H of the slider")

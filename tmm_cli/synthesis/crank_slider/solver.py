@@ -39,7 +39,7 @@ FOUND: Final = {
 @dataclass(frozen=True)
 class Task:
     """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
-    k, pressure (largest angle, rad) and nu, pressure and k, e (m) and k. Floats or arrays; None: not given.
+    e (m), L and k, pressure (largest angle, rad) and nu, pressure and k, e and k. Floats or arrays; None: not given.
     """
 
     stroke: Any = None
@@ -137,19 +137,37 @@ def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
     return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
 
 
+def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
+    """The crank r (m) for a stroke H (m), an offset e (m) and a ratio L, or nan where no crank has them.
+
+    The sums of the squares of the sides r (L + 1), r (L - 1) and of twice the area H e/2 of the triangle of the
+    extreme positions give r^2 = ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2); under the
+    root is H^2 ((L^2 - 1)^2 H^2 - 16 L^2 e^2). The other sign is a crank that does not turn fully.
+    """
+    more = (length - 1) * (length + 1) * height
+    under = (more - 4 * length * e) * (more + 4 * length * e)
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(height * ((length * length + 1) * height + np.sqrt(under)) / 8) / length
+
+
 def find(task: Task) -> Found:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     height = _stroke(task)
     theta = None if task.k is None else theta_of(task.k)
-    if task.e is not None:
-        length = ratio_of_offset(height, task.e, theta)
-    elif task.ratio is not None:
+    if task.ratio is not None:
         length = np.asarray(task.ratio)
+    elif task.e is not None:
+        length = ratio_of_offset(height, task.e, theta)
     elif theta is not None:
         length = shortest(theta, task.pressure)
     else:
         length = (1 + np.asarray(task.nu)) / np.sin(task.pressure)
-    nu = np.asarray(task.nu) if theta is None else nu_of(length, theta)
+    if theta is not None:
+        nu = nu_of(length, theta)
+    elif task.nu is not None:
+        nu = np.asarray(task.nu)
+    else:
+        nu = task.e / crank_of_offset(height, task.e, length)
     if theta is None:
         theta, h = theta_between(length, nu), stroke_ratio(length, nu)
     else:
@@ -177,12 +195,16 @@ def refuse(task: Task) -> None:
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
         raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"))
-    if e is not None and not e > 0:
+    if e is not None and ratio is None and not e > 0:
         raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"))
+    if e is not None and not e >= 0:
+        raise Infeasible("e", _("the offset is a distance; turn the drawing over for the other side"))
     if ratio is not None and not ratio > 1:
         raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"))
     if ratio is not None and nu is not None and not nu < ratio - 1:
         raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"))
+    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke(task):
+        raise Infeasible("e", _("the crank does not turn fully: it needs l > r + e"))
     theta = 0.0 if task.k is None else _refuse_k(task)
     if pressure is not None and not pressure < np.pi / 2:
         raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
