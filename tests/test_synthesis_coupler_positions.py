@@ -290,7 +290,7 @@ REFUSED = {
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
         "  found:   [0, 0]\n  allowed: the nearest is B[1]: 1 mm",
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
-        "synthesis: these keys do not determine AB with 3 positions; too many: AB\n  found:   B, AB\n  allowed: B; or A",
+        "synthesis: these keys do not determine AB with 3 positions; too many: AB\n  found:   B, AB\n",
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
         "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":

@@ -235,6 +235,7 @@ def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
         ", choose: supports level",
         ", near: [300, 40]",
         ", turns: cw",
+        ", pressure: 55 deg",
         ", xA: xF",
         ", yA: yF",
     ],
@@ -293,7 +294,11 @@ REFUSED = [
     (", yA: 500", {}, ".yA: no pivot of the admissible arcs meets this", "500", "the nearest is yA: 495.295 mm"),
     (", xA: -90", {}, ".xA: no pivot of the admissible arcs meets this", "-90", "the nearest is xA: 144.727 mm"),
     (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
-     "choose and l4", "one of choose, l1, l2, l4, near, xA, yA"),
+     "choose and l4", "one of choose, pressure, l1, l2, l4, near, xA, yA"),
+    (", pressure: 35 deg", {}, ".pressure: no pivot of the admissible arcs has this largest pressure angle",
+     "'35 deg'", "the nearest is pressure: 48.168 deg"),
+    (", pressure: 90 deg", {}, ".pressure: a largest pressure angle is less than a right angle", "'90 deg'",
+     "the nearest is pressure: 89.9"),
     (", l1: 95", {}, ".l1: no pivot of the admissible arcs meets this",
      "95", "the nearest is "),
     (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
@@ -362,6 +367,16 @@ def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_
         assert getattr(found, name) == pytest.approx(value, rel=1e-14)
         other = choose(replace(one, choose=name, sense=-int(found.sense), **{name: value}))
         assert getattr(other, name) == pytest.approx(value, rel=1e-14) and other.pressure > found.pressure
+
+
+def test_a_wished_pressure_angle_is_met_by_the_smaller_of_all_mechanisms_that_have_it():
+    task = Task(0.2, math.radians(50), math.radians(105), 1.2, choose="pressure", pressure=math.radians(55))
+    chosen = choose(task)
+    assert chosen.pressure == pytest.approx(task.pressure, rel=1e-12)
+    for side in arcs(task):
+        family = at(task, places(task, side), side)
+        near = np.abs(family.pressure - task.pressure) < 2e-3
+        assert np.all(family.l2[near] + family.l4[near] > 0.98 * (chosen.l2 + chosen.l4))
 
 
 def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():

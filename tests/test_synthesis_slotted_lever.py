@@ -235,7 +235,8 @@ REFUSED_LEVERS = {
     "CB: 500, k: 1.3, OC: -2": (".OC: this is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OA: -2": (".OA: this is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OC: 200, OA: 20": (
-        ": these keys do not determine a mechanism; too many: OA or OC\n  found:   OC, OA\n  allowed: OC; or OA; or within"
+        ": these keys do not determine a mechanism; too many: OA or OC\n  found:   OC, OA\n"
+        "  allowed: OC; or OA; or within"
     ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (".B2: B1 and B2 are the same place\n  found:   [1, 2]"),
     "CB: 500, k: 1.5, within: [450, 600]": (

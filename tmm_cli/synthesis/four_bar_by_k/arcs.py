@@ -36,8 +36,8 @@ class Task:
     """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
 
     psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level (as high as D), near (a
-    place), l1, l2, l4, xA or yA (m). sense: of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2;
-    0: any.
+    place), l1, l2, l4, xA or yA (m), pressure (largest angle, rad). sense: of the crank (1: counterclockwise) with the
+    slow stroke from psi1 to psi2; 0: any.
     """
 
     l3: Any
@@ -49,6 +49,7 @@ class Task:
     l1: Any = None
     l2: Any = None
     l4: Any = None
+    pressure: Any = None
     near: Any = None
     xA: Any = None  # noqa: N815  as files call it
     yA: Any = None  # noqa: N815

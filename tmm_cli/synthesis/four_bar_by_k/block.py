@@ -16,7 +16,7 @@ from tmm_cli.synthesis.four_bar_by_k.arcs import Task
 from tmm_cli.synthesis.four_bar_by_k.solver import QUANTITIES
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
-WAYS = ("choose", "l1", "l2", "l4", "near", "xA", "yA")
+WAYS = ("choose", "pressure", "l1", "l2", "l4", "near", "xA", "yA")
 
 
 class Shape(Block):
@@ -30,6 +30,9 @@ class Shape(Block):
     support: Vector = Field(default=(0, 0), description="D; [0, 0]")
     choose: Literal["best transmission", "supports level"] | None = Field(
         default=None, description="how A is chosen; best transmission"
+    )
+    pressure: Value | None = Field(
+        default=None, description="or: the largest pressure angle; of two pivots the one of the smaller mechanism"
     )
     l1: Value | None = Field(default=None, description="or: the crank AB")
     l2: Value | None = Field(default=None, description="or: the coupler BC")

@@ -37,6 +37,7 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "k": ("number", N_("k")),
     "l1": ("length", N_("crank l1")), "l2": ("length", N_("coupler l2")), "l4": ("length", N_("frame l4")),
     "xA": ("length", N_("pivot A of the crank, x")), "yA": ("length", N_("pivot A of the crank, y")),
+    "pressure": ("angle", N_("largest pressure angle")),
 }  # fmt: skip
 ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
@@ -44,6 +45,10 @@ SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, a
 
 def _pressure(found: Found, __: Task) -> Any:
     return found.pressure
+
+
+def _extent(found: Found, __: Task) -> Any:
+    return found.l2 + found.l4
 
 
 def _away(found: Found, task: Task) -> Any:
@@ -71,6 +76,7 @@ LEAST: Final[Mapping[str, Callable[[Found, Task], Any]]] = {"best": _pressure, "
 EQUATIONS: Final[Mapping[str, Callable[[Found, Task], Any]]] = {
     "l1": lambda found, task: found.l1 - task.l1,
     "l2": lambda found, task: found.l2 - task.l2,
+    "pressure": lambda found, task: found.pressure - task.pressure,
     "l4": lambda found, task: found.l4 - task.l4,
     **dict.fromkeys(("level", "yA"), lambda found, task: np.imag(found.a - task.support) - line(task)),
     "xA": lambda found, task: np.real(found.a - task.support) - line(task),
@@ -118,17 +124,26 @@ def choose(task: Task) -> Found:
         found = [(_best(centred, side, task.choose), side) for side in arcs(centred)]
     else:
         found = [(w, side) for side in arcs(centred) for w in _crossings(centred, side, EQUATIONS[task.choose])]
+    if not found and task.choose == "pressure":
+        raise _beyond_pressure(centred)
     if not found:
         level = task.choose == "level"
         reason = _("no pivot of the admissible arcs meets this")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
-    goal = LEAST.get(task.choose, _pressure)
+    goal = _extent if task.choose == "pressure" else LEAST.get(task.choose, _pressure)
     w, side = min(found, key=lambda one: float(goal(at(centred, *one), centred)))
     if task.choose == "near" and w in places(centred, side)[[0, -1]]:
         reason = _("the nearest place of the admissible arcs is an end of them, where the rocker is dead")
         raise Infeasible("near", reason)
     f = at(centred, w, side)
     return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
+
+
+def _beyond_pressure(task: Task) -> Infeasible:
+    """The refusal of a largest pressure angle that no pivot of the admissible arcs has."""
+    least = min(float(at(task, _best(task, side, "best"), side).pressure) for side in arcs(task))
+    reason = _("no pivot of the admissible arcs has this largest pressure angle")
+    return Infeasible("pressure", reason, (least, "angle", 1) if task.pressure < least else None)
 
 
 def refuse(task: Task) -> None:
@@ -149,6 +164,8 @@ def _refuse_numbers(task: Task) -> None:
     if against and theta > np.pi / 2 - half - ARC:  # of the other one
         raise Infeasible("turns", _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
                          "cw" if task.sense > 0 else "ccw")  # fmt: skip
+    if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
+        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
     if theta == 0 and task.choose == "best":
         raise Infeasible(
             "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is")
@@ -166,7 +183,7 @@ def solve(task: Task) -> Outcome:
         Demand(N_("swing psi of the rocker"), float(task.swing), "angle", stroke),
         *(Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
           for n, v in (("psi1", task.psi1), ("psi2", task.psi2))),
-        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=False, of="pressure"),
+        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=task.pressure is not None, of="pressure"),
     ]  # fmt: skip
     family = [at(task, whole(task, side), side) for side in arcs(task)]
     source = N_("circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
@@ -182,6 +199,7 @@ def _given(task: Task) -> tuple[Value, ...]:
     choice = {
         "best": N_("best transmission: the least largest pressure angle"),
         "level": N_("supports level: A as high as D"),
+        "pressure": N_("by the largest pressure angle: the smaller mechanism that has it"),
         "l1": N_("by the length of the crank"),
         "l2": N_("by the length of the coupler"),
         "l4": N_("by the length of the frame"),
