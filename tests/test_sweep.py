@@ -74,7 +74,7 @@ def test_each_point_is_the_mechanism_of_a_file_with_that_parameter(file, over, s
         alone = [
             measures.stroke(results), measures.ratio(results), measures.pressure(results),
             largest(lambda r: r.reactions.balance.moment, results),
-            largest(lambda r: r.reactions.of(force.pair.name).force, results),
+            largest(lambda r, pair=force.pair.name: r.reactions.of(pair).force, results),
             largest(lambda r: r.motion.link("3").omega, results),
         ]  # fmt: skip
         assert values[:3] == pytest.approx(alone[:3], rel=1e-12)
@@ -121,15 +121,15 @@ def test_the_peak_of_the_balancing_moment_is_that_of_the_cycle_and_not_of_the_po
     tree = read_text(text + "gravity: 0\nloads: {F: {on: 3, force: [1000, 0]}}\npositions: {count: 5}\n", "x.yaml")
     found = swept(Mechanisms(tree, read_axes(Task(tree), ["r=20..80:4"]), ["M_b,v_B,x_B,phi_1,phi_2"]))
     assert found.taped
-    omega, l = 2 * np.pi, 0.15
+    omega, rod = 2 * np.pi, 0.15
     for (radius,), values in zip(found.points / 1000, found.values, strict=True):
 
         def arm(phi, radius=radius):
-            beta = np.arcsin(radius * np.sin(phi) / l)
+            beta = np.arcsin(radius * np.sin(phi) / rod)
             return radius * np.sin(phi + beta) / np.cos(beta)
 
         peak = -minimize_scalar(lambda phi: -arm(phi), (0.5, 1.3, 1.6), method="golden", tol=1e-14).fun
-        right = [1000 * peak, omega * peak, 2 * radius, TURN, 2 * np.arcsin(radius / l)]
+        right = [1000 * peak, omega * peak, 2 * radius, TURN, 2 * np.arcsin(radius / rod)]
         assert values == pytest.approx(right, rel=1e-12)
 
 

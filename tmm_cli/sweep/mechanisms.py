@@ -280,7 +280,7 @@ def _curves_of(
 
 
 class _AtPlaces:
-    """A solved mechanism at other places of its driver; the last ones are kept, as several quantities are read there."""
+    """A solved mechanism at other places of its driver; the last ones are kept for the next quantity."""
 
     def __init__(self, results: Results) -> None:
         self.results, self.q, self.there = results, np.empty(0), results
