@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -60,6 +61,28 @@ def test_the_way_on_which_a_quantity_changes_little(tmp_path):
     """s = r cos(phi) stays within h of an end while the crank is within acos(1 - h/r) of it."""
     way = value(tmp_path, "{of: x of E, at: 0, within: 9 mm}", "sine")
     assert way == pytest.approx(2 * math.acos(0.9), abs=1e-12)
+
+
+def test_a_ratio_is_formed_before_its_extreme(tmp_path):
+    """Sine mechanism: v of E over v of A is |sin(phi)|, from 0 to 1."""
+    assert value(tmp_path, "{of: v of A, over: least, per: v of E}", "sine") == pytest.approx(1, rel=1e-13)
+    assert value(tmp_path, "{of: v of E, over: largest, per: v of A}", "sine") == pytest.approx(1, rel=1e-13)
+    assert value(tmp_path, "{of: v of E, over: least, per: v of A}", "sine") == pytest.approx(0, abs=1e-10)
+
+
+def test_a_link_rotates_relative_to_another_one_by_the_difference_of_their_angles(tmp_path):
+    """Crank and rod of a crank-slider: in half a turn from dead centre to dead centre the rod comes back."""
+    for block in ("{of: phi of 2 on 1, between: [0, 6]}", "{of: phi of 1 on 2, between: [6, 0]}"):
+        assert value(tmp_path, block, "crank-slider") == pytest.approx(-math.pi, rel=1e-12)
+
+
+def test_a_number_that_holds_for_the_file_s_own_parameters_is_not_compared_with_others():
+    """M_b of course-1 in position 3 is 186.4 N m with OA = 100 mm only; H of sine.yaml is 2 r with any r."""
+    done = tmm("forces", PROBLEMS / "course-1.yaml", "--set", "OA=90")
+    assert done.returncode == 0, done.stderr
+    assert tmm("forces", PROBLEMS / "course-1.yaml").returncode == 0
+    done = tmm("kinematics", PROBLEMS / "sine.yaml", "--set", "r=60")
+    assert done.returncode == 0 and re.search(r"stroke +120 +120 ", done.stdout)
 
 
 def test_a_hinge_that_breaks_gives_its_two_freedoms_back(tmp_path):

@@ -26,7 +26,10 @@ class Shown(Strict):
     within: Value | None = Field(
         default=None, description="with `at`: the way of the driver about there, on which it changes by no more"
     )
-    per: Value | None = Field(default=None, description="divided by another quantity found likewise, or by a value")
+    per: Value | None = Field(
+        default=None,
+        description="divided by another quantity, place by place for largest and least, or by a value",
+    )
     set: dict[Name, Value] = Field(default_factory=dict, max_length=50, description="with these parameters instead")
     without: Name | None = Field(default=None, description="of the structure: when this hinge has broken")
     expected: Value | None = Field(default=None, description="what it should be, from elsewhere: a run compares it")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -14,6 +15,7 @@ from tmm_cli.analysis.pipeline import Results, at_places
 from tmm_cli.analysis.quantities import quantities
 from tmm_cli.analysis.quantities.base import STAGES, Quantity
 from tmm_cli.analysis.quantities.intermittent import of_wheels
+from tmm_cli.analysis.quantities.motion import relative_angles
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.language import _
 from tmm_cli.problem.build import build
@@ -24,13 +26,12 @@ from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Path
 from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
-from tmm_cli.roots import least, roots
+from tmm_cli.roots import greatest, roots
 from tmm_cli.structure.assur import analyse
 from tmm_cli.vectors import Real
 
 STEPS = 720  # in a turn, or over the driver's way
 PARTS = 60  # of the way between two positions, through which an angle is followed
-SEAM = 1e-6  # of its range: what comes back so nearly goes on beyond the ends of a cycle as it began
 MET = 1e-9  # of the value, or of one in SI: rounding of what is found by search
 
 
@@ -94,7 +95,10 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         results = _with_settings(task, results)
     if task.without is not None:
         results = _broken(task.without, results)
-    known = {**quantities(results.linkage, results.structure), **of_wheels(results.inputs.wheels)}
+    linkage = results.linkage
+    known = {
+        **quantities(linkage, results.structure), **of_wheels(results.inputs.wheels), **relative_angles(linkage),
+    }  # fmt: skip
     if task.of not in known:
         raise unknown_name(task.of, known, _("there is no quantity of that name"), path=("of",))
     quantity = known[task.of]
@@ -102,23 +106,35 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
     if not _ran(quantity, results):
         return None
-    value = _one(quantity, task, results)
+    by = known.get(task.per) if isinstance(task.per, str) else None
+    ratio = by is not None and task.over in ("largest", "least")
+    if by is not None:
+        if by.dimension != quantity.dimension or (ratio and by.dimension == ANGLE):
+            raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(task.per))
+        if not _ran(by, results):
+            return None
+    value = _one(quantity, task, results, by if ratio else None)
     dimension = quantity.dimension
     if task.within is not None:
         dimension = place_dimension(results.linkage.driver.kind)
     if task.per is not None:
-        by = task.per
-        if isinstance(by, str) and by in known:
-            if known[by].dimension != dimension:
-                raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(by))
-            if not _ran(known[by], results):
-                return None
-            value /= _one(known[by], task, results)
-        else:
-            value /= values.positive(by, dimension, ("per",))
+        if by is None:
+            value /= values.positive(task.per, dimension, ("per",))
+        elif not ratio:
+            value /= _one(by, task, results)
         dimension = NUMBER
-    expected = None if task.expected is None else values.number(task.expected, dimension, ("expected",))
+    compared = task.expected is not None and (quantity.stage == "structure" or not _of_own_numbers(task, problem))
+    expected = values.number(task.expected, dimension, ("expected",)) if compared else None
     return Property(name, value, dimension, expected)
+
+
+def _of_own_numbers(task: Shown, problem: Problem) -> bool:
+    """Whether parameters are set on the command line and the expected number holds only for those of the file."""
+    source = problem.source
+    if source is None or not source.given:
+        return False
+    names = set(re.findall(r"[^\W\d]\w*", str(task.expected)))
+    return names.isdisjoint(source.data.get("parameters", {}))
 
 
 def _ran(quantity: Quantity, results: Results) -> bool:
@@ -157,8 +173,8 @@ def _broken(hinge: str, results: Results) -> Results:
     return replace(results, inputs=replace(results.inputs, linkage=left), structure=analyse(left), motion=None)
 
 
-def _one(quantity: Quantity, task: Shown, results: Results) -> float:
-    """The number that a task asks of a quantity."""
+def _one(quantity: Quantity, task: Shown, results: Results, per: Quantity | None = None) -> float:
+    """The number that a task asks of a quantity, or of its ratio to another one at every place."""
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
         if ways or task.within is not None:
@@ -168,7 +184,7 @@ def _one(quantity: Quantity, task: Shown, results: Results) -> float:
     if len(ways) != 1 or (task.within is not None and ways != ["at"]):
         wanted = _("in one position, between two, or over the way of the driver")
         raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
-    read = partial(_read, quantity, results)
+    read = partial(_read, quantity, results) if per is None else partial(_ratio, quantity, per, results)
     if task.over is not None:
         return _over(read, task.over, results, quantity.dimension == ANGLE)
     numbers = [(task.at, ("at",))] if task.at is not None else [
@@ -193,6 +209,13 @@ def _read(quantity: Quantity, results: Results, q: Real) -> Real:
     return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
 
 
+def _ratio(quantity: Quantity, per: Quantity, results: Results, q: Real) -> Real:
+    """The ratio of two quantities at places of the driver; nan where the second one is zero."""
+    value, divisor = _read(quantity, results, q), _read(per, results, q)
+    found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
+    return found
+
+
 def _place(number: int, path: Path, results: Results) -> float:
     asked = results.asked
     if number >= len(asked):
@@ -203,28 +226,18 @@ def _place(number: int, path: Path, results: Results) -> float:
 def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
     """The largest, the least, or their difference over the way of the driver, found between its places."""
     q = results.closely(STEPS * max(results.turns, 1) + 1)
-    values = read(q)
+    values = read(q)[None, :]
     values = np.unwrap(values) if turns else values
-    low, high = np.min(q), np.max(q)
-    closed = results.turns and np.isclose(values[0], values[-1], rtol=0, atol=SEAM * np.ptp(values))
 
     def extreme(sign: float) -> float:
-        number = int(np.nanargmin(sign * values))
-        step, near = abs(q[1] - q[0]), values[number]
+        def curve(_rows: Real, places: Real) -> Real:
+            return sign * read(places.ravel()).reshape(places.shape)
 
-        def smooth(place: Real) -> Real:
-            away: Real = read(np.ravel(place)).reshape(np.shape(place)) - near
-            away = np.remainder(away + np.pi, 2 * np.pi) - np.pi if turns else away
-            return np.asarray(sign * away)
-
-        first, last = (-np.inf, np.inf) if closed else (low, high)
-        at = q[number : number + 1]
-        __, away = least(smooth, np.maximum(at - step, first), np.minimum(at + step, last))
-        return float(near + sign * min(float(away[0]), 0.0))
+        return sign * float(greatest(curve, q, sign * values, turns=turns)[0])
 
     if over == "range":
-        return extreme(-1.0) - extreme(1.0)
-    return extreme(-1.0 if over == "largest" else 1.0)
+        return extreme(1.0) - extreme(-1.0)
+    return extreme(1.0 if over == "largest" else -1.0)
 
 
 def _zone(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from tmm_cli.analysis.quantities.base import Quantity, Solved
 from tmm_cli.analysis.selection import mass_centres, named_points
 from tmm_cli.kinematics.output import output_run
-from tmm_cli.linkage import Linkage
+from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.quantities import (
     ACCELERATION,
     ANGLE,
@@ -55,6 +56,21 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         put(Quantity(f"Coriolis of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "coriolis"),
                      True, thing=slide.runner))  # fmt: skip
     return found
+
+
+def relative_angles(linkage: Linkage) -> dict[str, Quantity]:
+    """`phi of 5 on 4`: rotation of a link relative to another one that moves and is hinged to it, rad."""
+    found = {}
+    for hinge in linkage.hinges:
+        for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
+            name = f"phi of {link} on {base}"
+            read = partial(_relative_angle, link, base)
+            found[name] = Quantity(name, "places", ANGLE, read, against="angle", thing=link)
+    return found
+
+
+def _relative_angle(link: str, base: str, solution: Solved) -> Any:
+    return solution.motion.link(link).angle - solution.motion.link(base).angle
 
 
 def _point(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
