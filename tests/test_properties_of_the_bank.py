@@ -208,36 +208,85 @@ def ratchet_return():
 
 
 def hanger():
-    def lever(phi):
-        d, c = polar(300, phi) + 120j, polar(400, phi) + mp.mpc(-20, 190)
-        return meet(d, 100, c, 60, (mp.mpc(300, 120), mp.mpc(380, 190), mp.mpc(320, 200))) - c
+    q, e0, f0 = mp.mpc(-60, 150), mp.mpc(240, -60), mp.mpc(180, 60)
 
-    return angle_of(lever)(mpf(0))
+    def shelf(phi):  # of the parallelogram: it translates with A
+        e = polar(200, phi) + mp.mpc(40, -60)
+        return q + (meet(e, 130, q, 250, (e0, q, f0)) - q) / 250 * mp.mpc(420, -60)
+
+    return abs(slope(shelf, mpf(0))) / 200
+
+
+def zone(function, middle, most):
+    """How far one goes about a place until a function differs from its value there by more than so much."""
+
+    def missed(q):
+        return abs(function(q) - function(middle)) - most
+
+    ends = []
+    for sign in (-1, 1):
+        q = middle
+        while missed(q + sign * DEG) < 0:
+            q += sign * DEG
+        ends.append(mp.findroot(missed, (q, q + sign * DEG), solver="anderson", tol=1e-20))
+    return ends[1] - ends[0]
 
 
 def planetary_dwell():
+    b = 18 * DEG
+    x, h = 100 * sin(b) + 10 * sin(4 * b), (100 * cos(b) - 10 * cos(4 * b)) - 90
+    rod = (x**2 + h**2) / (2 * h)
+
     def y_of_d(phi):
-        p = polar(100, phi) + polar(40, 270 * DEG - 2 * phi)  # the planet rotates twice as fast, backwards
-        return p.imag - sqrt(540**2 - p.real**2)
+        p = polar(100, phi) + polar(10, pi / 2 - 4 * (phi - pi / 2))  # the planet rotates four times as fast, backwards
+        return p.imag - sqrt(rod**2 - p.real**2)
 
-    middle = 270 * DEG
-
-    def missed(q):
-        return abs(y_of_d(q) - y_of_d(middle)) - mpf("0.2")
-
-    ends = [(middle + sign * 20 * DEG, middle + sign * 50 * DEG) for sign in (-1, 1)]
-    first, last = (mp.findroot(missed, pair, solver="anderson", tol=1e-22) for pair in ends)
-    return last - first
+    return zone(y_of_d, 270 * DEG, mpf("0.2"))
 
 
-def positioner():
-    f, c0, k0 = mp.mpc(130, -170), mp.mpc(73, 34), mp.mpc(200, -100)
+def positioner(sketch):
+    f, c0 = mp.mpc(0, -200), mp.mpc(73, 34)
 
     def jaw(s):
         bell = pi - mp.acos((250**2 + 150**2 - s**2) / (2 * 250 * 150))  # of OB, from the line O-G
-        return meet(polar(80, bell - pi / 2), 150, f, 100, (c0, f, k0)) - f
+        return meet(polar(80, bell - pi / 2), 190, f, 100, (c0, f, sketch)) - f
 
-    return turned(jaw, mpf(200))(sqrt(mpf(85000)))
+    return turned(jaw, mpf(240))(mpf(270))
+
+
+def claw():
+    d, a0, b0 = mp.mpc(0, 29), mp.mpc(9), mp.mpc(22, 19)
+
+    def k(phi):
+        a = polar(9, phi)
+        return a + (meet(a, 23, d, 24, (a0, d, b0)) - a) / 23 * mp.mpc(2.5, 19)
+
+    def x_of_k(phi):
+        return k(phi).real
+
+    pulled = (k(4 * DEG) - k(101 * DEG)).imag
+    return pulled * MM, zone(x_of_k, 28 * DEG, mpf("0.35")), stretch(x_of_k, mpf(0), 2 * pi) * MM
+
+
+def spring_return_rod(load):
+    """Moment of the lever on the rod by virtual work, with the crank held: what the load and the spring do."""
+    d, a0, b0 = mp.mpc(-230, -140), mp.mpc(0, 40), mp.mpc(-205, 8)
+    u0, v0, t0 = mp.mpc(-167, -337), mp.mpc(-123, -262), mp.mpc(-90, -296)
+
+    def potential(phi, s):
+        rocker = (meet(polar(40, phi), 220, d, 150, (a0, d, b0)) - d) / 150
+        c, p = d + rocker * -90j, d + rocker * mp.mpc(30, -110)
+        both = 200 + polar(90, s)  # from C to the slider, as the rod lies
+        rod = polar(1, -mp.acos((-230 - c.real) / abs(both)) - arg(both))
+        x, v = c + 200 * rod, c + mp.mpc(90, 60) * rod
+        t = meet(x + 60j * rod * polar(1, s), 95, v, 60, (u0, v0, t0))
+        q = v + (t - v) / 60j * mp.mpc(-50, 30)
+        return 60 * (abs(q - p) - 190) ** 2 / 2 - load * (c + both * rod).imag
+
+    def moment(phi):
+        return slope(lambda s: potential(phi, s), 20 * DEG) * MM
+
+    return [value for __, value in extremes(moment, mpf(0), 2 * pi, 90)]
 
 
 def press_class_iii():
@@ -264,18 +313,7 @@ def press_class_iii():
         return b.imag - sqrt(420**2 - (b.real + 40) ** 2)
 
     begin = start_of(y_of_d, mpf(0), sense=1, highest=True)
-    middle = begin + 75 * DEG
-
-    def missed(q):
-        return abs(40 * pi / 30 * (slope(y_of_d, q) - slope(y_of_d, middle))) - mpf("0.04") * mpf("298.5")
-
-    ends = []
-    for sign in (-1, 1):
-        q = middle
-        while missed(q + sign * DEG) < 0:
-            q += sign * DEG
-        ends.append(mp.findroot(missed, (q, q + sign * DEG), solver="anderson", tol=1e-20))
-    return ends[1] - ends[0]
+    return zone(lambda q: slope(y_of_d, q) * 40 * pi / 30, begin + 75 * DEG, mpf("0.04") * mpf("298.5"))
 
 
 def adjustable_stroke(setting):
@@ -484,6 +522,7 @@ NUMBERS = {
     "cranks/toggle-rocker": toggle_rocker,
     "double-crank": double_crank,
     "engine-four": engine,
+    "four-bars/claw": claw,
     "four-bars/bench-press": lambda: [bench_press(246), bench_press(293)],
     "four-bars/clamp-levers": lambda: [clamp_levers(276), clamp_levers(244)],
     "four-bars/double-rocker": lambda: [double_rocker()],
@@ -491,7 +530,7 @@ NUMBERS = {
     "gear-lever/ratchet-return": lambda: [ratchet_return() * MM],
     "hanger": lambda: [hanger()],
     "planetary-dwell-press": lambda: [planetary_dwell()],
-    "positioner": lambda: [positioner()] * 2,
+    "positioner": lambda: [positioner(mp.mpc(94, -165)), positioner(mp.mpc(-53, -115))],
     "press-class-iii": lambda: [press_class_iii()],
     "settings/adjustable-lever": lambda: [adjustable_stroke(mpf(a)) * MM for a in (0, 20, 40)],
     "settings/breaking-rod-open": breaking_rod,
@@ -499,6 +538,7 @@ NUMBERS = {
         initial_position(rod)[k] * MM for k, rod in ((0, 206), (0, 210), (0, 214), (1, 206), (1, 214))
     ],
     "settings/safety-rod-broken": lambda: [safety_rod()],
+    "settings/spring-return-rod": lambda: [spring_return_rod(2000)[0], spring_return_rod(4000)[1]],
     "slotted-lever": lambda: [coriolis() * MM],
     "summing-lever": lambda: [run * MM for run in summing_lever()],
     "toggle-press": lambda: [toggle_press()],
