@@ -183,7 +183,8 @@ def solve(task: Task) -> Outcome:
         Demand(N_("swing psi of the rocker"), float(task.swing), "angle", stroke),
         *(Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
           for n, v in (("psi1", task.psi1), ("psi2", task.psi2))),
-        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=task.pressure is not None, of="pressure"),
+        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=task.pressure is not None,
+               of="pressure"),
     ]  # fmt: skip
     family = [at(task, whole(task, side), side) for side in arcs(task)]
     source = N_("circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
