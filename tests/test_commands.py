@@ -18,11 +18,13 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+import yaml
 from bank import EVERY, solved
 from rich.console import Console
 
 from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
+from tmm_cli.problem.templates import template_text, templates, translations
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.results.compare import Difference, difference_table
 from tmm_cli.results.reports import tables
@@ -294,6 +296,44 @@ def test_templates_run_as_they_are(tmp_path):
     assert again.returncode == 2
     assert "error: sine.yaml is there already" in again.stderr
     assert "did you mean 'sine'?" in tmm("new", "sin").stderr
+
+
+@pytest.mark.parametrize("language", ["ru", "sr"])
+def test_templates_are_the_same_problems_in_every_language(language):
+    used = set()
+    for name, title in templates().items():
+        english, other = (template_text(name, tongue) for tongue in ("en", language))
+        data, translated = (yaml.safe_load(text) for text in (english, other))
+        assert translated.pop("lang") == language
+        assert translated["title"] == templates(language)[name] and data["title"] == title
+        for problem in (data, translated):
+            problem.pop("title")
+            for link in problem["links"].values():
+                link.pop("name", None)
+        assert translated == data
+        assert max(map(len, other.split("\n"))) <= 120
+        plain = re.sub(r"\n *# ", " ", other)
+        used |= {e["en"] for e in translations() if e[language].replace("{file}", f"{name}.yaml") in plain}
+    assert used == {entry["en"] for entry in translations()}
+
+
+def test_a_template_has_the_comments_of_the_language_and_the_name_of_its_file(tmp_path):
+    listed = tmm("new", "--lang", "ru").stdout
+    assert "shaper          Поперечно-строгальный станок\n" in listed
+    made = tmm("new", "shaper", "--lang", "ru", "-o", "станок.yaml", cwd=tmp_path)
+    assert made.returncode == 0 and "tmm run станок.yaml" in made.stderr
+    text = (tmp_path / "станок.yaml").read_text("utf-8")
+    assert text.startswith(
+        "# Измените числа и запустите: tmm run станок.yaml (`tmm explain станок.yaml` покажет, как файл понят).\n"
+        "# Строгальный станок: кривошип 1, камень 2, кулиса 3, шатун 4, ползун 5; центр масс ползуна не в шарнире E.\n"
+        "tmm: 1                                   # версия формата, всегда 1\n"
+        "lang: ru                                 # или en, sr: язык чертежей, таблиц и сообщений\n"
+    )
+    done = tmm("structure", "станок.yaml", cwd=tmp_path)
+    assert done.returncode == 0 and "кулиса" in done.stdout and "предупреждение" not in done.stderr
+    assert tmm("new", "sine", "-o", "-").stdout == template_text("sine")
+    assert tmm("new", "sine", "-o", "my.yaml", cwd=tmp_path).returncode == 0
+    assert "tmm run my.yaml (`tmm explain my.yaml`" in (tmp_path / "my.yaml").read_text("utf-8")
 
 
 def test_schema_knows_every_key_of_the_problems():

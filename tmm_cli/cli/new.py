@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
-from tmm_cli.language import _
+from tmm_cli.language import _, language
 from tmm_cli.problem.errors import ProblemError, nearest
 from tmm_cli.problem.templates import template_text, templates
 
@@ -21,7 +21,7 @@ def new(
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
-    known = templates()
+    known = templates(language())
     if template is None:
         for name, title in known.items():
             typer.echo(f"{name:15} {title}")
@@ -33,5 +33,6 @@ def new(
                 near=nearest(template, known),
             )  # fmt: skip
         file = out or Path(f"{template}.yaml")
-        if new_file(file, template_text(template)):
+        named = None if str(file) == "-" else printable(file)
+        if new_file(file, template_text(template, language(), named)):
             say(_("written: {file}; next: tmm run {file}").format(file=printable(file)))

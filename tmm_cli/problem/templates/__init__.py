@@ -1,20 +1,86 @@
-"""Starting files for `tmm new`: every *.yaml beside this file is one; its title says what it is."""
+"""Starting files for `tmm new`: every *.yaml beside this file is one; its title says what it is.
+
+They are written in English. Titles, names of links and comments have their translations in translations/words.yaml;
+everything else is the same in every language.
+"""
 
 from __future__ import annotations
 
+import re
+import textwrap
+from collections.abc import Callable
 from importlib.resources import files
 
+import yaml
 
-def templates() -> dict[str, str]:
+from tmm_cli.language import ENGLISH
+
+WIDTH = 120  # columns of a file
+_COMMENT = re.compile(r"( *)# (.*)")
+_KEY = re.compile(r" {3,}|(?:[a-z_]+|\w): ")  # of a comment that is a line of the file to be taken instead
+_HEADING = re.compile(r"[A-Z]\w+[:.] ")  # of a paragraph of comments
+_WORDS = re.compile(r"(?<=^title: )(.+)|(?<=\bname: )([^,}]+)")
+
+Translate = Callable[[str], str]
+
+
+def templates(language: str = ENGLISH) -> dict[str, str]:
     """Names of the templates and their titles."""
-    found = {}
+    translate, found = _translator(language), {}
     for entry in sorted(files(__name__).iterdir(), key=lambda e: e.name):
         if entry.name.endswith(".yaml"):
             titles = [x for x in entry.read_text(encoding="utf-8").splitlines() if x.startswith("title:")]
-            found[entry.name.removesuffix(".yaml")] = titles[0].removeprefix("title:").strip()
+            found[entry.name.removesuffix(".yaml")] = translate(titles[0].removeprefix("title:").strip())
     return found
 
 
-def template_text(name: str) -> str:
-    """The file, with its comments."""
-    return files(__name__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
+def template_text(name: str, language: str = ENGLISH, file: str | None = None) -> str:
+    """The file, with its comments in a language. file: its name, as its first comment gives it to `tmm run`."""
+    text = files(__name__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
+    first, rest = text.split("\n", 1)
+    first = first.replace(f"{name}.yaml", "{file}")
+    if language != ENGLISH:
+        translate = _translator(language)
+        first = "# " + translate(first.removeprefix("# "))
+        rest = "\n".join(_translated(rest.split("\n"), translate))
+        rest = re.sub("^# lang: en", f"lang: {language}  ", rest, count=1, flags=re.MULTILINE)
+    return f"{first}\n{rest}".replace("{file}", file or f"{name}.yaml")
+
+
+def translations() -> list[dict[str, str]]:
+    """Texts of templates by language."""
+    text = files(__name__).joinpath("translations/words.yaml").read_text(encoding="utf-8")
+    found: list[dict[str, str]] = yaml.safe_load(text)
+    return found
+
+
+def _translator(language: str) -> Translate:
+    if language == ENGLISH:
+        return lambda text: text
+    found = {entry["en"]: entry[language] for entry in translations()}
+    return found.__getitem__
+
+
+def _translated(lines: list[str], translate: Translate) -> list[str]:
+    """Lines of a template: comments of several lines are paragraphs, broken anew; others stand behind their values."""
+    found: list[str] = []
+    paragraph: list[str] = []
+    indent = ""
+    for number, line in enumerate([*lines, ""]):
+        comment = _COMMENT.fullmatch(line)
+        prose = comment is not None and not _KEY.match(comment[2])
+        if paragraph and (not prose or number == 1 or _HEADING.match(comment[2] if comment else "")):
+            mark = f"{indent}# "
+            text = translate(" ".join(paragraph))
+            found += textwrap.wrap(
+                text, WIDTH, initial_indent=mark, subsequent_indent=mark, break_long_words=False,
+                break_on_hyphens=False,
+            )  # fmt: skip
+            paragraph = []
+        if comment is not None and prose:
+            indent, paragraph = comment[1], [*paragraph, comment[2]]
+            continue
+        start = line.find(" # ", comment.end(1) + 2 if comment else 0)
+        value, behind = (line, "") if start < 0 else (line[: start + 3], translate(line[start + 3 :]))
+        found.append(_WORDS.sub(lambda word: translate(word[0]), value) + behind)
+    return found[:-1]
