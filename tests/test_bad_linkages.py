@@ -155,7 +155,7 @@ CASES = {
         "gear: unknown key\n"
         "  found:   'gear'\n"
         "  allowed: tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, "
-        "points, guides, links, driver, gears, racks, cams, springs, friction, sketch, change points, masses, "
+        "points, guides, links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, "
         "loads, gravity, output, "
         "cycle, intermittent, positions, checks, dynamics, balancing, sheet\n"
         "  did you mean 'gears'?",

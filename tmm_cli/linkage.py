@@ -158,10 +158,15 @@ class Friction:
 
 @dataclass(frozen=True)
 class LoadTable(Table):
-    """A load's size, tabulated. shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles."""
+    """A load's size, tabulated.
+
+    shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles. stroke_link: the link whose
+    stroke it is; the main output if empty.
+    """
 
     against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
     shares: bool = False
+    stroke_link: str = ""
 
     @property
     def first_column(self) -> str:
@@ -176,7 +181,8 @@ class Load:
     `force` (N) acts at `at` (the link's axes, m) and keeps its direction in the drawing, or in the link when
     `follows`; `moment` in N m. With a table, both are multiplied by its value. When it `resists`, both are sizes only:
     the force opposes the motion of its point, the moment the turning of its link, as the base sees them. when:
-    "always", "working stroke"; window: and only from one angle of the crank to another (rad, counterclockwise).
+    "always", "working stroke", which is that of the link `stroke_link`, or of the main output if that is empty;
+    window: and only from one angle of the crank to another (rad, counterclockwise).
     """
 
     name: str
@@ -191,6 +197,7 @@ class Load:
     window: tuple[float, float] | None = None
     resists: bool = False
     base: str = FRAME
+    stroke_link: str = ""
 
     @property
     def working_stroke_only(self) -> bool:
@@ -257,6 +264,18 @@ class Linkage:
     def by_strokes(self) -> bool:
         """Whether loads may hang on the strokes: they act in working ones only, or by a table."""
         return any(load.working_stroke_only or load.table is not None for load in self.loads)
+
+    @property
+    def stroke_links(self) -> tuple[str, ...]:
+        """Links besides the main output whose strokes loads depend on."""
+        named = [load.stroke_link for load in self.loads if load.working_stroke_only]
+        named += [load.table.stroke_link for load in self.loads if load.table is not None]
+        return tuple(dict.fromkeys(link for link in named if link))
+
+    def working_direction(self, output: str) -> Literal["auto", "forward", "backward"]:
+        """The direction of the working stroke of an output, as the file says it."""
+        every = self.outputs or ((self.output,) if self.output else ())
+        return next((other.working for other in every if other.link == output), "auto")
 
     @property
     def by_speed(self) -> tuple[str, ...] | None:

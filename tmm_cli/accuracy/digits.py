@@ -238,4 +238,5 @@ def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: R
         more = lows[(k + 1) % len(lows)] - low - stroke.run
         run = stroke.run + (more - 2 * np.pi * np.round(rounded(more) / (2 * np.pi)) if swings else more)
         begun.append(replace(stroke, low=low, run=run))
-    return replace(strokes, strokes=tuple(begun))
+    others = tuple(_begun(other, linkage, kernels, q) for other in strokes.others)
+    return replace(strokes, strokes=tuple(begun), others=others)

@@ -80,16 +80,16 @@ def _loads(results: Results, motion: Motion) -> Iterable[Check]:
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
         return
-    always = [
-        x.name for x in loads
+    always = {
+        x.name: x.table.stroke_link if x.table else "" for x in loads
         if not x.working_stroke_only and x.window is None and not x.resists and x.base == FRAME
         and (x.table is None or x.table.against == "stroke")
-    ]  # fmt: skip
+    }  # fmt: skip
     between = (motion.q[1:] + motion.q[:-1]) / 2
-    works = strokes.share(between, motion.linkage.driver.sense)
     for load in given_loads(motion, strokes):
         if load.name not in always:
             continue
+        works = strokes.of_link(always[load.name]).share(between, motion.linkage.driver.sense)
         rate, arm = motion.first[load.link], load.at * motion.poses[load.link].z
         slope: Real = dot(load.force, rate.at(arm)) + load.moment * rate.w
         work = (slope[1:] + slope[:-1]) / 2 * np.diff(motion.q)

@@ -22,8 +22,10 @@ def jumps(mechanism: Mechanism) -> Iterable[float]:
     """Places of a crank that turns fully (rad), in any order and turn."""
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
-    for stroke in mechanism.strokes.strokes if mechanism.strokes else ():
-        yield from (stroke.start, stroke.start + sense * stroke.length)
+    main = mechanism.strokes
+    for strokes in () if main is None else (main, *main.others):
+        for stroke in strokes.strokes:
+            yield from (stroke.start, stroke.start + sense * stroke.length)
     for load in linkage.loads:
         if load.window is not None:
             yield from (place + cycle * k for place in load.window for k in _cycles(mechanism))
@@ -60,8 +62,9 @@ def _reached(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float])
 
 
 def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
-    """Driver coordinates (rad) at which the output reaches arguments of a table against its stroke, within strokes."""
+    """Driver coordinates (rad) at which a link reaches arguments of a table against its stroke, within strokes."""
     linkage, strokes = mechanism.linkage, mechanism.strokes
+    strokes = strokes and strokes.of_link(table.stroke_link)
     if strokes is None or not strokes.strokes:
         return
     curve = OutputCurve(linkage, towards(mechanism.kernels, [linkage.output_carrier(strokes.link)]), strokes.link)

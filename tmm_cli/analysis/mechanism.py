@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -118,15 +118,22 @@ class Mechanism:
 
     @cached_property
     def strokes(self) -> Strokes | None:
-        """Strokes of the main output."""
-        return find_strokes(self.linkage, self.kernels, self.driver_range, resisted(self.linkage, self.output))
+        """Strokes of the main output, with those of further links on which loads depend."""
+        main = None if self.output is None else self._strokes_of(self.output)
+        if main is None:
+            return None
+        others = [self._strokes_of(link) for link in self.linkage.stroke_links]
+        return replace(main, others=tuple(strokes for strokes in others if strokes is not None))
+
+    def _strokes_of(self, link: str) -> Strokes | None:
+        return find_strokes(self.linkage, self.kernels, self.driver_range, resisted(self.linkage, link), link)
 
     @cached_property
     def further(self) -> tuple[Strokes, ...]:
         """Strokes of the other outputs."""
         if not self.driver_range.full:
             return ()
-        found = [find_strokes(self.linkage, self.kernels, self.driver_range, link=link) for link in self.outputs[1:]]
+        found = [self._strokes_of(link) for link in self.outputs[1:]]
         return tuple(s for s in found if s is not None)
 
     @cached_property

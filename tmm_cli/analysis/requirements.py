@@ -25,17 +25,18 @@ def _need_strokes(mechanism: Mechanism) -> None:
     if request.start != "working stroke" and not loads:
         return
     strokes = mechanism.strokes
-    if strokes is not None and strokes.strokes:
-        return
-    link = strokes.link if strokes else None
-    if request.start == "working stroke" and driver_range.full:
-        raise MissingStrokesError(link, ("positions", "from"))
+    if request.start == "working stroke" and driver_range.full and (strokes is None or not strokes.strokes):
+        raise MissingStrokesError(strokes.link if strokes else None, ("positions", "from"))
     for load in loads:
-        if load.working_stroke_only and driver_range.full:
-            raise MissingStrokesError(link, ("loads", load.name, "when"))
+        own = strokes.of_link(load.stroke_link) if strokes else None
+        if load.working_stroke_only and driver_range.full and (own is None or not own.strokes):
+            raise MissingStrokesError(own.link if own else None, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":
-            limits = None if driver_range.full else (driver_range.start, driver_range.end)
-            raise MissingStrokesError(link, ("loads", load.name, "force" if load.force else "moment"), limits)
+            own = strokes.of_link(load.table.stroke_link) if strokes else None
+            if own is None or not own.strokes:
+                limits = None if driver_range.full else (driver_range.start, driver_range.end)
+                key = "force" if load.force else "moment"
+                raise MissingStrokesError(own.link if own else None, ("loads", load.name, key), limits)
 
 
 def _need_rows(mechanism: Mechanism) -> None:

@@ -42,11 +42,24 @@ def _size(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
     size = np.ones(np.shape(motion.q))
     if load.table is not None:
         size = load.table(table_argument(load.table, motion, strokes))
-    if load.working_stroke_only and strokes is not None and strokes.strokes:
-        size = np.where(strokes.share(motion.q, motion.linkage.driver.sense), size, 0.0)
+    return size if acts_always(load, strokes) else np.where(acts(load, motion.q, motion.linkage, strokes), size, 0.0)
+
+
+def acts(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
+    """True at the positions of the driver in which a load acts, which is always if there are no strokes."""
     if load.window is not None:
-        size = np.where(in_window(load.window, motion.q, motion.linkage), size, 0.0)
-    return size
+        return in_window(load.window, q, linkage)
+    if acts_always(load, strokes):
+        return np.ones(np.shape(q), dtype=bool)
+    assert strokes is not None
+    return strokes.of_link(load.stroke_link).share(q, linkage.driver.sense)
+
+
+def acts_always(load: Load, strokes: Strokes | None) -> bool:
+    """True if a load acts at all positions: it is limited neither to a window nor to working strokes that there are."""
+    if load.window is not None:
+        return False
+    return not load.working_stroke_only or strokes is None or not strokes.of_link(load.stroke_link).strokes
 
 
 def _opposite(load: Load, motion: Motion, force: Vector, moment: Real) -> Applied:
@@ -97,7 +110,7 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
 
 
 def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) -> Real:
-    """What a load is tabulated against: run of the output from where its working stroke starts, or the crank.
+    """What a load is tabulated against: run of a link from where its working stroke starts, or the crank.
 
     A run is in m or rad, or a share of the working stroke.
     """
@@ -109,7 +122,9 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi * motion.linkage.turns
         return _turned(driver.sense * (motion.q - start), cycle)
-    assert strokes is not None and first is not None
+    assert strokes is not None
+    strokes = strokes.of_link(table.stroke_link)
+    first = strokes.strokes[0]
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
@@ -122,11 +137,11 @@ def reach_of_tables(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple
 
     Both are arrays (variants, 1) where the linkage is one of many variants.
     """
-    if strokes is None or not strokes.strokes:
-        return
-    for load in linkage.loads:
+    for load in () if strokes is None else linkage.loads:
+        assert strokes is not None
         if load.table is not None and load.table.against == "stroke" and not load.table.shares:
-            yield load, load.table.arguments[-1], np.abs(strokes.strokes[0].run)
+            for stroke in strokes.of_link(load.table.stroke_link).strokes[:1]:
+                yield load, load.table.arguments[-1], np.abs(stroke.run)
 
 
 def ends_with_stroke(last: Any, stroke: Any) -> Any:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,8 @@ class Strokes:
 
     link: a link's name, or a coordinate of a point (K.x). kind: it slides (m), or swings (rad). k is the time of the
     working strokes over that of the idle ones at constant speed, without the dwells between them. rule: why that stroke
-    is the working one. cycle: how far the driver goes until they repeat (rad).
+    is the working one. cycle: how far the driver goes until they repeat (rad). others: strokes of further links, on
+    which loads depend.
     """
 
     link: str
@@ -47,6 +49,18 @@ class Strokes:
     strokes: tuple[Stroke, ...]
     rule: str
     cycle: float = 2 * np.pi
+    others: tuple[Strokes, ...] = ()
+
+    def of_link(self, link: str) -> Strokes:
+        """The strokes of one of the links on which loads depend; of the main output if `link` is empty."""
+        if link in ("", self.link):
+            return self
+        return next((other for other in self.others if other.link == link), Strokes(link, self.kind, (), ""))
+
+    def changed(self, change: Callable[[Stroke], Stroke]) -> Strokes:
+        """The same with every stroke changed, also of the other links."""
+        strokes, others = map(change, self.strokes), (other.changed(change) for other in self.others)
+        return replace(self, strokes=tuple(strokes), others=tuple(others))
 
     @property
     def working(self) -> tuple[Stroke, ...]:
@@ -118,7 +132,7 @@ def find_strokes(
     rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
     lengths = lengths - rests
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
-    direction, rule = _working(linkage, forward, back, resists)
+    direction, rule = _working(linkage.working_direction(link), forward, back, resists)
     strokes = [
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction), float(rest))
         for t, n, s, r, rest in zip(turns, lengths, lows, runs, rests, strict=True)
@@ -185,9 +199,8 @@ def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Rea
     return np.sort(np.array(kept))[::sense]
 
 
-def _working(linkage: Linkage, forward: float, back: float, resists: float) -> tuple[int, str]:
+def _working(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
     """In which direction (+1 or -1) the output works, and why: forward, back: how long strokes of each last (rad)."""
-    asked = linkage.output.working if linkage.output else "auto"
     if asked != "auto":
         return (1 if asked == "forward" else -1), "as the file says"
     if abs(forward - back) > SAME_PLACE:

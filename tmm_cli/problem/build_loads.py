@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from tmm_cli.language import _
 from tmm_cli.linkage import Link, Linkage, Load, LoadTable
 from tmm_cli.problem import schema, schema_loads
 from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.schema_loads import STROKE_OF, WORKING_STROKE_OF
 from tmm_cli.problem.tree import Path
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
 from tmm_cli.quantities import (
@@ -125,13 +127,31 @@ def _load(name: str, part: Part, linkage: Linkage) -> Load:
         raise part.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
     if both and pushes.resists != turns.resists:
         raise part.refusal("", _("one part of this load resists a motion, the other does not"), "both", _("two loads"))
-    when = given.when if isinstance(given.when, str) else "always"
     window = None if isinstance(given.when, str) else _window(part, linkage)
+    when, stroke_link = "always", ""
+    if window is None and given.when != "always":
+        when, stroke_link = "working stroke", _stroke_link(part, "when", linkage, link)
     point = given.at if isinstance(given.at, str) else ""
     return Load(
         name, link, at, pushes.size, turns.size, given.axes == "link", when, pushes.table or turns.table, point, window,
-        pushes.resists or turns.resists, base,
+        pushes.resists or turns.resists, base, stroke_link,
     )  # fmt: skip
+
+
+def _stroke_link(part: Part, key: str, linkage: Linkage, loaded: str) -> str:
+    """The link on whose stroke a load depends by this key; empty if it is the main output. Raises ProblemError.
+
+    The one that the file names, else the load's own link if that slides on the frame, else the main output.
+    """
+    named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(part.given, key))
+    link = loaded if linkage.slides_on_frame(loaded) else ""
+    if named:
+        link = part.values.known(named[2] or named[3], linkage.moving, part.at(key), "moving link")
+    if not link:
+        return ""
+    output = output_link(linkage, analyse(linkage).groups)
+    is_output = output is not None and (link == output or (not named and link == linkage.output_carrier(output)))
+    return "" if is_output else link
 
 
 class _Component(NamedTuple):
@@ -153,7 +173,7 @@ def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> _Comp
         part.one_of("size", "table", "angle", "resists")
         size = part.positive("resists", want)
         return _Component(size + 0j if force else size, resists=True)
-    return _sized(part, want, linkage, angled=force)
+    return _sized(part, want, linkage, load.given.on, angled=force)
 
 
 def _pressing(load: Part, linkage: Linkage) -> _Component:
@@ -168,13 +188,13 @@ def _pressing(load: Part, linkage: Linkage) -> _Component:
     part = Part(load.given.pressure, (*load.path, "pressure"), load.values)
     if part.given.resists is not None:
         raise part.refusal("resists", _("a pressure has a direction"), allowed=_("angle: 180 deg"), at_key=True)
-    found = _sized(part, PRESSURE, linkage, angled=True)
+    found = _sized(part, PRESSURE, linkage, load.given.on, angled=True)
     if found.table is None:
         return _Component(found.size * area)
     return _Component(found.size, replace(found.table, values=tuple(value * area for value in found.table.values)))
 
 
-def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _Component:
+def _sized(part: Part, want: Dimension, linkage: Linkage, loaded: str, *, angled: bool) -> _Component:
     """By one size or by a table, at an angle or about the axis of the drawing."""
     given: schema_loads.Tabulated = part.given
     if angled == (given.angle is None):
@@ -190,7 +210,7 @@ def _sized(part: Part, want: Dimension, linkage: Linkage, *, angled: bool) -> _C
     along = direction(part.number("angle", ANGLE)) if angled else 1.0
     if part.one_of("size", "table", "resists") == "size":
         return _Component(along * part.number("size", want))
-    return _Component(along, _table(part, want, linkage))
+    return _Component(along, _table(part, want, linkage, loaded))
 
 
 def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
@@ -216,26 +236,29 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
     return low, high
 
 
-def _table(part: Part, want: Dimension, linkage: Linkage) -> LoadTable:
+def _table(part: Part, want: Dimension, linkage: Linkage, loaded: str) -> LoadTable:
     given: schema_loads.Tabulated = part.given
-    argument = ANGLE
+    argument, against, stroke_link = ANGLE, given.against or "", ""
     if linkage.driver.kind == "slide":
         raise part.refusal(
             "against", _("a table is against a crank, or the strokes that it gives: this driver slides"),
             str(given.against), _("size: one value"),
         )  # fmt: skip
-    shares = given.against == "share of stroke"
-    against = "stroke" if given.against is None or given.against == "share of stroke" else given.against
-    if shares:
-        argument = NUMBER
-    elif against == "stroke":
-        link = output_link(linkage, analyse(linkage).groups)
-        argument = ANGLE if link is None or linkage.output_swings(link) else LENGTH
+    shares = against.startswith("share")
+    if shares or against.startswith("stroke"):
+        against, stroke_link = "stroke", _stroke_link(part, "against", linkage, loaded)
+        argument = NUMBER if shares else stroke_dimension(linkage, stroke_link)
     arguments, sizes = part.columns("table", argument, want, jumps=given.between != "step")
     if shares:
         _refuse_beyond_stroke(part, arguments)
     round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
-    return LoadTable(arguments, sizes, given.between, round_and_round, against, shares)
+    return LoadTable(arguments, sizes, given.between, round_and_round, cast("Any", against), shares, stroke_link)
+
+
+def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
+    """The dimension of the stroke of a link, or of the main output if it is empty: an angle if the link swings."""
+    link = stroke_link or output_link(linkage, analyse(linkage).groups)
+    return ANGLE if link is None or linkage.output_swings(link) else LENGTH
 
 
 def _refuse_beyond_stroke(part: Part, shares: Sequence[Any]) -> None:

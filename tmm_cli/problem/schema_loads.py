@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticKnownError
 
 from tmm_cli.problem.schema_parts import Name, Place, Strict, Value, Vector, checked_value, checked_vector
 
@@ -28,6 +30,34 @@ class Mass(Strict):
     )
 
 
+STROKE_OF = r"(share of )?stroke of (\S.*)"
+WORKING_STROKE_OF = r"working stroke of (\S.*)"
+AGAINST = ("stroke", "share of stroke", "crank angle", "crank turn")
+WHEN = ("always", "working stroke")
+
+
+def _word(found: Any, words: tuple[str, ...], pattern: str) -> str:
+    """One of these words, or a text of this pattern."""
+    if isinstance(found, str) and (found in words or re.fullmatch(pattern, found)):
+        return found
+    *first, last = (f"'{word}'" for word in words)
+    raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
+
+
+def _against(found: Any) -> str:
+    return _word(found, AGAINST, STROKE_OF)
+
+
+Against = Annotated[
+    str,
+    BeforeValidator(
+        _against,
+        json_schema_input_type=Literal["stroke", "share of stroke", "crank angle", "crank turn"]
+        | Annotated[str, Field(pattern=f"^{STROKE_OF}$")],
+    ),
+]
+
+
 class Tabulated(Strict):
     """A force, pressure or moment by table, or by size and angle."""
 
@@ -36,9 +66,10 @@ class Tabulated(Strict):
         default=None, description="instead of size: a constant friction, against the motion of the point or link"
     )
     angle: Value | None = Field(default=None, description="direction of the force from the x axis")
-    against: Literal["stroke", "share of stroke", "crank angle", "crank turn"] | None = Field(
+    against: Against | None = Field(
         default=None,
-        description="what the table's first column is: run of the output from the start of its working stroke; "
+        description="what the table's first column is: run of the load's link, if that slides on the frame, else of "
+        "the output, from the start of its working stroke; `stroke of 5` is that of link 5; "
         "the same as a share of the stroke, 0 to 1 or 0 to 100 %; "
         "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
     )
@@ -62,7 +93,18 @@ def _moment(found: Any) -> Any:
 
 
 def _when(found: Any) -> Any:
-    return checked_vector(found) if isinstance(found, list) else found
+    return checked_vector(found) if isinstance(found, list) else _word(found, WHEN, WORKING_STROKE_OF)
+
+
+When = Annotated[
+    str | list[Any],
+    BeforeValidator(
+        _when,
+        json_schema_input_type=Literal["always", "working stroke"]
+        | Annotated[str, Field(pattern=f"^{WORKING_STROKE_OF}$")]
+        | Vector,
+    ),
+]
 
 
 class Load(Strict):
@@ -83,6 +125,8 @@ class Load(Strict):
     area: Value | None = Field(default=None, description="that the pressure acts on")
     bore: Value | None = Field(default=None, description="instead of area: diameter of the piston")
     axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
-    when: Annotated[Literal["always", "working stroke"] | list[Value], BeforeValidator(_when)] = Field(
-        default="always", description="always, working stroke, or [from, to]: angles of the crank, counterclockwise"
+    when: When = Field(
+        default="always",
+        description="always, working stroke (of the load's link, if that slides on the frame, else of the output), "
+        "working stroke of 5, or [from, to]: angles of the crank, counterclockwise",
     )

@@ -8,12 +8,12 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage, Load, LoadTable
+from tmm_cli.problem.build_loads import stroke_dimension
 from tmm_cli.problem.record import Problem
 from tmm_cli.quantities import (
     ANGLE,
     FORCE,
     INERTIA,
-    LENGTH,
     MASS,
     MOMENT,
     NUMBER,
@@ -22,8 +22,6 @@ from tmm_cli.quantities import (
 from tmm_cli.results.shown import FILE_WORDS, show, show_vector
 from tmm_cli.results.stages import heavy
 from tmm_cli.results.table import Table, table_of_words
-from tmm_cli.structure.assur import analyse
-from tmm_cli.structure.naming import output_link
 
 
 def masses(problem: Problem) -> Table:
@@ -51,7 +49,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
     if load.table is not None:
         size = _("table of {rows} rows against the {against}").format(
-            rows=len(load.table.values), against=_(FILE_WORDS[load.table.first_column])
+            rows=len(load.table.values), against=_first_column(load.table)
         )
     elif load.resists:
         size = _("{size} against the motion").format(size=show(problem, abs(value), dimension))
@@ -62,6 +60,8 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
     place = show_vector(problem, load.at) if load.force else ""
     link = load.link if load.base == FRAME else _("{link} from {base}").format(link=load.link, base=load.base)
     when = _(FILE_WORDS[load.when])
+    if load.stroke_link:
+        when = _("working stroke of link {link}").format(link=load.stroke_link)
     if load.window is not None:
         first, last = (show(problem, angle, ANGLE) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
@@ -72,10 +72,13 @@ def argument_dimension(linkage: Linkage, table: LoadTable) -> Dimension:
     """What the first column of a load's table measures."""
     if table.shares:
         return NUMBER
-    if table.against != "stroke":
-        return ANGLE
-    link = output_link(linkage, analyse(linkage).groups)
-    return ANGLE if link is None or linkage.output_swings(link) else LENGTH
+    return stroke_dimension(linkage, table.stroke_link) if table.against == "stroke" else ANGLE
+
+
+def _first_column(table: LoadTable) -> str:
+    """What the first column of a table is, with the link whose stroke it is if that is not the main output."""
+    words = _(FILE_WORDS[table.first_column])
+    return words if not table.stroke_link else _("{stroke} of link {link}").format(stroke=words, link=table.stroke_link)
 
 
 def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
@@ -92,6 +95,6 @@ def _tabulated(problem: Problem, load: Load, table: LoadTable) -> Table:
     elif table.between == "smooth":
         closed, natural = _("Between rows: a cubic spline that closes."), _("Between rows: a natural cubic spline.")
         notes.append(closed if table.closed else natural)
-    title = _("{load} against the {against}").format(load=load.name, against=_(FILE_WORDS[table.first_column]))
+    title = _("{load} against the {against}").format(load=load.name, against=_first_column(table))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return table_of_words(name, title, (_(FILE_WORDS[table.first_column]), _("size")), rows, tuple(notes))
+    return table_of_words(name, title, (_first_column(table), _("size")), rows, tuple(notes))

@@ -61,6 +61,8 @@ class Turning:
         turns = driver.kind == "turn" and driver.stroke is None and turns_of_cycle(linkage) == linkage.turns == 1
         if not turns or driver.law is not None or linkage.others or linkage.meshes or linkage.friction:
             raise NoTapeError
+        if forces and linkage.stroke_links:  # its inputs are the strokes of one link
+            raise NoTapeError
         self.structure = mobile(linkage)
         self.kernels = assemble(linkage, self.structure)
         if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):

@@ -114,7 +114,9 @@ def together(make: Make, columns: Real) -> Family | None:
     structure = structure.rebind(linkage)
     kernels = tuple(kernel.rebind(linkage) for kernel in kernels)
     request = stands(varied.request)
-    strokes, sound = _strokes(linkage, kernels, len(columns))
+    strokes, sound = _all_strokes(linkage, kernels, len(columns))
+    if linkage.stroke_links and strokes is None:
+        return None
     q = places_of(request, strokes, linkage.driver.sense, len(columns))
     return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
 
@@ -129,15 +131,31 @@ def _alone(make: Make, row: Real) -> Family:
     return Family(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
 
 
-def _strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple[Strokes | None, Real]:
-    """Strokes of the output of all variants, and which have one working and one idle stroke and turn fully."""
+def _all_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple[Strokes | None, Real]:
+    """Strokes of the main output of all variants, with those of further links on which loads depend; None where one of
+    these has none. And which variants have one working and one idle stroke of each, and turn fully."""
+    link = output_link(linkage, tuple(kernel.group for kernel in kernels))
+    main, sound = _strokes(linkage, kernels, count, link)
+    others = []
+    for link in linkage.stroke_links:
+        strokes, have = _strokes(linkage, kernels, count, link)
+        if main is None or strokes is None:
+            return None, sound
+        others.append(strokes)
+        sound = sound & have
+    return main and replace(main, others=tuple(others)), sound
+
+
+def _strokes(
+    linkage: Linkage, kernels: tuple[Kernel, ...], count: int, link: str | None
+) -> tuple[Strokes | None, Real]:
+    """Strokes of one output of all variants, and which have one working and one idle stroke and turn fully."""
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
     whole = link_states(linkage, kernels, q, 1)
     sound = np.all(whole.moving, axis=1)
     for kernel in kernels:
         if isinstance(kernel, Marched):
             sound = sound & kernel.kept(whole)
-    link = output_link(linkage, tuple(kernel.group for kernel in kernels))
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound
     curve = OutputCurve(linkage, towards(kernels, [link]), link)
@@ -166,7 +184,7 @@ def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> S
     slower = np.sign(np.where(np.abs(forward - back) > SAME_PLACE, forward - back, 0))
     rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
     direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
-    asked = linkage.output.working if linkage.output else "auto"
+    asked = linkage.working_direction(curve.link)
     if asked != "auto":
         direction = np.full(len(ends), 1.0 if asked == "forward" else -1.0)
     first = (np.sign(runs[:, 1]) == direction).astype(int)

@@ -28,9 +28,8 @@ class Sense(Mistake):
         driver = family.linkage.driver
         linkage = replace(family.linkage, driver=replace(driver, sense=-driver.sense))
         if family.strokes is not None:  # the same ways of the driver, from their other ends
-            own = tuple(
-                replace(s, start=s.start + driver.sense * s.length, low=s.low + s.run, run=-s.run)
-                for s in family.strokes.strokes
+            strokes = family.strokes.changed(
+                lambda s: replace(s, start=s.start + driver.sense * s.length, low=s.low + s.run, run=-s.run)
             )
-            family = replace(family, strokes=replace(family.strokes, strokes=own))
+            family = replace(family, strokes=strokes)
         return family.changed(linkage, 2 * family.q[:, :1] - family.q if self.counted else None)

@@ -26,7 +26,6 @@ class WrongStroke(Mistake):
             yield from (cls(False), cls(True))
 
     def family(self, family: Family) -> Family:
-        strokes = family.strokes
-        assert strokes is not None
-        own = tuple(replace(s, working=self.both or not s.working) for s in strokes.strokes)
-        return replace(family, strokes=replace(strokes, strokes=own))
+        assert family.strokes is not None
+        strokes = family.strokes.changed(lambda s: replace(s, working=self.both or not s.working))
+        return replace(family, strokes=strokes)

@@ -170,6 +170,8 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         against = subject.value(abs(load.force), FORCE) if load.force else subject.value(load.moment, MOMENT)
         size = _("{size} against the motion").format(size=against)
     when = _("in the working stroke") if load.working_stroke_only else _("always")
+    if load.stroke_link:
+        when = _("in the working stroke of link {link}").format(link=load.stroke_link)
     if load.window is not None:
         first, last = (subject.value(angle, ANGLE) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.forces.applied import Applied
-from tmm_cli.forces.given import ends_with_stroke, given_loads, in_window, reach_of_tables, table_argument
+from tmm_cli.forces.given import acts, acts_always, ends_with_stroke, given_loads, reach_of_tables, table_argument
 from tmm_cli.forces.springs import twisted
 from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, numeral
@@ -96,13 +96,16 @@ def _power(motion: Motion, acting: Iterable[Applied]) -> tuple[Real, Real]:
 
 def _driving(results: Results, load: Load) -> str:
     reverse = _("load {load} acts in the direction of motion during the whole working stroke. Reverse its sign")
-    strokes = results.strokes
+    strokes = results.strokes and results.strokes.of_link(load.stroke_link)
     if strokes is None or not strokes.working:
         return reverse.format(load=load.name)
     other = "backward" if strokes.working[0].run > 0 else "forward"
     link = results.linkage.output_point(strokes.link) or strokes.link
+    output = f"{{link: {link}, working: {other}}}"
+    if results.strokes is not None and strokes is not results.strokes:
+        output = f"[{results.linkage.output_point(results.strokes.link) or results.strokes.link}, {output}]"
     return _("{reverse}, or choose the other stroke: {output}").format(
-        reverse=reverse.format(load=load.name), output=f"output: {{link: {link}, working: {other}}}"
+        reverse=reverse.format(load=load.name), output=f"output: {output}"
     )
 
 
@@ -195,26 +198,19 @@ def open_tables(results: Results) -> Iterable[str]:
 
 def without_strokes(results: Results) -> Iterable[str]:
     """Loads of a working stroke that there is not."""
-    for name in _of_working_stroke(results) if results.strokes is None or not results.strokes.strokes else ():
-        yield _(
-            "load {load} is one of the working stroke, but there are no whole strokes on this way of "
-            "the driver: it acts always"
-        ).format(load=name)
-
-
-def _of_working_stroke(results: Results) -> list[str]:
-    return [load.name for load in results.linkage.loads if load.working_stroke_only]
+    for load in results.linkage.loads:
+        if load.working_stroke_only and acts_always(load, results.strokes):
+            yield _(
+                "load {load} is one of the working stroke, but there are no whole strokes on this way of "
+                "the driver: it acts always"
+            ).format(load=load.name)
 
 
 def _short(results: Results, load: Load, table: LoadTable) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
     motion = results.motion
     assert motion is not None
-    acting = motion.placed
-    if load.working_stroke_only and results.strokes is not None and results.strokes.strokes:
-        acting = acting & results.strokes.share(motion.q, results.linkage.driver.sense)
-    if load.window is not None:
-        acting = acting & in_window(load.window, motion.q, results.linkage)
+    acting = motion.placed & acts(load, motion.q, results.linkage, results.strokes)
     if not np.any(acting):
         return False
     argument = table_argument(table, motion, results.strokes)[acting]
