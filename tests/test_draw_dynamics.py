@@ -21,7 +21,7 @@ from tmm_cli import load, solve
 from tmm_cli.draw.layout.contents import CONTENTS, chosen
 from tmm_cli.draw.paper.drawing import Circle, Line, Text
 from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION
-from tmm_cli.draw.sheets.law_of_motion import law_of_motion
+from tmm_cli.draw.sheets.law_of_motion import law_of_motion, stretches_on_paper
 from tmm_cli.draw.sheets.single_run import single_run
 from tmm_cli.dynamics.motors import Linear
 from tmm_cli.dynamics.sizes import Rim
@@ -205,3 +205,24 @@ def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_
     assert f"{inertia:.4g} kg·m²" in written(sheet)
     for command in ("run", "note", "sheets"):
         assert tmm(command, DATA / "two-triangles.yaml", "-o", tmp_path).returncode == 0
+
+
+def test_panels_that_paper_does_not_show_apart_are_one_stretch_or_a_jump():
+    """Of a way of 2, 0.001 is the finest: four panels of 0.0002 are a jump, six of 0.0005 a stretch."""
+    jump, slope = 0.5 + 0.0002 * np.arange(5), 1.5 + 0.0005 * np.arange(7)
+    lows, highs = stretches_on_paper(np.concatenate([[0, 0.25], jump, [1.0], slope, [2.0]]))
+    assert lows == pytest.approx([0, 0.25, 0.5008, 1.0, 1.5, 1.503])
+    assert highs == pytest.approx([0.25, 0.5, 1.0, 1.5, 1.503, 2.0])
+    assert [len(part) for part in stretches_on_paper(np.linspace(0, 1, 10_001))] == [1, 1]
+
+
+def test_rows_a_thousandth_of_a_millimetre_apart_are_drawn_as_a_jump(tmp_path):
+    """The law of motion has 2 000 panels in that row; each was a jump whose values wanted a place on the sheet."""
+    results = solve(load(DATA / "steep-table.yaml"))
+    assert len(results.steady.steady.law.energy.edges) > 1000
+    sheet = dict(law_of_motion(results))["law-moments"]
+    assert max(len(mark.places) for mark in sheet.marks if isinstance(mark, Line)) < 2000
+    jumps = [mark for mark in sheet.marks if isinstance(mark, Circle) and mark.face == "white"]
+    assert 0 < len(jumps) < 20
+    for command in ("run", "note", "sheets"):
+        assert tmm(command, DATA / "steep-table.yaml", "-o", tmp_path).returncode == 0

@@ -1,10 +1,15 @@
 """What is written on the sheets of all problems covers nothing that is drawn, and nothing else that is written."""
 
+import numpy as np
 import pytest
 from bank import EVERY, drawn
 from covering import covered
 
+from tmm_cli.draw.paper import labels
+from tmm_cli.draw.paper.boxes import gaps
 from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
+from tmm_cli.draw.paper.ground import Ground
+from tmm_cli.draw.paper.labels import Label, place
 
 DARK = "#000000"
 A = Text(50 + 50j, "A", 4.0, DARK, "center")  # its letter is 2.7 mm wide and 2.9 mm high
@@ -33,3 +38,18 @@ def test_what_a_white_field_about_a_text_hides_is_not_covered():
     line, field = Line((40 + 50j, 60 + 50j), DARK, 0.2, z=1), (45 + 45j, 55 + 45j, 55 + 55j, 45 + 55j)
     assert not found(line, Area(field, "white", DARK, 0.2, z=8))
     assert found(line, Area(field, "white", DARK, 0.2, z=0))
+
+
+def test_labels_are_placed_alike_however_few_candidates_are_looked_at_together(monkeypatch):
+    """All gaps of 400 labels would be arrays of 400 * 48 * 400 numbers; a bound of them changes no place."""
+
+    def places():
+        random = np.random.default_rng(5)
+        anchors = 280 * random.random(400) + 200j * random.random(400)
+        return [one.middle for one in place(Ground(0j, 280 + 200j), [Label("A", complex(z), 8, DARK) for z in anchors])]
+
+    together, largest = places(), []
+    monkeypatch.setattr(labels, "MOST_GAPS", 20_000)
+    monkeypatch.setattr(labels, "gaps", lambda boxes, z: largest.append(len(boxes) * len(z)) or gaps(boxes, z))
+    assert places() == together
+    assert max(largest) <= 20_000

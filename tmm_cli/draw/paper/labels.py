@@ -22,6 +22,7 @@ ASIDE = (1.0, 2.2, 3.4, 5.5, 8.0, 11.0, 16.0, 22.0, 30.0, 40.0)  # mm from a lin
 ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)  # where a text stands beside a line, shares of its length
 DIRECTIONS = 16
 TIERS = (0, 3, 6, 9, 13)  # rings between these are looked at together, later ones if there is nothing free
+MOST_GAPS = 1_000_000  # between candidate places and other anchors that are held in memory at once: 8 MB an array
 KEPT = 24  # places with leaders, the cheapest ones, that are looked at more closely
 LEADER = 4.0  # mm from which a line leads from a place to its label
 SHORT = 0.5  # mm by which it ends before the label
@@ -89,8 +90,10 @@ class Placer:
         self.sizes = np.array(sizes)
         self.known: list[list[Places]] = [[] for __ in labels]
         wanting: Sequence[int] = range(len(labels))
+        together = max(1, MOST_GAPS // (DIRECTIONS * TIERS[1] * (len(self.rivals) + 1)))
         while wanting:
-            self._look_farther(wanting)
+            for first in range(0, len(wanting), together):
+                self._look_farther(wanting[first : first + together])
             wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE / 2]
 
     def _look_farther(self, numbers: Sequence[int]) -> None:

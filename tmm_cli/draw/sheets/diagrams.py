@@ -42,7 +42,7 @@ BESIDE = 1e-6  # rad: so far before and after the border of a stroke a curve is 
 LEAP = 1e-3  # of all a curve runs through: what it does there in one step is a jump
 NOTHING = 1e-9  # of its largest value: what runs through less stays the same
 SUDDEN, STEEP = 0.01, 6.0  # the same away from the borders: of all it runs through, and of its rates before and after
-WRITTEN = 2  # curves in a panel up to which the values of jumps are written
+WRITTEN, WRITTEN_JUMPS = 2, 24  # curves in a panel, and jumps of a curve, up to which the values of jumps are written
 LINES = (DARK, LOAD, INERTIA, REACTION, NAMES, "#c77700", "#00757d", THIN)
 STYLES: tuple[Style, ...] = ("-", "--", "-.", ":")
 SYMBOLS = {
@@ -199,7 +199,8 @@ def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: 
         every = slice(None, None, math.ceil(len(marks) / MARKS) or 1)
         curves.append(Curve(marks[every], np.broadcast_to(points, np.shape(marks))[every], "", colour, dots=True))
         for i in leaps:
-            told = [numeral(v, ".4g") if len(found.courses) <= WRITTEN else "" for v in (values[i], values[i + 1])]
+            written = len(found.courses) <= WRITTEN and len(leaps) <= WRITTEN_JUMPS
+            told = [numeral(v, ".4g") if written else "" for v in (values[i], values[i + 1])]
             jumps.append(Jump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
     return Plot(
         with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),

@@ -25,6 +25,7 @@ from tmm_cli.vectors import Real
 if TYPE_CHECKING:
     from tmm_cli.analysis.running import Running
 
+FINEST = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
 PARTS = 6  # loads, or links, that have a curve each; the smallest of more are summed up
 
 
@@ -55,11 +56,23 @@ def diagram(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 def _closely(running: Running) -> tuple[Real, list[int]]:
     """Ways close together, and after which of them a panel of the functions ends: there they may jump."""
-    edges = running.steady.law.energy.edges
-    inner = np.linspace(0, 1, max(4, 720 // len(edges)))
-    low, high = edges[:-1, None] + BESIDE, edges[1:, None] - BESIDE
+    lows, highs = stretches_on_paper(running.steady.law.energy.edges)
+    inner = np.linspace(0, 1, max(4, 720 // len(lows)))
+    low, high = lows[:, None] + BESIDE, highs[:, None] - BESIDE
     places = low + (high - low) * inner
-    return places.ravel(), (len(inner) * np.arange(1, len(edges) - 1) - 1).tolist()
+    return places.ravel(), (len(inner) * np.arange(1, len(lows)) - 1).tolist()
+
+
+def stretches_on_paper(edges: Real) -> tuple[Real, Real]:
+    """The starts and the ends of the panels between these edges that are wide enough to be seen on paper.
+
+    Narrow panels side by side are one stretch; together narrower than a line is wide, they are left out: a jump.
+    """
+    least = FINEST * (edges[-1] - edges[0])
+    wide = np.diff(edges) >= least
+    kept = edges[np.append(True, wide) | np.append(wide, True)]
+    seen = np.diff(kept) >= least
+    return kept[:-1][seen], kept[1:][seen]
 
 
 def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Quantities]:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tmm_cli.analysis.single_run import SingleRun
 
 PLACES = 480  # of all pieces of a run together
-LEAST = 40  # of each
+LEAST, FEWEST = 40, 4  # of each: where there are few pieces, and where there are very many
 
 
 def single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -42,7 +42,8 @@ def single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
         return
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     factor = np.pi / 180 if crank else units.factor(LENGTH)
-    pieces = single.run.closely(max(LEAST, PLACES // len(single.run.steps)))
+    count = len(single.run.steps)
+    pieces = single.run.closely(max(FEWEST, min(LEAST, 4 * PLACES // count), PLACES // count))
     times, states = (np.concatenate(part, axis=-1) for part in zip(*pieces, strict=True))
     ends = (np.cumsum([len(own) for own, __ in pieces])[:-1] - 1).tolist()
     here = single.way(results.motion.q)
