@@ -248,6 +248,20 @@ def test_a_bare_speed_of_a_linear_motor_and_of_a_run_is_warned_of():
     assert start.startswith("dynamics.run.speed has no unit and is taken as 5 rad/s = 47.75 rpm")
 
 
+def test_bare_speeds_of_cylinders_and_of_their_runs_are_warned_of():
+    boom = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("to: 980,", "to: 980, speed: 40,")
+    assert list(doubts(build(read_text(boom, "boom.yaml")))) == [
+        "dynamics.run.speed has no unit and is taken as 40 m/s, though lengths are in mm: write `40 m/s`, or `40 mm/s` "
+        "if that is meant"
+    ]
+    digger = (SHAPER.parent / "excavator.yaml").read_text(encoding="utf-8").replace("speed: v2", "speed: 0.03")
+    (doubt,) = doubts(build(read_text(digger, "excavator.yaml")))
+    assert doubt == (
+        "driver[1].speed has no unit and is taken as 0.03 m/s, though lengths are in mm: write `0.03 m/s`, or `0.03 "
+        "mm/s` if that is meant"
+    )
+
+
 @pytest.mark.parametrize("linked", [True, False])
 def test_a_bare_speed_in_a_task_of_synthesis_is_warned_of(linked, tmp_path):
     text = (SHAPER.parent / "pump-synthesis.yaml").read_text(encoding="utf-8")

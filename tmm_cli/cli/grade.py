@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -14,11 +14,12 @@ import typer
 
 from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
 from tmm_cli.cli.opening import introduce, read_in_its_language
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
 from tmm_cli.grading.run import graded, written
+from tmm_cli.grading.soundness import tables_apart
 from tmm_cli.grading.statistics import tables
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.submissions.template import write_template
@@ -26,7 +27,7 @@ from tmm_cli.grading.tables import read_table
 from tmm_cli.grading.task import Task, read_task
 from tmm_cli.grading.workers import cluster, processes
 from tmm_cli.language import _
-from tmm_cli.problem.errors import chosen_names
+from tmm_cli.problem.errors import ProblemError, chosen_names
 from tmm_cli.results.files import refuse_place
 from tmm_cli.results.terminal import show
 
@@ -81,6 +82,9 @@ def _graded(
     names = list(EXPORTS) if formats is None else chosen_names(formats, EXPORTS, "--formats", reason)
     introduce(task.problem)
     table = read_table(variants, task)
+    with suppress(ProblemError):  # a value that cannot be read is told to its student
+        for slip in tables_apart(task, table):
+            warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1
     way = cluster(scheduler) if scheduler else processes(jobs)
     with bars() as shown, _stoppable() as stopped:

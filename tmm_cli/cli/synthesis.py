@@ -19,7 +19,7 @@ from tmm_cli.results.files import Staged, folder_name, held
 from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
 from tmm_cli.results.terminal import show
 from tmm_cli.results.text import csv_text, json_bytes
-from tmm_cli.results.understood import bare_angular_speeds, bare_units
+from tmm_cli.results.understood import bare_speeds, bare_units
 from tmm_cli.synthesis.check import measured_on
 from tmm_cli.synthesis.reading import TaskFile, alone, build
 
@@ -75,7 +75,7 @@ def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthe
     if "links" not in tree.data:
         found = alone(tree)
         say(f"{found[0]}: {bare_units(found[3])}")
-        for doubt in bare_angular_speeds(tree.data, ValueReader(TaskFile(tree).early, found[3])):
+        for doubt in bare_speeds(tree.data, ValueReader(TaskFile(tree).early, found[3])):
             warn(f"{found[0]}: {doubt}")
         return (*found, None)
     problem = build(tree)

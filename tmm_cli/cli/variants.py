@@ -59,7 +59,7 @@ def variants(
             count = len(listed)
         _tell(variety, table)
         for slip in tables_apart(task, table):
-            warn(slip)
+            warn(f"{task.problem.name}: {slip}")
         if len(table.rows) < count:
             raise ProblemError(
                 _("there are only {found} variants that are sound and unlike one another").format(

@@ -11,6 +11,7 @@ import numpy as np
 from tmm_cli.double_double import rounded
 from tmm_cli.language import _, numeral
 from tmm_cli.linkage import FRAME, Driver, Link, SpeedTable
+from tmm_cli.problem.errors import path_text
 from tmm_cli.problem.record import Problem, TaskProblem
 from tmm_cli.problem.settings import unused
 from tmm_cli.problem.tree import Path, Tree
@@ -41,10 +42,9 @@ FAR = 2  # largest links: a mechanism is hardly longer
 STRONG = 1e9  # Pa: no hydraulic or gas drive has such a pressure
 UNIFORM = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
 SAME_SPEED = 0.01  # relative: two speeds of one shaft that differ by less differ by rounding on paper
-ANGULAR_SPEEDS: tuple[Path, ...] = (  # beside the driver's, where a file may give them
+ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of drivers and of a run
     ("dynamics", "mean speed"), ("dynamics", "mean_speed"), ("dynamics", "motor", "free"),
-    ("dynamics", "motor", "synchronous"), ("dynamics", "motor", "speed"), ("dynamics", "run", "speed"),
-    ("synthesis", "crank_speed"),
+    ("dynamics", "motor", "synchronous"), ("dynamics", "motor", "speed"), ("synthesis", "crank_speed"),
 )  # fmt: skip
 
 
@@ -172,7 +172,7 @@ def doubts(problem: Problem) -> Iterable[str]:
         yield from without_effect(problem.source, [path[1] for path in problem.source.given])
     yield from _bare_speed(problem, data)
     if problem.values is not None:
-        yield from bare_angular_speeds(data, problem.values, turns=problem.linkage.driver.kind == "turn")
+        yield from bare_speeds(data, problem.values, problem.linkage.drivers)
         yield from _speeds_apart(problem, data)
         yield from _fluctuation(data, problem.values)
     for driver in problem.linkage.drivers:
@@ -216,30 +216,44 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
 
 
-def bare_angular_speeds(data: Mapping[str, Any], values: ValueReader, *, turns: bool = True) -> Iterator[str]:
-    """Angular speeds without a unit in blocks beside `driver`, in a file that counts in degrees.
+def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
+    """Speeds without a unit beside that of the first driver, in a file that counts in degrees or millimetres.
 
-    turns: whether the driver rotates; the speed of a run of one that slides is no angular speed.
+    Args:
+        data: the file as it is read.
+        values: how its values are read.
+        drivers: those of its linkage, if it has one.
     """
-    units = values.units
-    named = {key.replace("_", " ") for key in data.get("units") or {}}
-    if units.factor(ANGLE) == 1 or "angular speed" in named:
-        return
-    for path in ANGULAR_SPEEDS:
+    units, named = values.units, {key.replace("_", " ") for key in data.get("units") or {}}
+    slides = bool(drivers) and drivers[0].kind == "slide"
+    speeds: list[tuple[Path, bool]] = [(path, False) for path in ANGULAR_SPEEDS]
+    speeds += [(("dynamics", "run", "speed"), slides)]
+    speeds += [(("driver", k, "speed"), driver.kind == "slide") for k, driver in enumerate(drivers) if k]
+    for path, linear in speeds:
+        base, dimension, kind = (LENGTH, SPEED, "speed") if linear else (ANGLE, ANGULAR_SPEED, "angular speed")
         value: Any = data
         for key in path:
-            value = value.get(key) if isinstance(value, dict) else None
-        if value is None or (path[1] == "run" and not turns) or not values.bare(value):
+            present = isinstance(value, list) or (isinstance(value, dict) and key in value)
+            value = value[key] if present else None
+        scalar = value is not None and not isinstance(value, dict)
+        if not scalar or units.factor(base) == 1 or kind in named or not values.bare(value):
             continue
-        speed = float(rounded(values.number(value, ANGULAR_SPEED, path)))
-        if speed:  # rest is rest in any unit
-            yield _(
-                "{key} has no unit and is taken as {speed} rad/s = {turns} rpm, though angles are in {angle}: "
-                "write `{written} rad/s`, or `{written} rpm` if turns a minute are meant"
-            ).format(
-                key=".".join(map(str, path)), speed=_short(speed), turns=_short(speed * 30 / math.pi),
-                angle=units.spelt(ANGLE), written=numeral(speed, ".6g"),
-            )  # fmt: skip
+        speed = float(rounded(values.number(value, dimension, path)))
+        if not speed:  # rest is rest in any unit
+            continue
+        text = _(
+            "{key} has no unit and is taken as {speed} rad/s = {turns} rpm, though angles are in {unit}: "
+            "write `{written} rad/s`, or `{written} rpm` if turns a minute are meant"
+        )
+        if linear:
+            text = _(
+                "{key} has no unit and is taken as {speed} m/s, though lengths are in {unit}: "
+                "write `{written} m/s`, or `{written} {unit}/s` if that is meant"
+            )
+        yield text.format(
+            key=path_text(path), speed=_short(speed), turns=_short(speed * 30 / math.pi),
+            unit=units.spelt(base), written=numeral(speed, ".6g"),
+        )  # fmt: skip
 
 
 def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
@@ -309,7 +323,7 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
                 "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
                 "meant"
             ).format(
-                key=".".join(map(str, path)), pressure=with_unit(problem.units, pressure, PRESSURE),
+                key=path_text(path), pressure=with_unit(problem.units, pressure, PRESSURE),
                 number=numeral(problem.units.from_si(pressure, PRESSURE), ".6g"),
             )  # fmt: skip
 
