@@ -197,6 +197,39 @@ def test_both_arms_of_the_windshield_wiper_of_pmks_rotate_together(angle):
     assert places(gallery("Wiper"), angle, "BCTDU") == pytest.approx(np.array(expected) / 100, abs=1e-14)
 
 
+@pytest.mark.parametrize("angle", ANGLES)
+def test_the_block_of_a_punch_press_of_pmks_has_its_mass_and_its_guide(angle):
+    results = gallery("PunchPress")
+    pin = 1.2j * np.exp(1j * (angle - math.pi / 2))
+    ram = 1j * (pin.imag - math.sqrt(4.6**2 - pin.real**2))
+    assert places(results, angle, "C") == pytest.approx([ram / 100], abs=2e-5)  # the guide is at 1.571 rad there
+    links = results.linkage.links
+    assert (links["block_C"].mass, links["AB"].mass, links["BC"].mass) == pytest.approx((6e-3, 2e-3, 3e-3))
+    (load,) = results.linkage.loads
+    assert load.force == pytest.approx(400j)
+
+
+@pytest.mark.parametrize("way", [-1.5, 0.0, 0.8])  # cm along the guide
+def test_a_driven_slider_of_pmks_pushes_its_links(way):
+    results = gallery("ScrewJack")
+    a, b, c = -1.165, 1.028 + 0.974j, 2.2j
+    assert results.linkage.driver.kind == "slide" and results.linkage.driver.rate == pytest.approx(0.022)
+    moved = a + way
+    r, s, apart = abs(b - a), abs(c - b), abs(c - moved)
+    along = (r**2 - s**2 + apart**2) / (2 * apart)
+    side = math.copysign(math.sqrt(r**2 - along**2), ((b - a) / (c - a)).imag)
+    there = moved + (c - moved) / apart * (along + 1j * side)
+    assert places(results, way / 100, "AB") == pytest.approx([moved / 100, there / 100], abs=1e-14)
+
+
+def test_links_that_are_welded_in_pmks_are_one_link_and_a_welded_frame_is_none():
+    bucket = gallery("LoaderBucket").linkage
+    assert set(bucket.links) == {"0", "OA", "AMBCD", "BP"} and set(bucket.links["AMBCD"].points) == set("AMBCD")
+    foreign, results = imported((GALLERY / "Crosshead.pmks").read_text(encoding="utf-8"))
+    assert set(results.linkage.links) == {"0", "SBCD"} and not foreign.left
+    assert results.linkage.driver.rate == pytest.approx(0.01)
+
+
 FOUR_BAR = [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 3, 4, 0), (TURNING, "C", 9, 5, 0), (GROUND, "D", 11, 0, 0)]
 BARS = [("R", "AB", "AB", 2, 1.5, 2), ("R", "BC", "BC", 3, 6, 4.5), ("R", "CD", "CD", 1, 10, 2.5)]
 

@@ -187,8 +187,9 @@ class _Mechanism:
         slides = [slide for slide in slides if slide.point in used]
         drive = self._drive(slides)
         pushes = list(self._pushes())
+        known = used.union(*(link.joints for link in self.saved.links if link.id in self.frame))
         self.left.extend(
-            _("Joint {name} is on no moving link.").format(name=name) for name in self.joints if name not in used
+            _("Joint {name} is on no moving link.").format(name=name) for name in self.joints if name not in known
         )
         notes = [*self.saved.notes, _("Masses, moments of inertia about the centre of mass and forces are read in "
                                       "{units}.").format(units=UNITS[self.saved.length])]  # fmt: skip
@@ -294,4 +295,4 @@ class _Mechanism:
                 self.left.append(_("Force {name} has no direction.").format(name=force.id))
 
     def _refused(self, joint: Joint, message: str, found: str = "", allowed: str = "") -> ProblemError:
-        return ProblemError(message, path=("joints", joint.id), found=found, allowed=allowed, file=self.file)
+        return ProblemError(message, path=("joints", joint.id), found=found, allowed=allowed or None, file=self.file)
