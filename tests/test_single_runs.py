@@ -148,3 +148,79 @@ def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
     assert np.all(np.isfinite(law.columns[2].values))
     assert "3" not in {load.link for load in results.loads if load.has_moment}  # a slider, with nan where it is not
     assert any("the run of driver 1 ends before positions" in said for said in warnings(results))
+
+
+BOOM = (PROBLEMS / "boom-lift.yaml").read_text().split("dynamics:")[0]
+DOWN = "from: 980, to: 640, drive: {against: way, area: 1963, table: [[0, 2 MPa], [340, 4.5 MPa]]}"
+
+
+def lowered(run, *, speed="-40 mm/s"):
+    text = f"{BOOM.replace('40 mm/s', speed)}dynamics: {{run: {{{run}}}}}\npositions: {{at: [640, 820, 980]}}\n"
+    return solve(problem_of(read_text(text, "boom.yaml")))
+
+
+def test_oil_that_carries_a_boom_on_its_way_down_resists_the_run():
+    """Pressure is positive along the guide: what the weights do less what the oil takes is left as motion."""
+    run = lowered(DOWN).running.run
+    taken = 1963e-6 * (2e6 + 4.5e6) / 2 * 0.34
+    assert run.driven[-1] == pytest.approx(-taken, rel=1e-9)
+    lifting = solve(load(PROBLEMS / "boom-lift.yaml")).running.run.loaded[-1]
+    assert run.loaded[-1] == pytest.approx(-lifting, rel=1e-9)
+    assert run.kinetic[-1] == pytest.approx(-lifting - taken, rel=1e-7)
+    assert run.speed[-1] == pytest.approx(1.305, abs=5e-4)  # 6 m/s where the oil pulled the boom down
+
+
+def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too():
+    text = (PROBLEMS / "press-single-run.yaml").read_text().split("loads:")[0]
+    for sense, turns in ((1, "ccw"), (-1, "cw")):
+        run = f"run: {{from: 90, to: {90 + sense * 30}, drive: {sense * 40}}}"
+        tail = f"gravity: 0\noutput: 3\ndynamics: {{{run}}}\npositions: {{count: 4}}\n"
+        results = solve(problem_of(read_text(text.replace("turns: ccw", f"turns: {turns}") + tail, "press.yaml")))
+        assert results.running.run.driven[-1] == pytest.approx(40 * np.radians(30), rel=1e-9)
+        assert not [text for text in warnings(results) if "the run goes" in text]
+    with pytest.raises(ProblemError, match="the run does not start") as refused:
+        solve(problem_of(read_text(text + tail.replace("-40", "40"), "press.yaml")))
+    assert "a larger drive (positive along the guide or counterclockwise)" in str(refused.value)
+
+
+def of_the_run(results):
+    return [text for text in warnings(results) if "run " in text or "the drive" in text]
+
+
+def test_a_run_against_the_driver_s_sense_is_warned_of():
+    assert of_the_run(lowered(DOWN)) == []
+    assert of_the_run(lowered(DOWN, speed="40 mm/s")) == [
+        "the run goes from 980 mm to 640 mm, against the speed of driver 3: write speed: -0.04 m/s there, or exchange "
+        "from and to"
+    ]
+    text = (PROBLEMS / "press-single-run.yaml").read_text().replace("turns: ccw", "turns: cw")
+    assert of_the_run(solve(problem_of(read_text(text, "press.yaml")))) == [
+        "the run goes from -90 deg to 270 deg, counterclockwise: write turns: ccw for driver 1, or exchange from and to"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ("[[0, 2 MPa], [340, 4.5 MPa]]", []),
+        ("[[0, 2 MPa], [500, 4.5 MPa]]", []),
+        ("[[40, 2 MPa], [340, 4.5 MPa]]",
+         ["the table of the drive begins at 40 mm: its first value is held before; write a row at 0"]),
+        ("[[0, 2 MPa], [300, 4.5 MPa]]",
+         ["the table of the drive ends at 300 mm: its last value is held to 340 mm, the end of the run; write a row "
+          "there"]),
+        ("[[40, 0 MPa], [200, 2 MPa], [300, 0 MPa]]", []),  # nothing drives before and after
+    ],
+)  # fmt: skip
+def test_a_drive_whose_table_is_too_short_for_the_run_is_warned_of(table, told):
+    results = lowered(f"from: 980, to: 640, drive: {{against: way, area: 1963, table: {table}}}")
+    assert of_the_run(results) == told
+
+
+def test_a_table_by_time_that_ends_before_the_run_is_warned_of():
+    results = lowered("from: 980, to: 640, drive: {against: time, table: [[0, 2 kN], [0.1, 4 kN]]}")
+    lasts = f"{results.running.run.time[-1]:.6g}"
+    assert of_the_run(results) == [
+        f"the table of the drive ends at 0.1 s: its last value is held to {lasts} s, the end of the run; write a row "
+        "there"
+    ]

@@ -21,6 +21,8 @@ from tmm_cli.vectors import Real
 class SingleRun:
     """A run from the driver's place `first` on (rad, or m), and the law of motion that it is.
 
+    task: its drive is positive along the run.
+
     turn: after how much a crank is at the same place again, 2 pi; None of what does not turn fully.
     """
 
@@ -88,5 +90,6 @@ def single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
         raise OutOfRangeError(whole.start, whole.end)
     sense = 1 if last > first else -1
     machine = reduced_between(mechanism, first, sense, abs(last - first))
+    task = task.along(sense)
     turn = 2 * np.pi if whole.full and mechanism.linkage.driver.kind == "turn" else None
     return SingleRun(task, machine, run(machine, task), first, sense, turn)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import ClassVar, Literal
 
@@ -53,7 +53,8 @@ class RunTask:
     """What drives a single run, and from what speed (rad/s, or m/s).
 
     first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for.
-    motor: by its characteristic; drive: a profile, with it or alone. brake: moment against the motion.
+    motor: by its characteristic, along the motion; drive: a profile, with it or alone, positive along the guide or
+    counterclockwise. brake: moment against the motion.
     flywheel: kg m2, or kg. longest: time of a run (s).
     """
 
@@ -66,6 +67,15 @@ class RunTask:
     last: float | None = None
     longest: float = 3600.0
     cyclic: ClassVar[Literal[False]] = False
+
+    def along(self, sense: int) -> RunTask:
+        """The same task with a drive that is positive along the run; sense: of the run, +1 or -1."""
+        drive = self.drive
+        if sense > 0 or drive is None:
+            return self
+        if isinstance(drive, Profile):
+            return replace(self, drive=replace(drive, values=tuple(-value for value in drive.values)))
+        return replace(self, drive=lambda time, way: -drive(time, way))
 
     @property
     def edges(self) -> tuple[float, ...]:

@@ -54,7 +54,8 @@ class Run(Strict):
     to: Value | None = Field(default=None, description="place where it ends; that of the last position")
     speed: Value = Field(default=0, description="at the beginning")
     drive: Annotated[Value | Profile | None, BeforeValidator(_profile)] = Field(
-        default=None, description="moment of a crank, force of a slider: a value, or {against, table, area}"
+        default=None,
+        description="moment, positive ccw, or force, positive along the guide: a value, or {against, table, area}",
     )
     brake: Value = Field(default=0, description="moment or force against the motion")
 

@@ -50,7 +50,7 @@ def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
     if problem.dynamics is not None and not problem.dynamics.cyclic:
         return ProblemError(
             _("the run does not start: what drives is no more than the loads"), path=("dynamics", "run"), key=True,
-            allowed=_("a larger drive, or a speed at the beginning"),
+            allowed=_("a larger drive (positive along the guide or counterclockwise), or a speed at the beginning"),
         )  # fmt: skip
     return ProblemError(
         _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),

@@ -14,6 +14,8 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     motion.dead_positions,
     motion.unreached_positions,
     motion.stopped_driver,
+    motion.opposite_run,
+    motion.short_drive,
     motion.near_dead,
     pairs.passive_pairs,
     motion.endless,

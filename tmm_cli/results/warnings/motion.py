@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -12,11 +13,15 @@ from tmm_cli.groups.base import Closed
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import move
 from tmm_cli.language import _, numeral
-from tmm_cli.quantities import LENGTH, place_dimension
+from tmm_cli.quantities import LENGTH, SPEED, place_dimension
 from tmm_cli.results.table import with_unit
+
+if TYPE_CHECKING:  # few files have a law of motion
+    from tmm_cli.dynamics.task import Profile
 
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
 FEW = 12  # positions that are named in one sentence
+DRIVE_REACHES = 1e-6  # of a run: a table of its drive that begins or ends nearer to an end of the run reaches it
 SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
@@ -131,6 +136,54 @@ def stopped_driver(results: Results) -> Iterable[str]:
                 "not come to them"
             )
         yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
+
+
+def opposite_run(results: Results) -> Iterable[str]:
+    """A single run against the sense that the file gives for the driver."""
+    single, driver = results.single, results.linkage.driver
+    if single is None or single.sense == driver.sense:
+        return
+    ends = (single.first, single.first + single.sense * single.machine.length)
+    first, last = (driver_place(results, end) for end in ends)
+    if driver.kind == "turn":
+        yield _(
+            "the run goes from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
+            "from and to"
+        ).format(
+            first=first, last=last, link=driver.link, turns="ccw" if single.sense > 0 else "cw",
+            sense=_("counterclockwise") if single.sense > 0 else _("clockwise"),
+        )  # fmt: skip
+        return
+    speed = f"{'-' if single.sense < 0 else ''}{with_unit(results.problem.units, driver.rate, SPEED)}"
+    yield _(
+        "the run goes from {first} to {last}, against the speed of driver {link}: write speed: {speed} there, or "
+        "exchange from and to"
+    ).format(first=first, last=last, link=driver.link, speed=speed)
+
+
+def short_drive(results: Results) -> Iterable[str]:
+    """A table of a single run's drive that begins late or ends early, so that its first or last value is held."""
+    single = results.single
+    if single is None or len(single.task.edges or single.task.way_edges) < 2:
+        return
+    drive = cast("Profile", single.task.drive)
+    by_time = drive.against == "time"
+    reached = float(single.run.time[-1]) if by_time else float(single.run.way[-1])
+    first, last = drive.arguments[0], drive.arguments[-1]
+    measure = place_dimension(results.linkage.driver.kind)
+
+    def argument(value: float) -> str:
+        return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)
+
+    if first > DRIVE_REACHES * reached and drive.values[0] != 0:
+        yield _("the table of the drive begins at {first}: its first value is held before; write a row at 0").format(
+            first=argument(first)
+        )
+    if reached - last > DRIVE_REACHES * reached and drive.values[-1] != 0:
+        yield _(
+            "the table of the drive ends at {last}: its last value is held to {reached}, the end of the run; write a "
+            "row there"
+        ).format(last=argument(last), reached=argument(reached))
 
 
 def near_dead(results: Results) -> Iterable[str]:
