@@ -164,7 +164,7 @@ def test_every_chain_has_as_many_independent_contours_as_pairs_more_than_links()
                 here, after = contour.links[k], contour.links[(k + 1) % len(contour.links)]
                 assert {by_name[name].i, by_name[name].j} == {here, after}
                 row[int(name[1:])] = 1
-        assert np.linalg.matrix_rank(matrix) == len(found)
+        assert not found or np.linalg.matrix_rank(matrix) == len(found)
 
 
 # ---------------------------------------------------------------- planar linkages in space

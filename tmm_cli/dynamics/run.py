@@ -8,14 +8,14 @@ for its load by that of Petzold and Hindmarsh (LSODA), which is stiff.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import count, pairwise
 from typing import Any, Literal
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import OdeSolution, solve_ivp
 
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
@@ -130,11 +130,27 @@ def _until(
     scale = max(abs(state[1]), 1e-3)
     energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
     method, error = ("LSODA", TOLERANCE / 10) if _stiff(machine, task) else ("DOP853", TOLERANCE)
-    return solve_ivp(
-        rates, times, state, method, events=(gone, rests),
-        rtol=error, dense_output=True,
-        atol=[error * machine.length, error * scale, *[error * energy] * 3],
-    )  # fmt: skip
+    exact = {"rtol": error, "atol": [error * machine.length, error * scale, *[error * energy] * 3]}
+    done = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
+    return _with_last_step(done, partial(solve_ivp, rates, method=method, dense_output=True, **exact))
+
+
+def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
+    """The same integration, its last step done again up to the event that ended it.
+
+    The step went on beyond the end of the piece, where moments are no longer smooth, and this blurs what is
+    interpolated inside it.
+    """
+    if done.status != 1 or not done.t[-1] > done.t[-2]:
+        return done
+    again = integrate((done.t[-2], done.t[-1]), done.y[:, -2])
+    if again.status != 0:
+        return done
+    done.t = np.concatenate([done.t[:-1], again.t[1:]])
+    done.y = np.concatenate([done.y[:, :-1], again.y[:, 1:]], axis=1)
+    before = done.sol.interpolants[:-1]
+    done.sol = OdeSolution([*done.sol.ts[: len(before)], *again.sol.ts], [*before, *again.sol.interpolants])
+    return done
 
 
 def _stiff(machine: Reduced, task: RunTask) -> bool:
