@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 
 import blocks
 import numpy as np
@@ -14,7 +15,11 @@ from test_bad_linkages import changed
 from test_commands import tmm
 
 from tmm_cli.double_double import exactly
+from tmm_cli.forces.friction import FrictionSolution, LockedRange, find_locked_ranges
 from tmm_cli.groups.linear import solve as solve_linear
+from tmm_cli.note.blocks import Paragraph
+from tmm_cli.note.context import Subject
+from tmm_cli.note.forces.loads import losses
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 from tmm_cli.results.as_json import to_json
 from tmm_cli.results.warnings import warnings as words
@@ -160,6 +165,26 @@ def test_a_torsion_spring_past_half_a_turn_is_named():
     ) in list(words(results))
 
 
+def spring_warnings(spring, positions="", turns="ccw"):
+    text = changed(blocks.SLIDER, "driver: {", f"springs: {{s: {spring}}}\ndriver: {{turns: {turns}, ") + positions
+    return [w for w in words(solved_text(text)) if w.startswith("the ends of spring")]
+
+
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_a_spring_whose_ends_meet_between_the_positions_is_named(turns):
+    """The fixed end lies on the circle of A at 40 deg; positions are at 0, 30, 60 deg and so on."""
+    x, y = 50 * math.cos(math.radians(40)), 50 * math.sin(math.radians(40))
+    at = f"at: [[{x:.9f}, {y:.9f}], A]"
+    told = ("the ends of spring s meet at 40 deg: its force reverses its direction there. Write other points in "
+            "between, or a torsion spring")  # fmt: skip
+    assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 90}}", turns=turns) == [told]
+    assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 0}}", turns=turns) == []  # F = c r
+    near = f"at: [[{x:.9f}, {y + 1:.9f}], A]"
+    assert spring_warnings(f"{{between: [0, 1], {near}, rate: 800 N/m, free: 90}}", turns=turns) == []
+    few = "positions: {at: [60, 90, 200]}\n"
+    assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 90}}", few, turns) == [told]
+
+
 # ---------------------------------------------------------------- friction
 
 
@@ -172,7 +197,13 @@ def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coef
     said = [word for word in words(results) if "locks itself" in word]
     moment = results.reactions.balance.moment[9]
     if locks:
-        assert "9" in said[0] and "pair x of links 0 and 3" in said[0]
+        half = 90 - math.degrees(math.asin(3 * math.sin(math.atan(1 / coefficient))))
+        numbers = {2.85: "position 9", 10: "positions 7, 8, 9, 10, 11"}[coefficient]
+        assert said == [
+            f"the mechanism locks itself by friction from {270 - half:.5g} to {270 + half:.5g} deg ({numbers}), most "
+            "of all in pair x of links 0 and 3; no forces are given there. Write smaller coefficients in friction, or "
+            "let another link drive"
+        ]
         assert math.isnan(moment)
         assert to_json(results)["positions"]["state"][9] == "locks by friction"
     else:
@@ -182,6 +213,40 @@ def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coef
     assert results.lever_holds
 
 
+@pytest.mark.parametrize("turns", ["ccw", "cw"])
+def test_self_locking_between_the_positions_is_told_with_its_range(tmp_path, turns):
+    """The driver moves the other way round and the slider is pushed the other way: the range is at 90 deg."""
+    text = changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", "{pairs: {x: {coefficient: 2.85}}}")
+    text = changed(text, "driver: {", f"driver: {{turns: {turns}, ") + "positions: {at: [0, 30, 200]}\n"
+    middle, half = 270 if turns == "ccw" else 90, 90 - math.degrees(math.asin(3 * math.sin(math.atan(1 / 2.85))))
+    told = f"from {middle - half:.5g} to {middle + half:.5g} deg, between the positions"
+    results = solved_text(text)
+    assert not np.any(results.locked)
+    (found,) = results.losses.ranges
+    degrees = np.mod(np.degrees([found.start, found.end]), 360)
+    assert degrees == pytest.approx([middle - half, middle + half], abs=1e-4)
+    assert [w for w in words(results) if f"locks itself by friction {told}" in w]
+    file = tmp_path / "x.yaml"
+    file.write_text(text, encoding="utf-8")
+    for command in ("forces", "run"):
+        done = tmm(command, file, *(["--no-drawings", "-o", tmp_path / "out"] if command == "run" else []))
+        assert f"the mechanism locks itself by friction {told}" in done.stderr
+    assert f"locks itself {told}" in tmm("forces", file).stdout
+    note = [block for block in losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
+    assert told in str(note[0].line)
+
+
+def test_a_range_over_the_beginning_of_the_cycle_is_one_range():
+    locked = np.array([True, True, False, False, True, True])  # the last is the first of the next cycle
+    rubbed = FrictionSolution(None, (), locked, ("x",) * 6, {}, None)
+    q = np.linspace(0, 5, 6)
+    at = lambda q: (np.mod(q, 5) < 1.25) | (np.mod(q, 5) > 3.5)  # noqa: E731
+    (found,) = find_locked_ranges(q, rubbed, at, cyclic=True)
+    assert (found.start, found.end - 5) == (pytest.approx(3.5, abs=1e-4), pytest.approx(1.25, abs=1e-4))
+    whole = find_locked_ranges(q, replace(rubbed, locked=np.full(6, True)), at, cyclic=True)
+    assert whole == (LockedRange(0.0, 5.0, "x"),)
+
+
 def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
     monkeypatch.setattr("tmm_cli.draw.formats.FORMATS", dict.fromkeys(("png", "svg"), lambda drawing: b""))
     text = changed(blocks.SLIDER, "coefficient: 0.1", "coefficient: 10") + "positions: {count: 12, detail: [9]}\n"
@@ -189,7 +254,7 @@ def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
     file.write_text(text, encoding="utf-8")
     done = tmm("run", file, "-o", tmp_path / "out")
     assert (done.returncode, "Traceback" in done.stderr, "RuntimeWarning" in done.stderr) == (0, False, False)
-    assert "the mechanism locks itself by friction: in position" in done.stderr
+    assert "the mechanism locks itself by friction from " in done.stderr
     assert "locks by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
 
 

@@ -341,3 +341,35 @@ def test_places_farther_than_the_mechanism_is_long_are_warned_of(old, new, key, 
 def test_no_file_of_the_bank_has_a_slip():
     for name in EVERY:
         assert list(doubts(problem(name).whole)) == [], name
+
+
+TWICE = """tmm: 1
+points: {O: [0, 0]}
+guides: {x: {through: [0, 0]}, y: {through: [0, 0]}}
+links:
+  1: {points: [O, A], length: 50}
+  2: {points: [A, B], length: 150}
+  3: {points: [B], slides: {on: x}}
+  4: {points: [B], slides: {on: y}}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 90, B: [140, 0]}
+loads: {F: {on: 4, force: [-100, 0]}}
+output: 3
+"""
+ONE_SLIDER = (
+    "links 3 and 4 move as one slider: both have point B and slide in one direction on the frame. Remove one of them"
+)
+
+
+def test_a_slider_that_is_described_by_two_links_is_warned_of():
+    for text in (TWICE, TWICE.replace("{on: y}", "{on: y, turned: 20}"), TWICE.replace("y: {through: [0, 0]}", "y: "
+                 "{through: [0, 0], angle: 180}")):  # fmt: skip
+        assert list(doubts(build(read_text(text, "x.yaml")))) == [ONE_SLIDER]
+    apart = TWICE.replace("4: {points: [B]", "4: {points: [C]").replace("[A, B], length: 150", "{A: 0, B: 0, C: 0}")
+    apart = apart.replace("{A: 0, B: 0, C: 0}", "{A: [0, 0], B: [150, 0], C: [75, 40]}")
+    assert not list(doubts(build(read_text(apart, "x.yaml"))))
+
+
+def test_stones_of_one_hinge_in_slots_that_cross_are_no_slider_described_twice():
+    text = TWICE.replace("y: {through: [0, 0]}", "y: {through: [100, 0], angle: 90}")
+    assert not list(doubts(build(read_text(text, "x.yaml"))))

@@ -110,10 +110,12 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
         yield found(f"pressure[{k}].largest", largest, -1)
         yield found(f"pressure[{k}].place", there)
     if results.losses is not None:  # a sum over half as many places has a larger error than theirs
-        rough = cycle_losses(results, CYCLE // 2)
+        rough = cycle_losses(results, CYCLE // 2, ranges=False)
 
         def towards(by: float) -> Results:
-            losses = mapped(lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked",))
+            losses = mapped(
+                lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked", "ranges")
+            )
             return replace(results, losses=losses)
 
         yield Found("losses", 1.0, towards)

@@ -22,7 +22,7 @@ from tmm_cli.double_double import exactly
 from tmm_cli.errors import UnknownPositionError
 from tmm_cli.forces.applied import Applied
 from tmm_cli.forces.energy import Energy, energy
-from tmm_cli.forces.friction import FrictionSolution, Losses, losses, solve_friction
+from tmm_cli.forces.friction import FrictionSolution, Losses, find_locked_ranges, losses, solve_friction
 from tmm_cli.forces.lever import Lever, lever
 from tmm_cli.forces.loads import applied
 from tmm_cli.forces.plan import Reactions, power, react
@@ -268,11 +268,27 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     )  # fmt: skip
 
 
-def cycle_losses(results: Results, places: int = CYCLE) -> Losses:
-    """What friction takes over the cycle, summed up over so many places."""
+def cycle_losses(results: Results, places: int = CYCLE, *, ranges: bool = True) -> Losses:
+    """What friction takes over the cycle, summed up over so many places; ranges: with those in which it locks."""
     whole = at_positions(results, results.closely(places + 1))
-    acting = applied(whole, results.strokes)
-    return losses(solve_friction(whole, results.structure, acting, react(whole, results.structure, acting)), whole)
+    rubbed = _friction_at(results, whole)
+    found = losses(rubbed, whole)
+    if not found.locked or not ranges:
+        return found
+    q = whole.q
+    if results.linkage.driver.sense < 0:
+        q = q[::-1]
+        rubbed = replace(rubbed, locked=rubbed.locked[::-1], pair=rubbed.pair[::-1])
+
+    def locked_at(q: Real) -> Real:
+        return _friction_at(results, at_positions(results, q)).locked
+
+    return replace(found, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
+
+
+def _friction_at(results: Results, motion: Motion) -> FrictionSolution:
+    acting = applied(motion, results.strokes)
+    return solve_friction(motion, results.structure, acting, react(motion, results.structure, acting))
 
 
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:

@@ -7,7 +7,7 @@ it can overcome there is no such plan: the mechanism locks itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from tmm_cli.vectors import Real, Vector, unit, without_rounding
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
 ROUNDS = 40  # of Newton's method in each
+HALVINGS = 16  # of the distance between two positions, in which a locked range ends
 OUTER = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
 
 
@@ -45,6 +46,15 @@ class FrictionSolution:
 
 
 @dataclass(frozen=True)
+class LockedRange:
+    """Driver coordinates (rad or m, start < end) between which the mechanism locks itself; pair: with most friction."""
+
+    start: float
+    end: float
+    pair: str
+
+
+@dataclass(frozen=True)
 class Losses:
     """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
 
@@ -54,6 +64,7 @@ class Losses:
     drivers: float
     pairs: dict[str, float]
     locked: bool
+    ranges: tuple[LockedRange, ...] = ()
 
     @property
     def efficiency(self) -> float | None:
@@ -75,6 +86,36 @@ def _over(work: Real, motion: Motion) -> float:
     """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
     values = np.where(motion.moving & np.isfinite(work), work, 0.0)
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
+
+
+def find_locked_ranges(
+    q: Real, rubbed: FrictionSolution, locked_at: Callable[[Real], Real], *, cyclic: bool
+) -> tuple[LockedRange, ...]:
+    """Ranges of the driver in which the mechanism locks itself, their ends by bisection.
+
+    Args:
+        q: rising driver coordinates (rad or m) of the solution; if cyclic, the last is the first of the next cycle.
+        locked_at: True for each driver coordinate at which it locks.
+    """
+    locked, pairs = rubbed.locked, np.array(rubbed.pair)
+    if not np.any(locked):
+        return ()
+    if np.all(locked):
+        return (LockedRange(float(q[0]), float(q[-1]), str(pairs[0])),)
+    if cyclic:  # from a coordinate at which it moves, so that no range is cut in two
+        first, cycle = int(np.argmin(locked[:-1])), q[-1] - q[0]
+        q = np.concatenate([q[first:-1], q[: first + 1] + cycle])
+        locked, pairs = (np.concatenate([x[first:-1], x[: first + 1]]) for x in (locked, pairs))
+    begins = np.flatnonzero(locked & ~np.concatenate([[False], locked[:-1]]))
+    ends = np.flatnonzero(locked & ~np.concatenate([locked[1:], [False]]))
+    inside = np.concatenate([q[begins], q[ends]])
+    outside = np.concatenate([q[np.maximum(begins - 1, 0)], q[np.minimum(ends + 1, len(q) - 1)]])
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        here = locked_at(middle)
+        inside, outside = np.where(here, middle, inside), np.where(here, outside, middle)
+    found = zip(inside[: len(begins)], inside[len(begins) :], pairs[(begins + ends) // 2], strict=True)
+    return tuple(LockedRange(float(start), float(end), str(pair)) for start, end, pair in found)
 
 
 def solve_friction(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ from tmm_cli.quantities import (
     Dimension,
 )  # fmt: skip
 from tmm_cli.results.table import with_unit
+from tmm_cli.tolerances import PARALLEL
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
@@ -184,6 +186,7 @@ def doubts(problem: Problem) -> Iterable[str]:
     yield from _masses(problem, data)
     yield from _far_places(problem)
     yield from _high_pressures(problem)
+    yield from _sliders_twice(problem)
     yield from _smooth_tables(problem)
     yield from _several_strokes(problem)
     positions = data.get("positions", {})
@@ -371,6 +374,25 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
                 "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
                 "sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is meant"
             ).format(link=name, point=next(iter(link.points)), radius=told)
+
+
+def _sliders_twice(problem: Problem) -> Iterator[str]:
+    """Two links that share a point and slide along one direction on the same link move as one body."""
+    linkage = problem.linkage
+    for a, b in combinations(linkage.slides, 2):
+        for base in sorted({a.carrier, a.runner} & {b.carrier, b.runner}):
+            links = [slide.runner if slide.carrier == base else slide.carrier for slide in (a, b)]
+            # a guide as the base sees it
+            angles = [slide.direction - (0.0 if slide.carrier == base else slide.turned) for slide in (a, b)]
+            points = [h.point for h in linkage.hinges if links[0] != links[1] and set(links) <= set(h.links)]
+            if points and abs(math.sin(angles[0] - angles[1])) < PARALLEL:
+                yield _(
+                    "links {a} and {b} move as one slider: both have point {point} and slide in one direction on "
+                    "{base}. Remove one of them"
+                ).format(
+                    a=links[0], b=links[1], point=points[0],
+                    base=_("the frame") if base == FRAME else _("link {link}").format(link=base),
+                )  # fmt: skip
 
 
 def _smooth_tables(problem: Problem) -> Iterable[str]:

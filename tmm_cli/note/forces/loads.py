@@ -18,6 +18,7 @@ from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, 
 from tmm_cli.note.kinematics.words import equal, sense
 from tmm_cli.plans.bodies import load_symbols
 from tmm_cli.plans.record import Symbol, balance_symbol, lettered, reaction_symbol
+from tmm_cli.results.reports.energy import locked_ranges
 from tmm_cli.tolerances import NO_FORCE
 from tmm_cli.vectors import dot
 
@@ -187,6 +188,10 @@ def losses(subject: Subject) -> Iterable[Block]:
     """What friction takes of the drivers' work over the cycle."""
     lost = subject.results.losses
     if lost is None or lost.locked:
+        ranges = locked_ranges(subject.results)
+        if ranges:
+            yield said(_("The mechanism locks itself by friction {ranges}: no force of the driver moves it there, and "
+                         "there is no efficiency over the cycle."), ranges="; ".join(ranges))  # fmt: skip
         return
     work = Leaf(Symbol("A", "d"), lost.drivers)
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]

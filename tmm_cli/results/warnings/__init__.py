@@ -23,6 +23,7 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     pairs.pressure_angles,
     forces.locked_positions,
     forces.wound_springs,
+    forces.springs_of_no_length,
     pairs.impacts,
     forces.driving_loads,
     forces.short_tables,

@@ -16,6 +16,7 @@ from tmm_cli.linkage import Linkage, Load, LoadTable
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.results.given_loads import argument_dimension
+from tmm_cli.results.reports.energy import locked_ranges
 from tmm_cli.results.reports.synthesis import missed
 from tmm_cli.results.table import with_unit
 from tmm_cli.results.warnings.motion import driver_place
@@ -23,28 +24,19 @@ from tmm_cli.synthesis.check import measured_on
 from tmm_cli.tolerances import NO_WORK, SAME_PLACE, SAME_RATIO
 from tmm_cli.vectors import Real, dot
 
-CLOSELY = 720  # places a turn at which a torsion spring's angle is followed
+CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
+ENDS_MEET = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
 WORK_POSITIONS = 120  # positions a turn at which the power of a load is compared with zero
 
 
 def locked_positions(results: Results) -> Iterable[str]:
-    """Where friction locks the mechanism, by the pair that rubs most."""
-    if results.friction is None or not np.any(results.friction.locked):
-        return
-    lost, most = np.flatnonzero(results.friction.locked), results.friction.pair
-    places = []
-    for name in dict.fromkeys(most[k] for k in lost):
-        numbers = [str(results.numbers[k]) for k in lost if most[k] == name]
-        pair = results.structure.pair(name)
-        text = (
-            _("in position {numbers}, most of all in pair {pair} of links {i} and {j}")
-            if len(numbers) == 1
-            else _("in positions {numbers}, most of all in pair {pair} of links {i} and {j}")
-        )
-        places.append(text.format(numbers=", ".join(numbers), pair=name, i=pair.i, j=pair.j))
-    yield _("the mechanism locks itself by friction: {places}; no forces are given there").format(
-        places="; ".join(places)
-    )
+    """Where friction locks the mechanism, also between the positions, by the pair that rubs most."""
+    ranges = locked_ranges(results)
+    if ranges:
+        yield _(
+            "the mechanism locks itself by friction {ranges}; no forces are given there. Write smaller coefficients in "
+            "friction, or let another link drive"
+        ).format(ranges="; ".join(ranges))
 
 
 def wound_springs(results: Results) -> Iterable[str]:
@@ -61,7 +53,37 @@ def wound_springs(results: Results) -> Iterable[str]:
             yield _(
                 "torsion spring {spring} is turned by more than half a turn from its free angle at "
                 "{place}: its moment jumps there, as angles are counted within half a turn"
-            ).format(spring=spring.name, place=driver_place(results, float(motion.q[jumps[0]])))
+            ).format(spring=spring.name, place=_in_cycle(results, float(motion.q[jumps[0]])))
+
+
+def springs_of_no_length(results: Results) -> Iterable[str]:
+    """Linear springs whose ends meet within the cycle: the direction of their force reverses there."""
+    springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
+    if not springs or results.reactions is None:
+        return
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(CLOSELY * turns + 1))
+    for spring in springs:
+        apart = motion.point(spring.j, spring.at_j).x - motion.point(spring.i, spring.at_i).x
+        step = np.diff(apart)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.clip(np.nan_to_num(-dot(apart[:-1], step) / np.abs(step) ** 2), 0, 1)
+        nearest = np.abs(apart[:-1] + share * step)  # to the chord between two positions
+        if not np.any(np.isfinite(nearest)):
+            continue
+        k = int(np.nanargmin(nearest))
+        if nearest[k] <= ENDS_MEET * np.nanmax(np.abs(apart)):
+            q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
+            yield _(
+                "the ends of spring {spring} meet at {place}: its force reverses its direction there. Write other "
+                "points in between, or a torsion spring"
+            ).format(spring=spring.name, place=_in_cycle(results, q))
+
+
+def _in_cycle(results: Results, q: float) -> str:
+    """A driver coordinate; an angle of a driver that turns fully is counted within its cycle."""
+    cycle = 2 * np.pi * results.turns
+    return driver_place(results, float(np.mod(q + SAME_PLACE, cycle) - SAME_PLACE) if cycle else q)
 
 
 def driving_loads(results: Results) -> Iterable[str]:
