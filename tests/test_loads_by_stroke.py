@@ -144,6 +144,7 @@ def test_a_sweep_solves_each_mechanism_with_the_strokes_of_both_pistons():
     """The largest balancing moment of the cycle, for cranks of two radii."""
     tree = read_text(TWO_PISTONS, "pistons.yaml")
     found = swept(Mechanisms(tree, read_axes(Task(tree), ["r=40..50:2"]), ["M_b"]))
+    assert found.taped
     for (crank,), (largest,) in zip(found.points, found.values, strict=True):
         closely = TWO_PISTONS.replace("r: 50", f"r: {crank}").replace("count: 12", "count: 3600")
         moment = solve(problem_of(read_text(closely, "pistons.yaml"))).reactions.balance.moment

@@ -7,7 +7,7 @@ peaks of what has a limit) is then found there. Variants in which much happens b
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -41,9 +41,9 @@ class Wish:
 class Looked:
     """How variants go (WORKS, ...), (variants,); of those that work the peaks of what is limited, by name, else nan.
 
-    sure: whether all is told: the output has as many strokes as that of the first one, nothing nearly happens. A peak
-    that is far below its limit, and was not asked for, is that of the scan. ends: the driver's places where strokes
-    end, (variants, 2).
+    sure: whether all is told: the outputs have as many strokes as those of the first one, nothing nearly happens. A
+    peak that is far below its limit, and was not asked for, is that of the scan. ends: the driver's places where
+    strokes of each of `Turning.stroke_links` end, (variants, links, 2).
     """
 
     does: Real
@@ -85,17 +85,18 @@ class _View:
     def looked(self) -> Looked:
         """All that is looked for."""
         does, sure = self._assembled()
-        ends = np.full((len(self.columns), 2), np.nan)
-        if self.wish.strokes and self.turning.output is not None and np.any(does == WORKS):
-            slope = self.found["slope"]
-            turns = turned(slope)
-            sure &= np.sum(turns, axis=1) == self.turning.strokes
-            sure &= ~_nearly(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
-            rows = np.flatnonzero((does == WORKS) & sure)
-            if self.turning.strokes and rows.size:
-                low = np.nonzero(turns[rows])[1].reshape(-1, 2)
-                slopes = Closely(self.turning.part("slope"), self.columns[rows])
-                ends[rows] = _ends(lambda q: slopes(q)["slope"], self.at(low), self.at(low + 1))
+        ends = np.full((len(self.columns), len(self.turning.stroke_links), 2), np.nan)
+        if self.wish.strokes and np.any(does == WORKS):
+            for k in range(len(self.turning.stroke_links)):
+                slope = self.found[f"slope{k}"]
+                turns = turned(slope)
+                sure &= np.sum(turns, axis=1) == self.turning.strokes[k]
+                sure &= ~_nearly(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
+                rows = np.flatnonzero((does == WORKS) & sure)
+                if self.turning.strokes[k] and rows.size:
+                    low = np.nonzero(turns[rows])[1].reshape(-1, 2)
+                    slope_of = _curve(self.turning, f"slope{k}", self.columns[rows])
+                    ends[rows, k] = _ends(slope_of, self.at(low), self.at(low + 1))
         works = does == WORKS
         peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
         return Looked(does, sure | ~works, peaks, ends)
@@ -154,39 +155,37 @@ def _ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), found)
 
 
+def _curve(turning: Turning, name: str, columns: Real) -> Callable[[Real], Real]:
+    """One of the curves of variants, over places of each."""
+    close = Closely(turning.part(name), columns)
+    return lambda q: close(q)[name]
+
+
 def _negative(close: Closely, name: str) -> Callable[[Real], Real]:
     return lambda q: -close(q)[name]
 
 
 def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant) -> Strokes | None:
     """Of variants that work, as arrays (variants, 1)."""
-    if turning.output is None:
-        return None
-    curve = _Output(turning, Closely(turning.part("place"), columns))
-    if not turning.strokes:
-        return Strokes(turning.output, curve.kind, (), "")
-    return named_strokes(turning.linkage, curve, looked.ends, resisted(varied.linkage, turning.output))
+    every = []
+    for k, link in enumerate(turning.stroke_links):
+        curve = _Output(link, turning.linkage.output_swings(link), _curve(turning, f"place{k}", columns))
+        if turning.strokes[k]:
+            resists = resisted(varied.linkage, link)
+            every.append(named_strokes(turning.linkage, curve, looked.ends[:, k], resists))
+        else:
+            every.append(Strokes(link, curve.kind, (), ""))
+    return replace(every[0], others=tuple(every[1:])) if every else None
 
 
 @dataclass(frozen=True)
 class _Output:
-    """The output's curve, see kinematics.strokes.Curve."""
+    """The curve of one of the outputs, see kinematics.strokes.Curve."""
 
-    turning: Turning
-    close: Closely
-
-    @property
-    def link(self) -> str:
-        assert self.turning.output is not None
-        return self.turning.output
-
-    @property
-    def swings(self) -> bool:
-        return self.turning.linkage.output_swings(self.link)
+    link: str
+    swings: bool
+    place: Callable[[Real], Real]
 
     @property
     def kind(self) -> str:
         return "swing" if self.swings else "slide"
-
-    def place(self, q: Real) -> Real:
-        return self.close(q)["place"]

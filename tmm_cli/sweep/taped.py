@@ -61,8 +61,6 @@ class Turning:
         turns = driver.kind == "turn" and driver.stroke is None and turns_of_cycle(linkage) == linkage.turns == 1
         if not turns or driver.law is not None or linkage.others or linkage.meshes or linkage.friction:
             raise NoTapeError
-        if forces and linkage.stroke_links:  # its inputs are the strokes of one link
-            raise NoTapeError
         self.structure = mobile(linkage)
         self.kernels = assemble(linkage, self.structure)
         if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):
@@ -77,9 +75,12 @@ class Turning:
         link = output_link(linkage, tuple(kernel.group for kernel in self.kernels))
         whole = link is not None and (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link))
         self.output = link if whole else None
+        if linkage.stroke_links and self.output is None:
+            raise NoTapeError
+        self.stroke_links = (*([self.output] if self.output else []), *linkage.stroke_links)
         self.scan, self.close = (record(self._states, *[1] * len(first), axis) for axis in (2, 3))
         self.forces = record(
-            lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 5), 3
+            lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 4 * len(self.stroke_links) + 1), 3
         )  # fmt: skip
         self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
         self._parts: dict[tuple[str, ...], Program] = {}
@@ -92,15 +93,18 @@ class Turning:
         return self._parts[names]
 
     @cached_property
-    def strokes(self) -> int:
-        """How many strokes the output of the first linkage has. Raises NoTapeError for more than two of them."""
-        if self.output is None:
-            return 0
+    def strokes(self) -> tuple[int, ...]:
+        """How many strokes each of `stroke_links` has in the first linkage: two or none.
+
+        Raises NoTapeError if the main output has more, or another link has not two.
+        """
         places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINELY) / FINELY
-        slope = self.scan.only("slope")(*(np.array([[x]]) for x in self.first), places)["slope"]
-        if (count := int(np.sum(turned(slope)))) > 2:
+        names = [f"slope{k}" for k in range(len(self.stroke_links))]
+        slopes = self.scan.only(*names)(*(np.array([[x]]) for x in self.first), places)
+        counts = tuple(int(np.sum(turned(slopes[name]))) for name in names)
+        if any(count > 2 for count in counts) or any(count != 2 for count in counts[1:]):
             raise NoTapeError
-        return count
+        return counts
 
     def _linkage(self, data: Sequence[Any]) -> Any:
         """Linkage and groups with stands in the places of their numbers."""
@@ -113,8 +117,8 @@ class Turning:
         found: dict[str, Any] = {}
         for k, at in enumerate(states.placements):
             found |= {f"gap{k}": at.residual - at.slack, f"slack{k}": at.slack, f"det{k}": at.det}
-        if self.output is not None:
-            found |= {"slope": output_slope(states, self.output), "place": output_place(states, self.output)}
+        for k, link in enumerate(self.stroke_links):
+            found |= {f"slope{k}": output_slope(states, link), f"place{k}": output_place(states, link)}
         leads = [(k, lead) for k, kernel in enumerate(kernels) for lead in followers(kernel.group)]
         for n, (k, lead) in enumerate(leads):
             found[f"angle{n}"] = angle(states, kernels[k], states.placements[k], lead)
@@ -128,15 +132,17 @@ class Turning:
     def _positions(
         self, data: Sequence[Any], read: Callable[[Motion, Reactions | None], Mapping[str, Any]], forces: bool
     ) -> Mapping[str, Any]:
-        *columns, start, length, low, run, begin, q = data
+        *columns, begin, q = data
+        columns, ends = columns[: len(self.first)], columns[len(self.first) :]
         linkage, kernels = self._linkage(columns)
-        strokes = None
-        if self.output is not None:
+        every = []
+        for k, link in enumerate(self.stroke_links):
+            start, length, low, run = ends[4 * k : 4 * k + 4]
             pair: tuple[Any, ...] = ()
-            if self.strokes:
+            if self.strokes[k]:
                 pair = (Stroke(start, length, low, run, True), Stroke(start + length, length, low + run, -run, False))
-            swings = "swing" if linkage.output_swings(self.output) else "slide"
-            strokes = Strokes(self.output, swings, pair, "")
+            every.append(Strokes(link, "swing" if linkage.output_swings(link) else "slide", pair, ""))
+        strokes = replace(every[0], others=tuple(every[1:])) if every else None
         structure = self.structure.rebind(linkage)
         return solved(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
@@ -157,8 +163,10 @@ class Turning:
 
         The function takes numbers of variants (k,), places of each (k, n) and names.
         """
-        one = strokes.strokes[0] if strokes is not None and strokes.strokes else Stroke(0.0, 0.0, 0.0, 0.0, True)
-        numbers = [x + np.zeros((len(columns), 1)) for x in (one.start, one.length, one.low, one.run)]
+        every = () if strokes is None else (strokes, *strokes.others)
+        firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in every]
+        ends = (x for one in firsts for x in (one.start, one.length, one.low, one.run))
+        numbers = [x + np.zeros((len(columns), 1)) for x in ends]
         start, sense = self.linkage.sketch.at, self.linkage.driver.sense
 
         def at(rows: Real, q: Real, names: Sequence[str]) -> Mapping[str, Real]:
