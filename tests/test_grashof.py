@@ -29,6 +29,13 @@ driver: {link: 1, speed: 1 rad/s}
 many = st.integers(0, 2**32 - 1).map(lambda seed: np.random.default_rng(seed).uniform(0.1, 1.0, (4, 2000)))
 
 
+def test_the_margin_at_a_change_point_is_zero_and_no_rounding():
+    assert 0.3 - (0.1 + 0.2) != 0  # in binary numbers
+    assert turning(FourBar(0.1, 0.3, 0.2, 0.4)).excess == 0
+    assert crank_slider(CrankSlider(0.1, 0.3, 0.2)).margin == 0
+    assert slotted_lever(SlottedLever(0.1, 0.3, 0.2)).margin == 0
+
+
 def named(*lengths):
     """The type of a four-bar with frame, input, coupler and output of these lengths."""
     g, a, b, c = lengths

@@ -6,7 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from bank import solved
 from models import results_of
+
+from tmm_cli.forces.transmission import find_transmitted_forces
 
 FOUR_BAR = {
     "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "D": [0.4, 0]},
@@ -45,6 +48,9 @@ def test_a_four_bar_transmits_worst_with_the_crank_on_the_line_of_the_frame():
     where = 0.0 if least == angles[0] else math.pi
     assert abs(math.remainder(found.place - where, 2 * math.pi)) < 1e-6
     assert abs(found.gain - 1 / math.sin(least)) < 1e-8
+    # and the other extreme in the other one
+    assert found.other == pytest.approx(math.pi / 2 - max(angles), abs=1e-9)
+    assert abs(math.remainder(found.other_place - (math.pi - where), 2 * math.pi)) < 1e-6
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.05, -0.08])
@@ -53,6 +59,26 @@ def test_a_crank_slider_transmits_worst_with_the_crank_square_to_the_path(offset
     assert found.slides
     assert abs(math.sin(found.largest) - (0.1 + abs(offset)) / 0.4) < 1e-12
     assert abs(math.cos(found.place)) < 1e-6
+    assert math.sin(found.other) == pytest.approx((0.1 - abs(offset)) / 0.4, abs=1e-12)
+    assert math.sin(found.other_place) == pytest.approx(-math.sin(found.place), abs=1e-9)
+
+
+def test_without_masses_the_useful_force_is_that_of_the_pressure_angle():
+    """A rocker with a moment of 20 N m: P Q along the rocker's circle is the moment over its length, whatever P is."""
+    problem = FOUR_BAR | {"loads": {"M": {"on": 3, "moment": -20}}, "gravity": [0, 0]}
+    results = results_of(problem, "forces")
+    (transmitted,) = find_transmitted_forces(results.motion, results.reactions)
+    assert (transmitted.link, transmitted.pair) == ("3", "B")
+    assert transmitted.useful == pytest.approx(np.full(12, 20 / 0.25), rel=1e-12)
+    assert transmitted.useful == pytest.approx(transmitted.driving * np.cos(results.pressure[0].angles), rel=1e-12)
+
+
+def test_a_stone_gives_its_slotted_link_all_of_its_force():
+    results = solved("slotted-lever")
+    (transmitted,) = find_transmitted_forces(results.motion, results.reactions)
+    couple = results.reactions.of(transmitted.pair).couple
+    assert np.max(np.abs(couple)) < 1  # N m, of the inertia of the stone
+    assert transmitted.useful == pytest.approx(transmitted.driving, rel=1e-3)
 
 
 def test_a_stone_pushes_its_slotted_link_square_to_it():

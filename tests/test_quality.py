@@ -36,6 +36,27 @@ def four_bar(a, b, c, d, at, B, **more):
     return case({"O": [0, 0], "D": list(d)}, links, {"link": "1", "speed": 1}, {"at": at, "B": list(B)}, **more)
 
 
+def quality(results):
+    """Rows of the table Quality by their words."""
+    (table,) = walk(results, ["quality"])
+    names, values, units = (column.values for column in table.columns)
+    return dict(zip(names, zip(values, units, strict=True), strict=True))
+
+
+def test_a_rocker_has_a_stroke_along_its_arc_and_k_both_ways():
+    rows = quality(results_of(four_bar(0.1, 0.35, 0.25, (0.4, 0), 1, (0.35, 0.25), output="3"), "kinematics"))
+    # the rocker's ends: crank and coupler on one line; angles of the triangles with the frame at D and at O
+    at_d, at_o = (
+        [math.acos((own**2 + 0.4**2 - other**2) / (2 * own * 0.4)) for own, other in both]
+        for both in ([(0.25, 0.45), (0.25, 0.25)], [(0.45, 0.25), (0.25, 0.25)])
+    )
+    swing, theta = at_d[0] - at_d[1], abs(at_o[0] - at_o[1])
+    k = (math.pi + theta) / (math.pi - theta)
+    assert rows["stroke H = psi l of point B"] == (pytest.approx(swing * 0.25, rel=1e-12), "m")
+    assert rows["1/k = T_idle/T_working"][0] == pytest.approx(1 / k, rel=1e-12)
+    assert rows["stroke angle theta = 180 deg (k - 1)/(k + 1)"][0] == pytest.approx(theta, rel=1e-11)
+
+
 def crank_slider(r, rod, e, at, B, driver="1"):
     """The slider B runs along the x axis at the height e."""
     links = {

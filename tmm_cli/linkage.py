@@ -337,6 +337,15 @@ class Linkage:
         """Whether an output is the angle of a link (rad), and no length (m)."""
         return output in self.links and self.output_guide(output) is None
 
+    def output_arm(self, output: str) -> tuple[str, float] | None:
+        """The first other point of an output that swings about the frame, and its distance from the pivot (m)."""
+        pivot = self.shared(FRAME, output) if output in self.links else None
+        if pivot is None or not self.output_swings(output):
+            return None
+        link = self.links[output]
+        point = next((name for name in link.points if name != pivot), None)
+        return None if point is None else (point, abs(link.points[point] - link.points[pivot]))
+
     def carriers(self, point: str) -> tuple[str, ...]:
         """All links that have the point, moving links before the frame."""
         return tuple(name for name in (*self.moving, FRAME) if point in self.links[name].points)

@@ -261,6 +261,11 @@ LOAD: Final = (
     Quantity("moment", "couple", "N*m", MOMENT, (N_("M"),)),
 )
 
+TRANSMITTED: Final = (
+    Quantity("driving", "reaction in the pair in which the link is driven", "N", FORCE, (N_("P"),)),
+    Quantity("useful", "its component along the velocity of its point", "N", FORCE, (N_("Q"),)),
+)
+
 BALANCE: Final = (
     Quantity("moment", "null for a driven slider", "N*m", MOMENT, (N_("M_b"),)),
     Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (N_("F_b"),)),

@@ -30,7 +30,18 @@ def forces(
     tables: Tables = None,
 ) -> None:
     """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
-    names = ("properties", "cycle", "loads", "reactions", "pins", "balance", "lever", "energy", "friction")
+    names = (
+        "properties",
+        "cycle",
+        "loads",
+        "reactions",
+        "pins",
+        "transmission",
+        "balance",
+        "lever",
+        "energy",
+        "friction",
+    )
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)

@@ -14,6 +14,7 @@ from tmm_cli.forces.plan import Reactions, react
 from tmm_cli.groups.sequence import DriverMotion
 from tmm_cli.kinematics.motion import Motion, move
 from tmm_cli.kinematics.strokes import Strokes
+from tmm_cli.linkage import Linkage
 from tmm_cli.variants.family import Family
 
 if TYPE_CHECKING:
@@ -27,6 +28,10 @@ class Solution:
     family: Family
     motion: Motion
     reactions: Reactions
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.family.linkage
 
     @property
     def strokes(self) -> Strokes | None:

@@ -14,7 +14,7 @@ that is the angle above, and it is 90 deg in dead positions only.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -36,7 +36,9 @@ class Pressure:
 
     pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
     turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest (infinite in a dead position).
-    angles: at the positions of a motion.
+    angles: at the positions of a motion. other, other_place: the extreme of the angle on the other side (rad), where
+    the force leans to the other side of the velocity, or least, and the driver's place there (of a four-bar the crank
+    is on the line of the frame at both extremes); nan of a link that is driven in several pairs, or at a constant one.
     """
 
     group: str
@@ -47,6 +49,8 @@ class Pressure:
     place: float
     allowed: float
     angles: Real = field(default_factory=lambda: np.zeros(0))
+    other: float = float("nan")
+    other_place: float = float("nan")
 
     @property
     def transmission(self) -> float:
@@ -93,8 +97,39 @@ def angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real
     return np.where(found < NO_PRESSURE, 0.0, found)
 
 
+def signed_angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+    """Pressure angle with the side to which the force leans from the velocity, rad, for a link driven in one pair."""
+    across, along = _of_one_pair(motion, kernel, at, lead)
+    angles: Real = np.arctan2(across * np.sign(along), np.abs(along))
+    return angles
+
+
 def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
     """What is to each other as sine and cosine of the pressure angle: both above zero."""
+    parts = list(_components(motion, kernel, at, lead))
+    if len(parts) == 1:
+        ((power, aside),) = parts
+        return np.abs(aside), np.abs(power)
+    along, lost, loose = (np.zeros(np.shape(motion.q)) for _ in range(3))
+    for power, aside in parts:
+        most = np.hypot(power, aside)
+        along, loose = along + power, loose + most
+        lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
+    return np.sqrt(lost * (loose + along)), np.abs(along)
+
+
+def _of_one_pair(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+    """Components of the driving force across and along the velocity of its point."""
+    ((power, aside),) = _components(motion, kernel, at, lead)
+    return aside, power
+
+
+def _components(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Iterable[tuple[Real, Real]]:
+    """Of the force in each pair in which a link is driven: its component along the velocity of its point, and across.
+
+    The link is resisted by a unit moment, or a unit force along its guide. Against the resistance the components along
+    have one sign together; the ones across are counted to the left of the velocity.
+    """
     link, outer, pairs = lead
     group, poses = kernel.group, motion.poses
     pose = poses[link]
@@ -107,7 +142,6 @@ def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tupl
         resistance = Wrench(u, cross(poses[outer.slide.runner].at(outer.slide.at) - pose.x, u))
     applied = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
     reactions = kernel.reactions(at, poses, applied).inner
-    along, across, lost, loose = still, still, still, still
     inner = [pair.name for pair in group.inner]
     for pair in pairs:
         reaction = reactions[inner.index(pair.name)]
@@ -120,15 +154,7 @@ def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tupl
             assert reaction.couple is not None
             point = point + guide * reaction.couple / dot(reaction.force, 1j * guide)
         velocity = u if outer.slide is not None else 1j * (point - pivot)
-        # against the resistance all together do work of one sign; by both components, which tells small angles
-        power, aside = -dot(force, velocity), np.abs(cross(force, velocity))
-        along, across = along + power, across + aside
-        if len(pairs) == 1:
-            return across, np.abs(along)
-        most = np.hypot(power, aside)
-        loose = loose + most
-        lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
-    return np.sqrt(lost * (loose + along)), np.abs(along)
+        yield -dot(force, velocity), -cross(force, velocity)
 
 
 def find_pressure(
@@ -160,8 +186,36 @@ def find_pressure(
                         place = float(q[k])
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
-                found.append(Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit))
+                largest = Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit)
+                other = _other_extreme(linkage, upto, lead, scan, number, place) if value > 0 else None
+                if other is not None:
+                    largest = replace(largest, other=other[0], other_place=other[1])
+                found.append(largest)
     return tuple(found)
+
+
+def _other_extreme(
+    linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, scan: LinkStates, number: int, place: float
+) -> tuple[float, float] | None:
+    """The extreme of the pressure angle (rad) on the other side than that at `place`, and the driver's place there."""
+    if len(lead[2]) > 1:
+        return None
+    q = scan.q
+    angles = signed_angle(scan, scan.kernels[number], scan.placements[number], lead)
+    side = np.sign(angles[int(np.argmin(np.abs(q - place)))])
+    if not side or not np.ptp(angles[np.isfinite(angles)]) > ALIKE_ANGLES:
+        return None
+
+    def leaning(at: Real) -> Real:
+        motion = link_states(linkage, kernels, at, 0)
+        angles: Real = side * signed_angle(motion, kernels[-1], motion.placements[-1], lead)
+        return angles
+
+    k = int(np.nanargmin(side * angles))
+    low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
+    end, value = least(leaning, low, high)
+    end = top(leaning, end, min(high - end, end - low))
+    return abs(float(value)), float(end)
 
 
 def pressure_at(motion: LinkStates, group: str, link: str) -> Real:

@@ -69,6 +69,8 @@ PRESSURE = record(
     Field("slides", FLAG, "slides on what holds it, else turns"),
     Field("largest", NUMBER, "largest pressure angle, rad"),
     Field("at", NUMBER, "place of the driver there", "place"),
+    Field("other", NUMBER, "the extreme on the other side, rad"),
+    Field("other_at", NUMBER, "place of the driver there", "other_place"),
     Field("allowed", NUMBER, "rad"),
     Field("holds", FLAG, "within what is allowed"),
     Field("transmission", NUMBER, "least transmission angle, rad"),

@@ -50,6 +50,7 @@ class FirstLinks(Motion):
 class Read:
     """What quantities are read from, see analysis.quantities.base.Solved."""
 
+    linkage: Any
     motion: Any = None
     reactions: Any = None
     strokes: Any = None
@@ -101,7 +102,7 @@ class Mechanisms:
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             taped = FirstLinks(**{field.name: getattr(motion, field.name) for field in fields(motion)})
-            return {one.name: one.at_positions(Read(taped, reactions)) for one in at_positions}
+            return {one.name: one.at_positions(Read(taped.linkage, taped, reactions)) for one in at_positions}
 
         try:
             turning = Turning(
@@ -207,7 +208,7 @@ class Mechanisms:
                 peaks = [looked.peaks[name] for name in self._pressures()]
                 found[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
             elif one.quantity is not None and one.whole:
-                found[:, k] = np.ravel(one.quantity.read(Read(strokes=strokes)))
+                found[:, k] = np.ravel(one.quantity.read(Read(varied.linkage, strokes=strokes)))
             else:
                 values = np.broadcast_to(over[one.name], (len(columns), len(q)))
                 found[:, k] = one.over_cycle(_curves_of(at, one.name), q, values)
@@ -258,7 +259,12 @@ class Mechanisms:
     def _of(self, results: Results) -> Real:
         """What is shown of a mechanism that was solved by the ordinary stages."""
         assert results.motion is not None
-        searched = {"H": measures.stroke, "psi": measures.stroke, "k": measures.ratio, PRESSURE: measures.pressure}
+        searched = {
+            "H": measures.arc_or_stroke,
+            "psi": measures.stroke,
+            "k": measures.ratio,
+            PRESSURE: measures.pressure,
+        }
         q = results.closely(CYCLE * max(results.turns, 1) + 1)
         read = _AtPlaces(results)
         found = []

@@ -99,7 +99,9 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
                 some = _("e.g. {names}").format(names=", ".join(_examples(every)))
                 raise unknown_name(name, names, _("there is no such quantity"), some, file=f"--show {text}")
             found.append(every[names[name]])
-    found = list(dict.fromkeys(found)) or [every[name] for name in USUAL if name in every]
+    found = list(dict.fromkeys(found)) or [
+        every[name] for name in USUAL if name in every and not (name == "H" and "psi" in every)
+    ]
     if len(found) > MOST:
         raise ProblemError(
             _("these are too many quantities"), found=str(len(found)), allowed=_("at most {most}").format(most=MOST),

@@ -84,6 +84,7 @@ def turning(links: FourBar) -> Turning:
         joints.append((x + y <= z + w + same) & (np.abs(x - y) >= np.abs(z - w) - same) & (kind >= 0))
     a, b, c, d = joints
     # full turns in both joints on the way from the frame to the coupler take each other away
+    excess = np.where(change, 0.0, excess)[()]  # zero but for rounding
     return Turning(kind, excess, np.stack(joints, -1), np.stack([a, (a ^ b) | (c ^ d), d], -1))
 
 

@@ -28,6 +28,13 @@ def stroke(results: Results, ends: Ends = None) -> float:
     return strokes.travel if strokes is not None and strokes.strokes else NONE
 
 
+def arc_or_stroke(results: Results) -> float:
+    """Stroke H (m) of the output; of an output that swings the arc H = psi l of its first point."""
+    link = results.mechanism.output
+    arm = results.linkage.output_arm(link) if link else None
+    return stroke(results) * (1.0 if arm is None else arm[1])
+
+
 def ratio(results: Results) -> float:
     """Coefficient of change of mean speed k."""
     strokes = results.strokes

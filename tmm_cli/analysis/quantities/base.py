@@ -18,6 +18,9 @@ class Solved(Protocol):
     """What quantities are read from: one linkage at its positions, or many variants at once."""
 
     @property
+    def linkage(self) -> Any: ...
+
+    @property
     def motion(self) -> Any: ...
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from tmm_cli.structure.naming import output_link
 
 
 def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
-    """W, class, numbers of links, pairs, passive constraints and strokes; H of an output that slides, psi, k."""
+    """W, class, numbers of links, pairs, passive constraints and strokes; H of an output (where it swings: the
+    arc psi l of its first point), psi, k."""
     exact = {
         "W": structure.mobility + structure.redundant,
         "class": structure.mechanism_class,
@@ -31,6 +33,8 @@ def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
     slides = output is not None and linkage.slides_on_frame(output)
     name, dimension = ("H", LENGTH) if slides else ("psi", ANGLE)
     found[name] = Quantity(name, "places", dimension, _travel, whole=True)
+    if output is not None and not slides and linkage.output_arm(output) is not None:
+        found["H"] = Quantity("H", "places", LENGTH, partial(_arc, output), whole=True)
     found["strokes"] = Quantity("strokes", "places", NUMBER, _number, whole=True, against="exact")
     found["k"] = Quantity("k", "places", NUMBER, _k, whole=True)
     return found
@@ -45,6 +49,12 @@ def _travel(solution: Solved) -> Any:
     if strokes is None or not strokes.strokes:
         return np.array([np.nan])
     return np.abs(strokes.strokes[0].run) + np.zeros(1)
+
+
+def _arc(output: str, solution: Solved) -> Any:
+    """H = psi l of an output that swings, m."""
+    arm = solution.linkage.output_arm(output)
+    return _travel(solution) * (np.nan if arm is None else arm[1])
 
 
 def _k(solution: Solved) -> Any:

@@ -25,7 +25,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("pressure", "motion", ("pressure",)),
     ("cycle", "motion", ("cycle",)),
     ("kinematics", "motion", ("points", "link-motion", "slides")),
-    ("forces", "reactions", ("reactions", "pins", "loads", "balance")),
+    ("forces", "reactions", ("reactions", "pins", "loads", "transmission", "balance")),
     ("lever", "lever", ("lever",)),
     ("energy", "energy", ("energy", "friction")),
     ("dynamics", "running", ("dynamics", "law-of-motion")),

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.forces.transmission import find_transmitted_forces
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.bodies import load_names
-from tmm_cli.quantities import FORCE, LOAD, MOMENT, REACTION, columns
+from tmm_cli.quantities import ANGLE, FORCE, LOAD, MOMENT, REACTION, TRANSMITTED, columns
 from tmm_cli.results.reports.cycle import driver_columns, signs
 from tmm_cli.results.reports.long import long_table
 from tmm_cli.results.table import Column, Table
@@ -48,7 +49,25 @@ def tables(results: Results) -> Iterable[Table]:
         words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
         title = _("Loads: weights G, inertia forces U and couples M, and those of the task")
         yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
+    yield from _transmitted(results)
     yield _balances(results)
+
+
+def _transmitted(results: Results) -> Iterable[Table]:
+    """Of every link that is driven in one pair: its pressure angle, the driving force and what of it is useful."""
+    assert results.motion is not None and results.reactions is not None
+    found = find_transmitted_forces(results.motion, results.reactions)
+    if found and results.reactions.loaded:
+        angles = {(p.group, p.link): p.angles for p in results.pressure}
+        words = {N_("driven link"): [f.link for f in found], N_("driven in pair"): [f.pair for f in found]}
+        things = [
+            [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *columns(TRANSMITTED, f)] for f in found
+        ]
+        note = _(
+            "P: reaction of the pair in which the link is driven; Q: its component along the velocity of its point. "
+            "Without weights, inertia and friction Q = P cos(pressure angle)."
+        )
+        yield long_table(results, "transmission", _("Force transmission"), words, things, note)
 
 
 def _balances(results: Results) -> Table:

@@ -19,8 +19,10 @@ def tables(results: Results) -> Iterable[Table]:
         return
     driver, driver_range = results.linkage.driver, results.driver_range
     places = [p.place if p.largest > NO_PRESSURE else math.nan for p in found]
+    others = [p.other_place for p in found]
     if driver.kind == "turn" and driver_range is not None and driver_range.full:
         places = [place % (2 * math.pi * driver_range.turns) for place in places]
+        others = [place % (2 * math.pi * driver_range.turns) for place in others]
     note = (
         _("Allowed: as the file says.")
         if any(results.problem.limits_set)
@@ -35,6 +37,8 @@ def tables(results: Results) -> Iterable[Table]:
             Column(N_("driven in pair"), [p.pair for p in found]),
             Column(N_("largest"), [p.largest for p in found], ANGLE),
             Column(N_("driver there at"), places, place_dimension(driver.kind)),
+            Column(N_("other extreme"), [p.other for p in found], ANGLE),
+            Column(N_("driver then at"), others, place_dimension(driver.kind)),
             Column(N_("least transmission angle"), [p.transmission for p in found], ANGLE),
             Column(N_("force increase"), [p.gain for p in found], NUMBER),
             Column(N_("allowed"), [p.allowed for p in found], ANGLE),

@@ -13,7 +13,7 @@ from tmm_cli.kinematics.output import OutputCurve, Travel
 from tmm_cli.kinematics.strokes import Stroke, Strokes
 from tmm_cli.language import N_, _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
 from tmm_cli.results.table import Column, Table
 from tmm_cli.tolerances import CAME_BACK, SEAM_OF_EXTREMES
 
@@ -39,6 +39,8 @@ def tables(results: Results) -> Iterable[Table]:
             )
     for travel in results.travels:
         rows += _travel(results.linkage, travel, place)
+    if results.losses is not None and results.losses.efficiency is not None:
+        rows.append((_("efficiency over the cycle"), results.losses.efficiency, NUMBER))
     rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
         yield Table("quality", _("Quality"), of_rows(rows, results))
@@ -55,7 +57,13 @@ def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[R
     elif guide is not None and FRAME not in (guide.carrier, guide.runner):
         name = _("stroke H of link {link} along link {carrier}")
     yield name.format(link=link, carrier=guide.carrier if guide is not None else ""), strokes.travel, run
+    arm = linkage.output_arm(link)
+    if arm is not None:
+        yield _("stroke H = psi l of point {point}").format(point=arm[0]), strokes.travel * arm[1], LENGTH
     yield _("coefficient of change of mean speed k"), strokes.k, NUMBER
+    if len(strokes.strokes) == 2:
+        yield _("1/k = T_idle/T_working"), 1 / strokes.k, NUMBER
+        yield _("stroke angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
     every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
     if results.counts_strokes:
         every = list(enumerate(_in_order(results, strokes), 1))

@@ -85,7 +85,8 @@ def crank_slider(task: CrankSlider) -> Condition:
     margin = rod - (r + e)
     other = r - (rod + e)
     kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
-    return Condition(np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind), margin)
+    kind = np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind)
+    return Condition(kind, _without_rounding(margin, same))
 
 
 def slotted_lever(task: SlottedLever) -> Condition:
@@ -94,7 +95,11 @@ def slotted_lever(task: SlottedLever) -> Condition:
     same = SAME_RATIO * (crank + frame + e)
     margin = np.abs(frame - crank) - e
     kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
-    return Condition(np.where(np.abs(margin) <= same, 3, kind), margin)
+    return Condition(np.where(np.abs(margin) <= same, 3, kind), _without_rounding(margin, same))
+
+
+def _without_rounding(margin: Any, same: Any) -> Any:
+    return np.where(np.abs(margin) <= same, 0.0, margin)[()]
 
 
 def refuse(task: Task) -> None:
