@@ -512,6 +512,40 @@ def engine():
     return max(found), min(found)
 
 
+def v_compressor():
+    """Forces of the crank pin on both rods at 345 deg, and on both together: rod and piston in equilibrium."""
+    phi, r, rod, omega = 345 * DEG, mpf("0.045"), mpf("0.18"), 980 * pi / 30
+    rows = [(mpf(0), mpf(0)), (mpf("0.04"), mpf("0.08")), (mpf("0.065"), mpf("0.5")), (mpf("0.09"), mpf("0.5"))]
+
+    def pin(q):
+        return polar(r, q)
+
+    def force_on_rod(guide):
+        along = polar(1, guide)
+
+        def piston(q):
+            across = (pin(q) / along).imag
+            return along * ((pin(q) / along).real + sqrt(rod**2 - across**2))
+
+        def centre(q):
+            return pin(q) + mpf("0.33") * (piston(q) - pin(q))
+
+        run = abs(piston(phi)) - (rod - r)
+        (x0, p0), (x1, p1) = next((low, high) for low, high in pairwise(rows) if low[0] <= run <= high[0])
+        gas = (p0 + (p1 - p0) * (run - x0) / (x1 - x0)) * 10**6 * pi * mpf("0.11") ** 2 / 4
+        on_piston = (-gas * along - mpf("2.2") * (bend(piston, phi) * omega**2 + mp.mpc(0, G))) / along
+        reach = piston(phi) - pin(phi)
+        on_rod = -mpf("1.8") * (bend(centre, phi) * omega**2 + mp.mpc(0, G))
+        couple = -mpf("0.008") * slope(angle_of(lambda q: piston(q) - pin(q)), phi) * omega**2
+        moment = couple + (conj(centre(phi) - pin(phi)) * on_rod).imag
+        lever = conj(reach) * along
+        across = -(moment + on_piston.real * lever.imag) / lever.real
+        return -(mp.mpc(on_piston.real, across) * along) - on_rod
+
+    forces = force_on_rod(45 * DEG), force_on_rod(135 * DEG)
+    return [abs(force) for force in (*forces, sum(forces))]
+
+
 NUMBERS = {
     "clamp": lambda: [clamp(-200), clamp(-185)],
     "course-1": lambda: course(1),
@@ -542,6 +576,7 @@ NUMBERS = {
     "slotted-lever": lambda: [coriolis() * MM],
     "summing-lever": lambda: [run * MM for run in summing_lever()],
     "toggle-press": lambda: [toggle_press()],
+    "v-compressor": v_compressor,
 }  # fmt: skip
 """By file, in the order of its block `shows`, those whose `expected` is a plain number; SI, radians."""
 
