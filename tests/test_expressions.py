@@ -138,6 +138,10 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("CD/OA", NUMBER, "parameter OA has no unit: write OA: 110 mm\n  found:   'CD/OA'"),
         ("asin(OA/CD)", ANGLE, "parameter OA has no unit: write OA: 110 mm\n  found:   'asin(OA/CD)'"),
         ("CD*phi", SPEED, "parameter phi has no unit: write phi: 30 rpm or 30 rad/s\n  found:   'CD*phi'"),
+        ("500 кг", FORCE, "a force is wanted here\n  found:   '500 кг', a mass (500 kg)"
+         "\n  allowed: a force, e.g. 1500 N or 1.5 kN; a kilogram of force is written kgf"),
+        ("6 кг/см²", PRESSURE, "a pressure is wanted here\n  found:   '6 кг/см²', a quantity in m^-2*kg (0.06 mm^-2*kg)"
+         "\n  allowed: a pressure, e.g. 1.2 MPa or 12 bar; a kilogram of force is written kgf"),
         ("CD/phi", MASS, "a mass is wanted here\n  found:   'CD/phi', a length (21.6667 mm)"
          "\n  allowed: a mass, e.g. 22 kg"),
         ("2 OA", LENGTH, "a * is missing before OA\n  found:   '2 OA', at 'OA'" + ARITHMETIC),

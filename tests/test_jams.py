@@ -9,6 +9,7 @@ from dataclasses import replace
 import blocks
 import numpy as np
 import pytest
+from bank import NAMES, problem, solved
 from models import solved_text
 from test_bad_input import place, refusal
 from test_bad_linkages import changed
@@ -22,6 +23,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.forces.loads import losses
 from tmm_cli.pairs.cam_law import CamLaw, Piece
 from tmm_cli.results.as_json import to_json
+from tmm_cli.results.understood import doubts
 from tmm_cli.results.warnings import warnings as words
 
 # ---------------------------------------------------------------- wheels
@@ -385,3 +387,10 @@ def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
     results = solved_text(text.replace("points: [A, B], length: 20}", "points: {A: [0, 0], B: [20, 0]}}") + "\n")
     assert all(np.all(r.force[results.motion.moving] == 0) for r in results.reactions.all)
     assert results.lever_holds
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_problem_of_the_bank_has_a_load_or_a_spring_or_a_friction_to_be_warned_of(name):
+    told = ("in the direction of motion", "does no work in", "the ends of spring", "locks itself")
+    assert not [w for w in words(solved(name)) if any(phrase in w for phrase in told)]
+    assert not [w for w in doubts(problem(name).whole) if "move as one slider" in w]

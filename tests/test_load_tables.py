@@ -26,6 +26,7 @@ from tmm_cli.results.warnings import warnings
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.run import swept
+from tmm_cli.variants.batch import prepare as prepare_all
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -436,3 +437,28 @@ def test_tables_of_the_bank_against_the_stroke_end_with_it():
     assert len(names) >= 2
     for name in names:
         assert not [one for one in warnings(solved(name)) if "table of load" in one], name
+
+
+def test_variants_of_one_mechanism_may_jump_at_different_angles():
+    def linkage(angle):
+        table = f"[[0, 0], [{angle}, 0], [{angle}, 5 kN], [200, 2 kN], [200, 0], [360, 0]]"
+        return problem_of(read_text(CRANK_SLIDER.format(against="crank angle", table=table), "x.yaml")).linkage
+
+    q, each = np.radians([50.0, 85, 95, 120, 300]), [linkage(angle) for angle in (80, 90, 100)]
+    together = prepare_all(each)(q)["T.1"]
+    for k, own in enumerate(each):
+        assert together[k] == pytest.approx(prepare_all([own])(q)["T.1"], abs=1e-9)
+    assert np.count_nonzero(np.abs(together) > 1, axis=1).tolist() == [3, 2, 1]
+
+
+def test_a_sweep_finds_the_peak_of_a_load_that_jumps():
+    """The rows of the table stand at shares of each stroke; the peak is that of 20 000 positions, from both sides."""
+    text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [0.3, 0], [0.3, 900], [1, 100]]")
+    text = text.replace("length: 50", "length: OA").replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}")
+    tree = read_text(text, "x.yaml")
+    found = swept(Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:2"]), ["M_b"]))
+    assert found.taped
+    for (crank,), (peak,) in zip(found.points, found.values, strict=True):
+        own = solve(problem_of(read_text(text.replace("OA: 50", f"OA: {crank}"), "x.yaml")))
+        moment = at_places(own, np.linspace(0, 2 * np.pi, 20_001)).reactions.balance.moment
+        assert peak == pytest.approx(np.max(np.abs(moment)), rel=1e-6)

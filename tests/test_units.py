@@ -37,7 +37,7 @@ from tmm_cli.quantities import (
         ("kg кг", "mass", 1),
         ("g г", "mass", 0.001), ("t т", "mass", 1000), ("N Н H", "force", 1), ("kN кН кH", "force", 1000),
         ("N*m N·m N⋅m Nm Н·м Нм N|m", "moment of force", 1), ("kN*m кН·м кНм", "moment of force", 1000),
-        ("kgf кгс kp", "force", 9.80665), ("tf тс", "force", 9806.65), ("kgf/cm2 кгс/см²", "pressure", 98066.5),
+        ("kgf кгс", "force", 9.80665), ("tf тс", "force", 9806.65), ("kgf/cm2 кгс/см²", "pressure", 98066.5),
         ("рад·с-1 rad·s-1", "angular speed", 1), ("мин-1", "angular speed", math.pi / 30), ("м·с-2", "acceleration", 1),
         ("kg*m2 kg·m^2 kg*m**2 kg|m² кг·м² кг*м2", "moment of inertia", 1),
         ("m/s м/с m*s^-1 м·с⁻¹", "speed", 1),

@@ -16,7 +16,7 @@ from tmm_cli.problem.arithmetic import FUNCTIONS, Parser, taken
 from tmm_cli.problem.errors import ProblemError, quote, under
 from tmm_cli.problem.tree import Path, WrittenNumber
 from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem, plain_text
-from tmm_cli.quantities import ANGLE, ANGULAR_SPEED, KINDS, NUMBER, Dimension
+from tmm_cli.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, KINDS, NUMBER, Dimension
 
 MAX_LENGTH: Final = 200
 
@@ -77,6 +77,8 @@ def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dime
         allowed = want.example
         if want == ANGLE and "pi" in str(source):
             allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
+        if found.dimension is not None and found.dimension.times(ACCELERATION).fits(want):
+            allowed = _("{allowed}; a kilogram of force is written kgf").format(allowed=allowed)
         raise UnitError(_("{want} is wanted here").format(want=want), found=given, allowed=allowed)
     return value
 

@@ -100,7 +100,7 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("N Н", FORCE, "1"),
     ("kN кН", FORCE, "1000"),
     ("MN МН", FORCE, "1000000"),
-    ("kgf кгс kp", FORCE, "980665/100000"),
+    ("kgf кгс", FORCE, "980665/100000"),
     ("tf тс", FORCE, "980665/100"),
     ("Nm Нм", MOMENT, "1"),
     ("kNm кНм", MOMENT, "1000"),
