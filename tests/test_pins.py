@@ -164,6 +164,26 @@ def test_a_later_rod_may_be_attached_first():
     assert structure.formula == "I(0,1) -> II(4,5) -> II(2,3)"
 
 
+CYLINDER = """tmm: 1
+points: {O: [0, 0], Q: [200, -100], K: [-300, 0]}
+links:
+  1: {points: {O: [0, 0], A: [0, 150]}}
+  2: {points: [Q, E], length: 100}
+  3: {points: [A], slides: {on: 2, along: QE, unbounded: true}}
+  4: {points: [A, C], length: 300}
+  5: {points: [K, C], length: 150}
+driver: {link: 3, on: 2, speed: 50 mm/s, stroke: [260, 320]}
+sketch: {at: 300, A: [0, 150], C: [-290, 150]}
+"""
+
+
+def test_links_are_attached_to_the_driven_piston_before_the_lever_that_it_swings():
+    usual = analyse(build(read_text(CYLINDER, "x.yaml")).linkage)
+    to_lever = analyse(build(read_text(attached(CYLINDER, "A", 1), "x.yaml")).linkage)
+    assert [(p.i, p.j) for p in usual.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("3", "4")]
+    assert [(p.i, p.j) for p in to_lever.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("1", "4")]
+
+
 def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached():
     """On each rod mu r R of its own force, R_12 and R_14; the drivers' work is what friction takes more."""
     text = V_ENGINE + "friction: {coefficient: 0.1, radius: 20, pairs: {x: {coefficient: 0}, y: {coefficient: 0}}}\n"

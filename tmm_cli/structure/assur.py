@@ -340,10 +340,10 @@ def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) ->
     The frame, else the driver, else, within the group that is solved first, a link connected to the frame, else the
     first. `links` stand in solving order.
     """
-    cranks = [driver.link for driver in linkage.cranks]
     first = [link for link in links if rank[link] == rank[links[0]]]
-    connected = (n for n in first if n in cranks or linkage.hinged_to_frame(n) or linkage.slides_on_frame(n))
-    return next(connected, first[0])
+    driven = [driver.link for driver in linkage.drivers if driver.link in first]
+    connected = [link for link in first if linkage.hinged_to_frame(link) or linkage.slides_on_frame(link)]
+    return (*driven, *connected, *first)[0]
 
 
 def _group(
