@@ -71,7 +71,7 @@ class Tabulated(Strict):
         description="what the table's first column is: run of the load's link, if that slides on the frame, else of "
         "the output, from the start of its working stroke; `stroke of 5` is that of link 5; "
         "the same as a share of the stroke, 0 to 1 or 0 to 100 %; "
-        "angle of the crank from the x axis; its turn from the start of the working stroke, in its sense",
+        "angle of the crank from the x axis; its turn from the start of the working stroke of the output, in its sense",
     )
     table: list[Vector] | None = Field(
         default=None,
