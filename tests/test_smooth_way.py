@@ -109,3 +109,68 @@ def test_a_place_is_found_alone():
     results = moved(PARALLELOGRAM)
     alone = [float(at_positions(results, np.array([q])).first["3"].w[0]) for q in (-20.0, -1.0, 1.0, 4.0, 100.0)]
     assert alone == pytest.approx([1.0] * 5)
+
+
+def at_places(text, places):
+    """The file with these positions."""
+    return f"{text.partition('positions:')[0]}positions: {{at: {places}}}\n"
+
+
+def limits(text, places):
+    """A motion with positions in change points, all of which are passed smoothly."""
+    motion = moved(at_places(text, f"[{places}]")).motion
+    assert motion.limits.any() and not motion.moving[motion.limits].any()
+    assert np.array_equal(motion.limits | motion.moving, np.ones(len(motion.q), dtype=bool))
+    return motion
+
+
+def test_the_cranks_of_a_parallelogram_have_one_speed_in_its_change_points_too():
+    text = PARALLELOGRAM.replace("speed: 60 rpm", "speed: 10 rad/s, acceleration: 3 rad/s^2")
+    assert text != PARALLELOGRAM
+    motion = limits(text, "0, 60, 180")
+    rate = motion.rate
+    assert motion.limits.tolist() == [True, False, True]
+    assert motion.link("3").omega == pytest.approx(rate, rel=1e-11)
+    assert motion.link("3").epsilon == pytest.approx(np.full(3, 3.0), rel=1e-8)
+    assert motion.link("2").omega == pytest.approx(np.zeros(3), abs=1e-10)
+    assert motion.named("B").v == pytest.approx(1j * rate * np.exp(1j * motion.q) * abs(motion.named("A").v / rate))
+
+
+def test_a_crank_slider_with_a_rod_as_long_as_its_crank_passes_where_its_pins_meet():
+    """s = 2 r cos(phi) and omega_2 = -omega_1, also where B lies on O."""
+    motion = limits(ISOSCELES, '"90 deg", "30 deg", "270 deg"')
+    omega, q = 2 * np.pi, motion.q
+    assert motion.named("B").x.real == pytest.approx(0.2 * np.cos(q), abs=1e-13)
+    assert motion.named("B").v.real == pytest.approx(-0.2 * omega * np.sin(q), rel=1e-10)
+    assert motion.named("B").a.real == pytest.approx(-0.2 * omega**2 * np.cos(q), abs=1e-8)
+    assert motion.link("2").omega == pytest.approx(np.full(3, -omega), rel=1e-10)
+
+
+def test_where_the_side_of_the_sketch_is_kept_velocities_jump_and_have_no_limit():
+    text = PARALLELOGRAM.replace("driver:", "change points: keep side\ndriver:")
+    results = moved(at_places(text, "[0, 60]"))
+    assert results.motion.limits is None and results.motion.moving.tolist() == [False, True]
+    assert "position 0 (0 deg): II(2,3) is in its dead position; no velocities and forces" in list(warnings(results))
+
+
+def test_a_dead_position_in_which_the_driver_turns_back_has_no_limits():
+    text = PARALLELOGRAM.replace("length: 300", "length: 280")
+    assert text != PARALLELOGRAM
+    results = moved(text)
+    end = float(results.driver_range.end)
+    assert not results.driver_range.full
+    motion = at_positions(results, np.array([end]))
+    assert motion.limits is None and not motion.moving.any()
+
+
+def test_the_balancing_moment_has_its_limit_by_the_lever_and_reactions_have_none():
+    """Massless parallelogram with 5 N m against its driven crank: M_b = 5 N m; the rod's force is 5/(l sin(phi))."""
+    text = PARALLELOGRAM.replace("masses:", "gravity: 0\nloads: {M: {on: 3, moment: -5}}\nmasses:")
+    results = solved_text(at_places(text, "[0, 60]").replace("mass: 3 kg, inertia: 0.1", "mass: 0"))
+    assert results.lever.balancing == pytest.approx([5, 5], rel=1e-10)
+    assert np.isnan(results.reactions.balance.moment[0]) and results.lever_holds
+    said = list(warnings(results))
+    assert (
+        "position 0 (0 deg): II(2,3) is in a change point, which it passes smoothly; velocities and accelerations are "
+        "limits, reactions have none there"
+    ) in said

@@ -41,6 +41,11 @@ CROSSING_FITTED = 1e-10  # sizes of the group, rad: and to this in any case
 SAMPLES_ROUNDED = 1e-16  # roundoff of what the samples are fitted from
 NO_DETERMINANT = 1e-8  # of its largest value among the samples: a determinant this small is zero
 
+LIMIT_ROUNDED = 1e-12  # relative: limits are interpolated to this
+LIMIT_AGREES = (
+    1e-8  # of the largest value of its kind: limits found from farther and from nearer positions agree so far
+)
+
 # Equal
 SAME_ASSEMBLY = 1e-6  # sizes, rad: two assemblies are the same; found in a dead position they agree to half the digits
 MEET = 1e-4  # sizes, rad: two assemblies this near, both dead, are one

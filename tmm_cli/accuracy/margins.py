@@ -33,7 +33,7 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.tolerances import KNOWN_LAW, ROUNDOFF
+from tmm_cli.tolerances import KNOWN_LAW, LIMIT_AGREES, ROUNDOFF
 from tmm_cli.vectors import Real
 
 LOSS = 128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
@@ -55,6 +55,8 @@ def relative(results: Results, blur: float = 0.0) -> Real:
     away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
     lost = growth(results)
     way = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
+    if motion.limits is not None:
+        lost = np.where(motion.limits, LIMIT_AGREES / (LOSS * ROUNDOFF), lost)
     found: Real = LOSS * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + AWAY * away * lost
     return found if results.running is None else np.maximum(found, KNOWN_LAW)
 

@@ -29,6 +29,7 @@ from tmm_cli.forces.plan import Reactions, power, react
 from tmm_cli.groups.base import Kernel
 from tmm_cli.groups.sequence import LawOfMotion, towards
 from tmm_cli.kinematics.driver_range import DeadPosition, DriverRange
+from tmm_cli.kinematics.limits import with_limits
 from tmm_cli.kinematics.motion import Motion, move, spliced
 from tmm_cli.kinematics.output import Travel
 from tmm_cli.kinematics.pressure import Pressure, pressure_at
@@ -236,11 +237,11 @@ def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ..
     motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
     where = near_dead(motion)
     if results.inputs.extended is None or not np.any(where):
-        return motion
+        return with_limits(motion)
     exact = results.inputs.extended()
     asked: Any = exact.request.places
     asked = np.stack(asked) if asked else exactly(results.asked)
-    return refined(motion, exact.linkage, asked[list(numbers)][where], law, where)
+    return with_limits(refined(motion, exact.linkage, asked[list(numbers)][where], law, where))
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
@@ -249,7 +250,9 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     assert motion is not None
     strokes = results.strokes if results.linkage.by_strokes else None
     loads = applied(motion, strokes)
-    reactions = react(motion, results.structure, loads)
+    bare = motion if motion.bare is None else motion.bare  # reactions have no limits in change points
+    reactions = react(bare, results.structure, loads if motion.bare is None else applied(bare, strokes))
+    reactions = replace(reactions, applied=loads)
     if motion.finer is not None and motion.where is not None:
         exact = applied(motion.finer, strokes)
         structure = results.structure.rebind(motion.finer.linkage)
@@ -257,7 +260,7 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
-        rubbed = solve_friction(motion, results.structure, loads, reactions)
+        rubbed = solve_friction(bare, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
             lost = cycle_losses(results)
@@ -293,7 +296,7 @@ def _friction_at(results: Results, motion: Motion) -> FrictionSolution:
 
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
-    return move(results.linkage, results.kernels, q, results.law, order)
+    return with_limits(move(results.linkage, results.kernels, q, results.law, order))
 
 
 def at_places(results: Results, q: Real) -> Results:

@@ -19,7 +19,7 @@ from tmm_cli.linkage import Linkage, Slide
 from tmm_cli.tolerances import AT_REST
 from tmm_cli.vectors import Real, Record, Vector, dot, mapped, unit
 
-FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order"})
+FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"})
 """Names of fields of a motion, and of what follows from it, that hold no array over positions."""
 
 
@@ -62,7 +62,8 @@ class Sliding:
 class Motion(LinkStates):
     """States of links in time: time (s), rate of the driver's place (rad/s or m/s) and its acceleration.
 
-    nan where the driver never comes. finer: the positions of the mask `where` in extended precision.
+    nan where the driver never comes. finer: the positions of the mask `where` in extended precision. limits: the mask
+    of change points in which velocities and accelerations are limits (kinematics.limits); bare: without these.
     """
 
     time: Real
@@ -70,6 +71,8 @@ class Motion(LinkStates):
     acceleration: Real
     finer: Motion | None = None
     where: Real | None = None
+    limits: Real | None = None
+    bare: Motion | None = None
 
     def point(self, link: str, local: complex) -> Point:
         """Motion of a point given in the axes of a link (m)."""

@@ -132,9 +132,11 @@ def states(results: Results) -> list[str]:
     """What is wrong with each position, or nothing."""
     motion = results.motion
     assert motion is not None
+    limits = np.zeros(np.shape(motion.q), dtype=bool) if motion.limits is None else motion.limits
     told = np.where(motion.moving, "", _("the driver has stopped before")).astype(object)
     told[results.locked & motion.moving] = _("locks by friction")
+    told[limits] = _("change point: limits")
     for text, groups in ((_("{group} is dead"), motion.dead), (_("{group} cannot be assembled"), motion.missing)):
         for group, lost in reversed(list(groups.items())):
-            told[lost & (~motion.moving | results.locked)] = text.format(group=group)
+            told[lost & (~motion.moving | results.locked) & ~limits] = text.format(group=group)
     return list(told)

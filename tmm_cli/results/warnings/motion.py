@@ -109,7 +109,12 @@ def unreached_positions(results: Results) -> Iterable[str]:
                     number=number, place=place, group=group, gap=gap
                 )
         for group, dead in motion.dead.items():
-            if dead[k]:
+            if dead[k] and motion.limits is not None and motion.limits[k]:
+                yield _(
+                    "position {number} ({place}): {group} is in a change point, which it passes smoothly; velocities "
+                    "and accelerations are limits, reactions have none there"
+                ).format(number=number, place=place, group=group)
+            elif dead[k]:
                 yield _(
                     "position {number} ({place}): {group} is in its dead position; no velocities and forces"
                 ).format(number=number, place=place, group=group)
