@@ -59,6 +59,7 @@ NUMBERS = [
     "0", "1", "-1", "0.5", "2", "3", "-0.0", "100", "250.5", "1e-9", "1e-17", "1e-300", "1e9", "1e19", "1e299", "1e999",
     "38.925549624985472123456789", "3.14159265358979", "180", "360", "1,5", "nan", "inf", "12:30", "010", "0x1F",
     "1e200*1e200", "(1e200*1e200 - 1e200*1e200)", "1e306 km", "1e160 rpm",
+    "1 900", "1.9·10³", "10^3 kgf", "8 с-1", "12 500,5",
 ]  # fmt: skip
 FACTORS = [0, -1, 1e-9, 1e3, 1e18, 2, 0.5, *[1 + 1e-12, 1.1, 0.9, 1.01, 0.99] * 4]
 CALLS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "min", "max", "sqrt", "abs", "sinh"]
@@ -190,7 +191,7 @@ class Grammar:
         elif isinstance(spot.parent, dict):
             spot.parent[self.random.choice([self.name(), *FOREIGN, str(spot.key) + "s"])] = spot.parent.pop(spot.key)
         else:
-            spot.parent.append(deepcopy(own))
+            spot.parent.insert(spot.key, deepcopy(own))  # of rows of a table: a jump
 
     def cut(self, text: str) -> str:
         """The text with a few characters or lines changed."""
