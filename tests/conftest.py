@@ -16,6 +16,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import settings
+from old_processor import confirm
 from xdist.scheduler import LoadFileScheduling
 
 ROOMS = ("from bank import NAMES", "from big_sheets import")  # files that hold one of these go to one process
@@ -37,6 +38,8 @@ class OfOneBank(LoadFileScheduling):
 def pytest_xdist_make_scheduler(config, log):
     return OfOneBank(config, log) if config.getoption("dist") == "loadfile" else None
 
+
+confirm()  # where the environment turns instructions off
 
 settings.register_profile("steady", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("steady")

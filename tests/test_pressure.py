@@ -172,3 +172,17 @@ def test_it_is_a_right_angle_at_a_change_point_too():
     (found,) = results_of(FOUR_BAR | {"links": links}, "kinematics").pressure
     assert found.largest == math.pi / 2 and found.transmission == 0 and math.isinf(found.gain)
     assert math.cos(found.place) == pytest.approx(-1)
+
+
+def test_an_angle_as_large_as_allowed_is_allowed_and_one_of_several_pairs_is_zero_where_all_push_along():
+    """Forces of 45 deg on a link that is held in a circle by several cranks; rounding may add to it."""
+    (pressure,) = solved("four-bars/transfer").pressure
+    assert pressure.largest == pytest.approx(math.pi / 4, abs=1e-14) and pressure.holds
+    assert np.all(pressure.angles[1::3] == 0) and np.all(pressure.angles[::3] > 0.7)
+
+
+def test_an_angle_that_stays_the_same_is_the_largest_at_the_beginning_of_the_way():
+    results = solved("settings/spring-return-rod")
+    tappet = results.pressure[2]
+    assert np.ptp(tappet.angles) < 1e-14
+    assert tappet.place == results.driver_range.start

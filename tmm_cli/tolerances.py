@@ -87,6 +87,7 @@ SMOOTH = 1e-13  # of the largest value: what a polynomial leaves of a smooth fun
 ALIKE_ANGLES = 1e-12  # rad: largest pressure angles that differ by less are one, found at several places
 RIGHT_ANGLE = 1e-8  # rad: a pressure angle that goes to a right one at a dead position by less is one there
 NO_PRESSURE = 1e-9  # rad: a pressure angle that is zero everywhere but for rounding has no largest place
+LOST_IN_ROUNDING = 1e-14  # of what forces in several pairs would give: less is rounding of small ones among them
 NO_COORDINATE = 1e-12  # of the linkage's size: a coordinate below that is zero but for rounding
 NO_COSINE = 2.5e-16  # the cosine of the double next to a right angle is below this
 NO_TURN = 1e-9  # rad: a plane does not turn by less

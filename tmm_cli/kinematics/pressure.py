@@ -26,7 +26,7 @@ from tmm_cli.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.roots import least, top
 from tmm_cli.structure.assur import Group, Pair
-from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, NO_PRESSURE, RIGHT_ANGLE, ROUNDINGS, ROUNDOFF
+from tmm_cli.tolerances import ALIKE_ANGLES, DEAD, LOST_IN_ROUNDING, NO_PRESSURE, RIGHT_ANGLE, ROUNDINGS, ROUNDOFF
 from tmm_cli.vectors import Real, cross, dot, unit
 
 
@@ -64,8 +64,10 @@ class Pressure:
     @property
     def holds(self) -> bool:
         """Whether it stays within what is allowed."""
-        return self.largest <= self.allowed
+        return self.largest <= self.allowed + ALIKE_ANGLES
 
+
+FLAT = 3  # places of the scan: beside a top that is bent no more than two are as high
 
 Lead = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
 
@@ -115,6 +117,7 @@ def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tupl
         most = np.hypot(power, aside)
         along, loose = along + power, loose + most
         lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
+    lost = np.where(lost > LOST_IN_ROUNDING * loose, lost, 0.0)
     return np.sqrt(lost * (loose + along)), np.abs(along)
 
 
@@ -177,12 +180,12 @@ def find_pressure(
                 right = [end for end, inward in _ends(driver_range) if _right(linkage, upto, lead, end, inward * ends)]
                 if right:
                     place, value = right[0], np.pi / 2
-                elif value > 0:
+                elif value > 0 and not _flat(angles[k : k + FLAT]):  # else rounding would tell where it is the largest
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
                     back = partial(_negative, linkage, upto, lead)
                     place, value = least(back, low, high)
                     place, value = top(back, place, min(high - place, place - low)), -value
-                    if value - angles[k] < ROUNDINGS * ROUNDOFF:  # a flat top: rounding alone would tell where it is
+                    if value - angles[k] < ROUNDINGS * ROUNDOFF:
                         place = float(q[k])
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
@@ -226,6 +229,11 @@ def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
                 with np.errstate(all="ignore"):
                     return angle(motion, kernel, at, lead)
     return np.full(np.shape(motion.q), np.nan)
+
+
+def _flat(angles: Real) -> bool:
+    """Whether the angle stays as it is over these places of the scan."""
+    return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
 
 
 def _ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:

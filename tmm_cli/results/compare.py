@@ -17,7 +17,8 @@ IGNORED = {"files", "part", "tmm", "problem", "warnings", "checks", "digits"}  #
 DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 NOTHING = 1e-4  # SI: where all values are smaller, with a tolerance of 1e-9 rounding of sums that vanish passes
-FLOOR = 1e-6  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-15 of it passes
+FLOOR = 1e-4  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-13 of it passes
+SOURCES = {"slope": "inertia"}  # what is a difference of values of another name rounds as these do
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ def _scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
         largest[_kind(path)] = max(largest.get(_kind(path), 0.0), peak)
     scales = {}
     for path, peak in peaks.items():
-        scales[path] = max(peak, FLOOR * largest[_kind(path)], NOTHING)
+        source = largest.get(SOURCES.get(_kind(path), ""), 0.0)
+        scales[path] = max(peak, FLOOR * max(largest[_kind(path)], source), NOTHING)
         if path[-1] == "angle":
             scales[path] = math.pi
         elif set(path) & SHARES:
