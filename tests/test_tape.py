@@ -28,13 +28,19 @@ def kind(name):
     return name[:2] if name[1] == "." and name[0] in "RMT" else name.rsplit(".", 1)[1]
 
 
+def largest_of_kinds(results):
+    """The largest size of each kind of values."""
+    largest = {}
+    for name, values in results.items():
+        here = np.max(np.abs(values[np.isfinite(values)]), initial=1e-9)
+        largest[kind(name)] = max(largest.get(kind(name), 0.0), here)
+    return largest
+
+
 def agree(one, other, tolerance=1e-12):
     """Within a share of the largest value of the same kind."""
     assert set(one) == set(other)
-    largest = {}
-    for name, values in other.items():
-        here = np.max(np.abs(values[np.isfinite(values)]), initial=1e-9)
-        largest[kind(name)] = max(largest.get(kind(name), 0.0), here)
+    largest = largest_of_kinds(other)
     for name in one:
         a, b = one[name], other[name]
         assert np.shape(a) == np.shape(b), name

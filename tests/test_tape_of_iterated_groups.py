@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import CLASS_III, linkage_of
-from test_tape import agree, plainly
+from test_tape import agree, kind, largest_of_kinds, plainly
 
 from tmm_cli.bench.methods import taped
 from tmm_cli.bench.methods.case import errors
@@ -65,9 +65,11 @@ def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say()
     for name in ("placed", "moving"):
         assert np.array_equal(sound[name], plain[name])
     found, expected, rest = batch(q), plainly(batch, q), alone(q[~taped])
+    largest = largest_of_kinds({name: rest[name] for name in found})
     for name in found:
         there = np.isfinite(rest[name])
-        assert np.allclose(found[name][~taped][there], rest[name][there], rtol=1e-13, atol=1e-16), name
+        # the tape hands these positions to the stages, with numbers that other instructions may have rounded otherwise
+        assert np.allclose(found[name][~taped][there], rest[name][there], rtol=1e-13, atol=1e-13 * largest[kind(name)])
     agree({n: found[n][taped] for n in found}, {n: expected[n][taped] for n in found}, 1e-12)
 
 

@@ -165,6 +165,14 @@ class StandstillError(LinkageError):
         self.place = place
 
 
+class LostDigitsError(LinkageError):
+    """The law of motion is lost in rounding: a motor changes the speed by too small a `share` of itself in a cycle."""
+
+    def __init__(self, share: float) -> None:
+        super().__init__(share)
+        self.share = share
+
+
 class WeakMotorError(LinkageError):
     """A motor gives `most` (N m, or N) at its best, and the loads of a cycle want `wanted` in the mean.
 

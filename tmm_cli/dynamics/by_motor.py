@@ -23,12 +23,14 @@ from tmm_cli.dynamics.curves import FIT, NODES, SUMS, Curve, nodes
 from tmm_cli.dynamics.motion import Law
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
-from tmm_cli.errors import LinkageError, RunawayError, StandstillError, WeakMotorError
+from tmm_cli.errors import LinkageError, LostDigitsError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.tolerances import LAST_STEP
 from tmm_cli.vectors import Real
 
 STEPS = 60  # of Newton's method, at most
 TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel begins where the one before ends
+SLIP_ROUNDED = 64 * 2.0**-53  # of the largest slip: a change over the cycle below that is rounding
+MOST_LOST = 1e-6  # of the slip: where rounding leaves more of it open there is no answer
 RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
 UNEVEN = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
 NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
@@ -82,13 +84,18 @@ class Cycle:
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
     def law(self, flywheel: float) -> Law:
-        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError."""
+        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError, LostDigitsError."""
         slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
         for _ in range(STEPS):
             end, slope, values = self._run(flywheel, slip)
             step = (slip - end) / (1 - slope) if slope < 1 else slip - end
             slip = min(slip - step, (slip + 1) / 2)
-            if slope < 1 and abs(step) <= LAST_STEP * float(np.max(np.abs(values))):
+            largest = float(np.max(np.abs(values)))
+            if slope < 1 and abs(step) <= LAST_STEP * largest:
+                break
+            if slope < 1 and abs(step) * (1 - slope) <= SLIP_ROUNDED * largest:  # the rest of the step is rounding
+                if MOST_LOST * (1 - slope) < SLIP_ROUNDED:
+                    raise self._lost(values, 1 - slope)
                 break
         else:
             raise self._unsteady(values)
@@ -99,7 +106,7 @@ class Cycle:
             Curve(self._edges, FIT @ own) for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
         )
         if abs(driving.total + self.machine.work_of_cycle) > UNEVEN * energy.length * self.motor.most:
-            raise self._unsteady(values)  # so heavy a flywheel that a cycle's change of its energy is rounding
+            raise self._lost(values, 1 - slope)  # so heavy a flywheel that a cycle's change of its energy is rounding
         # on the rising branch of the characteristic it is a good beginning for the next flywheel
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
         return Law(self.machine, flywheel, energy, driving, pace.summed())
@@ -112,6 +119,10 @@ class Cycle:
             speed = self.motor.idle * (1 - float(slips[quickest]))
             return RunawayError(pushing, self.motor.holds, self.motor.idle, float(x[quickest]), speed)
         return StandstillError(float(x[np.argmax(slips)]))
+
+    def _lost(self, values: Real, share: float) -> LinkageError:
+        """A machine of whose slip rounding leaves too few digits, if it does not run away."""
+        return self._unsteady(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property
     def _edges(self) -> Real:

@@ -7,13 +7,14 @@ import math
 from tmm_cli.errors import (
     BySpeedError,
     LongRunError,
+    LostDigitsError,
     NoFlywheelError,
     RunawayError,
     StandstillError,
     UnsettledError,
     WeakMotorError,
 )
-from tmm_cli.language import _
+from tmm_cli.language import _, numeral
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals.wording import shown, worded
@@ -57,6 +58,19 @@ def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
         path=("dynamics",), key=True,
         found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
         allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+    )  # fmt: skip
+
+
+@worded.register
+def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("the law of motion is lost in rounding: the links and the flywheel are too heavy for the motor to change "
+          "their speed"),
+        path=("dynamics",), key=True,
+        found=_("in a cycle the motor makes up for {share} of a difference of speed").format(
+            share=numeral(error.share, ".1g")
+        ),
+        allowed=_("masses and inertias that fit the motor: are their units right?"),
     )  # fmt: skip
 
 
