@@ -186,3 +186,19 @@ def test_an_angle_that_stays_the_same_is_the_largest_at_the_beginning_of_the_way
     tappet = results.pressure[2]
     assert np.ptp(tappet.angles) < 1e-14
     assert tappet.place == results.driver_range.start
+
+
+def test_a_parallelogram_drawn_at_any_angle_has_its_largest_angle_at_its_change_points():
+    """There a place of the scan may be the change point itself, where no angle is known."""
+    for drawn_at in (0, 40):
+        b, c = math.radians(drawn_at), math.radians(drawn_at + 60)
+        results = results_of({
+            "tmm": 1, "units": {"length": "m", "angle": "rad"},
+            "points": {"O": [0, 0], "C": [0.4 * math.cos(b), 0.4 * math.sin(b)]},
+            "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
+                      "3": {"points": ["C", "B"], "length": 0.1}},
+            "driver": {"link": 1, "speed": 10},
+            "sketch": {"at": c, "B": [0.4 * math.cos(b) + 0.1 * math.cos(c), 0.4 * math.sin(b) + 0.1 * math.sin(c)]},
+        }, "kinematics")  # fmt: skip
+        (pressure,) = results.pressure
+        assert pressure.largest == pytest.approx(math.pi / 2, abs=1e-6)

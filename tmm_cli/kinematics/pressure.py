@@ -205,8 +205,9 @@ def _other_extreme(
         return None
     q = scan.q
     angles = signed_angle(scan, scan.kernels[number], scan.placements[number], lead)
-    side = np.sign(angles[int(np.argmin(np.abs(q - place)))])
-    if not side or not np.ptp(angles[np.isfinite(angles)]) > ALIKE_ANGLES:
+    known = np.isfinite(angles)  # at a change point there is none
+    side = np.sign(angles[int(np.argmin(np.where(known, np.abs(q - place), np.inf)))])
+    if not side or not np.ptp(angles[known]) > ALIKE_ANGLES:
         return None
 
     def leaning(at: Real) -> Real:
