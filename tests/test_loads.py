@@ -5,7 +5,7 @@ import pytest
 from models import PARALLELOGRAM, solved_text
 from scipy.interpolate import CubicSpline
 
-from tmm_cli import solve
+from tmm_cli import prepare, solve
 from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.analysis.running import reduced_machine
 from tmm_cli.interpolation import Table
@@ -80,7 +80,7 @@ def test_friction_changes_its_sense_where_the_slider_turns_back(turns):
 @pytest.mark.parametrize("drawn_at", [0, 40, 77, 131])
 def test_what_stays_at_rest_is_not_resisted_however_the_drawing_lies(drawn_at):
     """The coupler of a parallelogram only translates, and the hinges on the frame do not move."""
-    results = solved_text(f"""tmm: 1
+    problem = problem_of(read_text(f"""tmm: 1
 parameters: {{b: {drawn_at} deg, c: {60 + drawn_at} deg}}
 points: {{O: [0, 0], C: [400*cos(b), 400*sin(b)]}}
 links:
@@ -94,10 +94,13 @@ loads:
   F: {{on: 1, at: O, force: {{resists: 10}}}}
   P: {{on: 3, at: C, force: {{resists: 10}}}}
 positions: {{count: 11, from: b + 7 deg}}
-""")
+""", "x.yaml"))  # fmt: skip
+    results = solve(problem)
     assert all(np.all(load.force == 0) and np.all(load.moment == 0) for load in results.loads)
     assert all(np.all(pair.force == 0) for pair in results.reactions.all)
     assert np.all(results.reactions.balance.moment == 0)
+    recorded = prepare(problem)(results.motion.q)
+    assert all(np.all(recorded[name] == 0) for name in ("T.1", "R.O", "R.A", "R.B", "R.C"))
 
 
 def test_an_output_that_only_translates_has_no_working_stroke():
