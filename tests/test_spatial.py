@@ -63,6 +63,11 @@ def loop(kinds):
         ("HRP", -3, 0, 4),  # screw and nut
         ("RESP", 2, 1, 0),  # plate and ball: turns about the plate's normal through the ball's centre
         ("REER", 2, 1, 0),  # two plates: slides along both
+        ("RSSC", 3, 2, 0),  # crank-slider with a round piston: its rod and the piston turn about their own axes
+        ("RLRP", 1, 1, 1),  # cam, roller, sliding follower: the roller turns; its axis must be parallel to the cam's
+        ("RBRP", 2, 1, 0),  # the same with a crowned roller
+        ("RLR", 0, 0, 1),  # cam and rocker: what turns is the rocker
+        ("RCSE", 3, 2, 0),  # a piston of a swashplate pump turns about its axis, its shoe about the plate's normal
     ],
 )
 def test_closed_chains_by_hand(kinds, mobility, local, redundant):
@@ -134,6 +139,44 @@ def test_a_ball_between_two_plates_keeps_all_but_two_of_its_freedoms():
     found = examine(chain("B01 B12 P02"))
     assert [(part.links, part.freedoms) for part in found.local] == [(("1",), 4)]
     assert found.mobility == 5
+
+
+def test_all_pistons_of_a_swashplate_pump_and_their_shoes_turn_on_their_own():
+    """Seven pistons in a rotating block, shoes on a plate: W = 6*15 - 5*1 - 4*7 - 3*14 = 15, all but one local."""
+    legs = " ".join(f"C1{x} S{x}{x.upper()} E{x.upper()}0" for x in "abcdefg")
+    found = examine(chain(f"R01 {legs}"), wanted=1)
+    assert (found.mobility, found.local_mobility, found.redundant) == (15, 14, 0)
+    assert {part.links for part in found.local} == {(x,) for x in "abcdefgABCDEFG"}
+
+
+@pytest.mark.parametrize(
+    "text, links",
+    [
+        ("R01 R12 R23 R30", ("1", "2", "3")),  # parallel axes let a planar four-bar move: the count does not see them
+        ("R01 S12 S23 R30", ()),
+        ("R01 R12 R23 R30 R34 R45 R56 R67 R78", ("1", "2", "3")),  # an arm on it, W = 3, moves alone
+        ("S01 S12 R20", ("1", "2")),  # W = 1: a strut turns about its own line, which is all that moves
+        ("R01 R12 R23", ()),  # open
+    ],
+)
+def test_a_chain_that_cannot_move_by_the_count_is_reported(text, links):
+    assert examine(chain(text)).immobile == links
+    assert examine(chain(text), wanted=1).immobile == (), "its dimensions are special then, and q is counted"
+
+
+def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant_constraints(tmp_path):
+    file = tmp_path / "x.yaml"
+    four_bar = "{A: [0, 1], B: [1, 2], C: [2, 3], D: [0, 3]}"
+    pairs = re.sub(r"(\[\d, \d\])", r"{between: \1, kind: turning}", four_bar)
+    file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}}}}}\n", encoding="utf-8")
+    shown = " ".join(tmm("structure", file).stdout.split())
+    assert (
+        "W - Wm < 1: by the count links 1, 2, 3 cannot move. If they do, by special dimensions such as parallel axes, "
+        "give the mobility that is meant (wanted: 1): the redundant constraints q are then counted."
+    ) in shown
+    file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}, wanted: 1}}}}\n", encoding="utf-8")
+    shown = " ".join(tmm("structure", file).stdout.split())
+    assert "q = 3: the chain moves with exact dimensions only, by the count it cannot." in shown
 
 
 def test_contours_are_short_and_start_near_the_frame():
@@ -379,7 +422,7 @@ def test_every_random_linkage_gets_a_proposal_unless_a_part_of_it_is_a_truss_on_
         linkage = random_linkages.linkage(seed, kinds)
         structure = analyse(linkage)
         still = {FRAME}
-        for group in structure.groups:
+        for group in structure.all_groups:
             if all({p.i, p.j} - set(group.links) <= still for p in group.outer):
                 still |= set(group.links)
         found = space(linkage, structure)

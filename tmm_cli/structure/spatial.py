@@ -30,6 +30,8 @@ KINDS: dict[str, int] = {  # of pairs, in the words of a file, by which they are
 }
 TELESCOPIC = {"sliding", "screw", "cylindrical"}
 BALL_OR_PLATE = {"spherical", "planar"}
+AXLES = {"turning": 1, "cylindrical": 2}  # of rollers, with the freedoms that a roller on it has by itself
+CONTACTS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  # of rollers
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,16 @@ class SpatialChain:
         parts = "".join(f" - {f'{weight}*' if weight > 1 else ''}{many}" for weight, many in terms if many)
         return f"{SPACE}*{len(self.links)}{parts} = {self.mobility}"
 
+    def around(self, link: str) -> tuple[SpatialPair, ...]:
+        """The pairs of a link."""
+        return tuple(pair for pair in self.pairs if link in (pair.i, pair.j))
+
+    def only(self, links: Iterable[str]) -> SpatialChain:
+        """The chain of some of its links."""
+        kept = tuple(links)
+        ends = {FRAME, *kept}
+        return SpatialChain(kept, tuple(pair for pair in self.pairs if {pair.i, pair.j} <= ends))
+
     def held(self, link: str) -> SpatialChain:
         """The chain with one more link held: a part of the frame. Its pairs with the frame have nothing to do then."""
         pairs = (
@@ -95,12 +107,17 @@ class LocalFreedom:
     freedoms: int
     ends: tuple[SpatialPair, ...]
 
+    @property
+    def kinds(self) -> set[str]:
+        """The kinds of the pairs that hold them."""
+        return {pair.kind for pair in self.ends}
+
 
 @dataclass(frozen=True)
 class Findings:
     """What the count says of a chain.
 
-    local: the local freedoms that are certain from the kinds of pairs; given_local: those that were told instead (a
+    local: the local freedoms that follow from the kinds of pairs; given_local: those that were told instead (a
     number). wanted: mobility that the chain is meant to have. output: the link to be held for the manoeuvrability.
     """
 
@@ -124,6 +141,25 @@ class Findings:
     def redundant(self) -> int | None:
         """Redundant (passive) constraints q = Wo + Wm - W, when the wanted mobility Wo is given."""
         return None if self.wanted is None else self.wanted + self.local_mobility - self.mobility
+
+    @property
+    def effective(self) -> int:
+        """The mobility without the local freedoms."""
+        return self.mobility - self.local_mobility
+
+    @property
+    def immobile(self) -> tuple[str, ...]:
+        """The links that by the count cannot move: all of them, or those in contours when only the open branches move.
+
+        Empty where a wanted mobility is given: the dimensions then make constraints redundant.
+        """
+        if self.wanted is not None or not self.contours:
+            return ()
+        if self.effective < 1:
+            return self.chain.links
+        closed = self.chain.only(link for link in self.chain.links if link not in self.branches)
+        local = sum(part.freedoms for part in self.local if not {*part.links} & {*self.branches})
+        return closed.links if self.branches and self.given_local is None and closed.mobility - local < 1 else ()
 
     @property
     def manoeuvrability(self) -> int | None:
@@ -153,15 +189,39 @@ def examine(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> Findings:
     """Everything that can be counted of a chain."""
-    return Findings(chain, contours(chain.pairs, chain.links), local_freedoms(chain), given_local, wanted, output)
+    found = contours(chain.pairs, chain.links)
+    closed = {link for contour in found for link in contour.links}
+    certain = local_freedoms(chain)
+    spare = chain.mobility - sum(part.freedoms for part in certain) - (1 if wanted is None else wanted)
+    pistons = [p for p in pistons_on_balls(chain) if closed.issuperset(p.links) and not _shared(p, certain)]
+    order = {link: number for number, link in enumerate(chain.links)}
+    local = sorted((*certain, *pistons[: max(spare, 0)]), key=lambda part: order[part.links[0]])
+    return Findings(chain, found, tuple(local), given_local, wanted, output)
+
+
+def _shared(part: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
+    return any({*part.links} & {*other.links} for other in others)
+
+
+def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
+    """Links between a cylindrical pair and a ball: they rotate about the axis of the pair if the ball lies on it.
+
+    Kinds of pairs do not say where the ball lies, so these are local freedoms only of a chain that has freedoms to
+    spare.
+    """
+    return tuple(
+        LocalFreedom((link,), 1, ends) for link in chain.links
+        if len(ends := chain.around(link)) == 2 and {p.kind for p in ends} == {"cylindrical", "spherical"}
+    )  # fmt: skip
 
 
 def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
-    """Local freedoms that are certain from the kinds of pairs, whatever the dimensions.
+    """Local freedoms that follow from the kinds of pairs, whatever the dimensions.
 
     A link between two balls turns about the line of their centres; between a ball and a plate, about the normal
-    through the centre; between two plates it slides along both. So does a strut of parts that slide in one another.
-    Other links have at least the freedoms that are left when their neighbours are held.
+    through the centre; between two plates it slides along both. So does a strut of parts that slide in one another. A
+    roller turns about its axle on a moving link. Other links have at least the freedoms that are left when their
+    neighbours are held.
     """
     around: dict[str, list[SpatialPair]] = {link: [] for link in (FRAME, *chain.links)}
     for pair in chain.pairs:
@@ -175,7 +235,20 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
         freedoms = _certain(inner, ends)
         if freedoms > 0 and len({other for p in ends for other in (p.i, p.j) if other not in links}) > 1:
             found.append(LocalFreedom(links, freedoms, tuple(ends)))
-    return tuple(found)
+    rollers = [part for part in _rollers(chain) if not _shared(part, found)]
+    return (*found, *rollers)
+
+
+def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
+    """Links that touch another one and have their axle on a moving link; of two that touch one another, the later."""
+    contacts: dict[str, LocalFreedom] = {}
+    for link in chain.links:
+        ends = chain.around(link)
+        axles = [p for p in ends if p.kind in AXLES and FRAME not in (p.i, p.j)]
+        contact = [p for p in ends if p.kind in CONTACTS]
+        if len(ends) == 2 and len(axles) == len(contact) == 1 and axles[0].other(link) != contact[0].other(link):
+            contacts[contact[0].name] = LocalFreedom((link,), AXLES[axles[0].kind], ends)
+    return contacts.values()
 
 
 def _certain(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:

@@ -9,7 +9,7 @@ from tmm_cli.language import _
 from tmm_cli.results.reports.space import contour_table, redundancy
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import ROMAN
-from tmm_cli.structure.spatial import Findings, LocalFreedom
+from tmm_cli.structure.spatial import AXLES, CONTACTS, Findings, LocalFreedom
 
 
 def tables(results: ChainResults) -> Iterable[Table]:
@@ -38,7 +38,7 @@ def _facts(found: Findings) -> Iterable[tuple[str, str]]:
     yield _("independent contours K = p - n"), str(len(chain.pairs) - len(chain.links))
     yield _("chain"), _form(found)
     yield _("local freedoms Wm"), str(found.local_mobility)
-    yield _("without them, W - Wm"), str(found.mobility - found.local_mobility)
+    yield _("without them, W - Wm"), str(found.effective)
     if found.wanted is not None and found.redundant is not None:
         q = redundancy(found.wanted, found.local_mobility, found.mobility, found.redundant)
         yield _("redundant constraints q = Wo + Wm - W"), q
@@ -56,6 +56,15 @@ def _notes(found: Findings) -> Iterable[str]:
     seen = sum(x.freedoms for x in found.local)
     if found.given_local is not None and found.given_local < seen:
         yield _("{given} local freedoms are given, the pairs show {found}.").format(given=found.given_local, found=seen)
+    if found.immobile:
+        yield _(
+            "W - Wm < 1: by the count links {links} cannot move. If they do, by special dimensions such as parallel "
+            "axes, give the mobility that is meant (wanted: 1): the redundant constraints q are then counted."
+        ).format(links=", ".join(found.immobile))
+    if found.redundant is not None and found.redundant > 0 and found.effective < 1:
+        yield _("q = {q}: the chain moves with exact dimensions only, by the count it cannot.").format(
+            q=found.redundant
+        )
     if found.redundant is not None and found.redundant < 0:
         yield _("q < 0: the chain has {many} freedoms more than are wanted.").format(many=-found.redundant)
     m, idle = found.manoeuvrability, found.idle_manoeuvrability
@@ -68,7 +77,11 @@ def _notes(found: Findings) -> Iterable[str]:
 
 
 def _how(part: LocalFreedom) -> str:
-    kinds = {p.kind for p in part.ends}
+    kinds = part.kinds
+    if kinds & CONTACTS and kinds & {*AXLES}:
+        return _("rotates about its own axis as a roller")
+    if part.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
+        return _("rotates about its own axis if the ball lies on it")
     if part.freedoms == 1 and len(part.ends) == 2 and kinds <= {"spherical", "planar"}:
         if kinds == {"spherical"}:
             return _("turns about the line of both centres")
