@@ -226,7 +226,7 @@ def expected_link(linkage, structure, hinge):
     cranks = {driver.link for driver in linkage.drivers} & set(hinge.links)
     if cranks:
         return cranks
-    group = next(g for g in structure.groups if set(g.links) & set(hinge.links))
+    group = next(g for g in structure.all_groups if set(g.links) & set(hinge.links))
     own = [link for link in hinge.links if link in group.links]
     joined = [n for n in own if any({n, FRAME} == {p.i, p.j} for p in structure.pairs)]
     return {min(joined or own, key=list(linkage.links).index)}

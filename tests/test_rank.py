@@ -9,11 +9,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bank import EVERY, problem, solved
 from models import solved_text
 from test_commands import tmm
+from test_jams import planets
 
+from tmm_cli import solve
+from tmm_cli.assembly.rank import mobile
+from tmm_cli.linkage import FRAME
 from tmm_cli.problem.errors import ProblemError
+from tmm_cli.results.reports.structure import left_out
 from tmm_cli.structure.assur import Passive, analyse, ties_of
+from tmm_cli.structure.contours import classification
 
 WITH_A_DYAD = Path("tests/data/redundant-first.yaml").read_text(encoding="utf-8")
 
@@ -62,7 +69,8 @@ def test_the_second_coupler_of_a_parallelogram_is_passive_and_named():
     (passive,) = structure.passive
     assert (passive.pair, passive.links) == ("E", ("3", "4"))
     assert passive.among == ("0", "1", "2", "3", "4")
-    assert structure.formula == "I(0,1) -> II(2,3) -> II(4)"
+    assert structure.formula == "I(0,1) -> II(2,3)"
+    assert [*left_out(structure)] == ["link 4 is redundant, adds q = 1"]
 
 
 def test_the_parallelogram_with_two_couplers_moves_as_one():
@@ -136,6 +144,167 @@ def in_order(text, *links):
     assert sorted(names) == sorted(links)
     lines[first : first + len(links)] = [lines[first + names.index(link)] for link in links]
     return "\n".join([*lines, ""])
+
+
+FOUR_BAR = """tmm: 1
+points: {O: [0, 0], C: [300, 0]}
+links:
+  1: {points: CRANK}
+  2: {points: [A, B], length: 300}
+  3: {points: ROCKER}
+MORE
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: 60 deg, B: [340, 196]SKETCHED}
+"""
+
+
+def four_bar(*more, crank="[O, A], length: 100", rocker="[C, B], length: 200", sketched=""):
+    """A four-bar linkage with further links."""
+    text = FOUR_BAR.replace("CRANK", crank).replace("ROCKER", rocker).replace("SKETCHED", sketched)
+    return text.replace("MORE", "\n".join(f"  {line}" for line in more))
+
+
+ON_THE_SECOND = """tmm: 1
+points: {O: [0, 0], C: [300, 0]}
+guides: {x: {through: [0, -200], angle: 0}}
+links:
+  1: {points: {O: [0, 0], A: [100, 0], D: [60, 0]}}
+  2: {points: {A: [0, 0], B: [300, 0], H: [100, 60]}}
+  3: {points: {C: [0, 0], B: [100, 0], E: [60, 0]}}
+  4: {points: {D: [0, 0], E: [300, 0], F: [150, 50]}}
+  5: {points: [F, G], length: 400}
+  6: {points: [G], slides: x}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 60 deg, B: [350, 87], H: [150, 147], D: [30, 52], E: [330, 52], F: [180, 102], G: [400, -200]}
+"""
+ON_BOTH = (
+    ON_THE_SECOND.replace("guides: {", "guides: {z: {through: [0, 500], angle: 0}, ")
+    .replace("slides: x}\n", "slides: x}\n  7: {points: [H, K], length: 450}\n  8: {points: [K], slides: z}\n")
+    .replace("G: [400, -200]", "G: [400, -200], K: [428, 500]")
+)
+WHEELS = """tmm: 1
+points: {O: [0, 0], C: [300, 0], Q: [600, 0]}
+links:
+  1: {points: [O, A], length: 100}
+  2: {points: {A: [0, 0], B: [300, 0], D: [600, 0]}}
+  3: {points: [C, B], length: 100}
+  4: {points: [Q, D], length: 100}
+driver: {link: 1, speed: 1 rad/s}
+sketch: {at: 60 deg, B: [350, 87], D: [650, 87]}
+output: 3
+"""
+
+
+@pytest.mark.parametrize(
+    "text, formula, sentences",
+    [
+        pytest.param(
+            four_bar("4: {points: [B, D], length: 150}", "5: {points: [A, D], length: 180}",
+                     sketched=", D: [130, 270]"),
+            "I(0,1) -> II(2+4+5,3)", ["links 2, 4, 5 are rigid to one another and count as one"],
+            id="three bars hinged in a triangle",
+        ),
+        pytest.param(
+            four_bar("4: {points: {X: [0, 0], P: [0, 20], A: [60, 0]}}",
+                     crank="{O: [0, 0], X: [40, 0], P: [40, 20]}", sketched=", X: [20, 34], P: [3, 44], A: [50, 86]"),
+            "I(0,1+4) -> II(2,3)", ["links 1, 4 are rigid to one another and count as one, add q = 1"],
+            id="a crank of two links bolted together",
+        ),
+        pytest.param(
+            four_bar("4: {points: {U: [0, 0], V: [20, 20], W: [40, 0]}}", rocker="[W, B], length: 200",
+                     sketched=", W: [320, 0]").replace("C: [300, 0]", "U: [280, 0], V: [300, 20]"),
+            "I(0,1) -> II(2,3)", ["rigid to the frame, and part of it: 4, adds q = 1"],
+            id="a bracket bolted to the frame",
+        ),
+        pytest.param(
+            ON_THE_SECOND, "I(0,1) -> II(3,4) -> II(5,6)", ["link 2 is redundant, adds q = 1"],
+            id="without the second coupler the dyad on it would fall apart",
+        ),
+        pytest.param(
+            ON_BOTH, "I(0,1) -> II(2,3) -> II(4) -> II(5,6), II(2,3) -> II(7,8)",
+            ["pair E counts as a higher pair: one of its two constraints is redundant, adds q = 1"],
+            id="neither coupler can be left out",
+        ),
+        pytest.param(
+            WHEELS, "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"],
+            id="three coupled wheels, output the second",
+        ),
+        pytest.param(
+            WHEELS.replace("output: 3", "output: 4"), "I(0,1) -> II(2,4)", ["link 3 is redundant, adds q = 1"],
+            id="three coupled wheels, output the third",
+        ),
+        pytest.param(
+            WEDGE, "I(0,1) -> II(2)",
+            ["pair B' counts as a higher pair: one of its two constraints is redundant, adds q = 1"],
+            id="a wedge: its follower is the output",
+        ),
+        pytest.param(
+            GUIDES.replace("ANGLE", "0"), "I(0,1) -> II(2,3)", ["pair y is redundant, adds q = 2"],
+            id="a second parallel guide",
+        ),
+        pytest.param(
+            planets(3, "h"), "I(0,h) -> II(p0) -> II(s)",
+            ["link p1 is redundant, adds q = 1", "link p2 is redundant, adds q = 1"], id="three planets",
+        ),
+    ],
+)  # fmt: skip
+def test_rigid_links_count_as_one_and_redundant_links_and_pairs_are_left_out_of_the_formula(text, formula, sentences):
+    structure = solved_text(text, stage="structure").structure
+    assert (structure.formula, [*left_out(structure)]) == (formula, sentences)
+    assert [group.mobility for group in structure.groups] == [0] * len(structure.groups)
+    n, lower, higher = structure.count
+    assert 3 * n - 2 * lower - higher == 1
+
+
+@pytest.mark.parametrize(
+    "name, formula, sentences",
+    [
+        ("crossed-slots", "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"]),
+        ("parallel-couplers", "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"]),
+        ("four-bars/transfer", "I(0,1) -> II(2,3)", [f"link {n} is redundant, adds q = 1" for n in (4, 5, 6)]),
+        ("settings/breaking-rod", "I(0,1) -> II(2+3,4)",
+         ["links 2, 3 are rigid to one another and count as one, add q = 1"]),
+        ("settings/safety-rod", "I(0,1) -> II(2,3) -> II(4+5,6)",
+         ["links 4, 5 are rigid to one another and count as one, add q = 1"]),
+    ],
+)  # fmt: skip
+def test_all_redundant_linkages_of_the_bank_are_of_class_ii(name, formula, sentences):
+    structure = solve(problem(name), "structure").structure
+    assert (structure.formula, structure.roman, [*left_out(structure)]) == (formula, "II", sentences)
+    if name == "four-bars/transfer":
+        assert classification(structure) == ("closed", "simple"), "not complex, of several types"
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_every_group_of_the_bank_is_an_assur_group(name):
+    """3n - 2p1 - p2 = 0 for each group, and with the drivers' links it is the number of drivers."""
+    structure = mobile(problem(name).linkage)
+    assert [group.mobility for group in structure.groups] == [0] * len(structure.groups)
+    n, lower, higher = structure.count
+    assert 3 * n - 2 * lower - higher == len(structure.drivers) == structure.mobility + structure.redundant
+    reduction = structure.reduction
+    added = [*reduction.rigid, *reduction.links, *reduction.pairs]
+    assert sum(redundant.constraints for redundant in added) == structure.redundant
+    assert {n for group in structure.all_groups for n in group.links} == {
+        n for n in structure.links if n not in [driver.link for driver in structure.drivers if driver.base == FRAME]
+    }
+
+
+def test_kinematics_and_forces_keep_what_the_structural_formula_leaves_out():
+    """The stone that the formula leaves out carries the disc where the other one is dead, and its pairs bear forces."""
+    results = solved("crossed-slots")
+    assert [sorted(kernel.group.links) for kernel in results.kernels] == [["2", "3", "4"]]
+    assert all(np.all(np.isfinite(results.reactions.of(pair).force)) for pair in ("A", "B", "B'"))
+
+
+def test_the_table_of_the_structure_says_what_is_redundant_below_the_formula():
+    shown = tmm("structure", "problems/parallel-couplers.yaml").stdout
+    lines = [" ".join(line.split()) for line in shown.splitlines()]
+    at = lines.index("formula of structure I(0,1) → II(2,3)")
+    assert lines[at + 1 : at + 3] == ["link 4 is redundant, adds q = 1", "W of the formula of structure 3·3 − 2·4 = 1"]
+    assert "2, 3 II 2 RRR B A (1-2), C (0-3) 3·2 − 2·3 = 0" in lines
+    assert "Pairs that leave no redundant constraints" not in lines, "q = 1 is left in the plane"
+    assert "In the plane: link 4 is redundant, adds q = 1." in lines
 
 
 def test_whatever_the_order_of_links_each_group_is_solved_after_those_it_is_attached_to():

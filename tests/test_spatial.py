@@ -440,7 +440,7 @@ def test_words_of_the_classification():
     linkage = build(read_text(alone.replace("[O, A], length: 1", "{O: [0, 0], A: [1, 0]}"), "alone.yaml")).linkage
     assert classification(analyse(linkage)) == ("open", "elementary")
     assert space(linkage, analyse(linkage)).replacements == ()
-    twice = analyse(random_linkages.linkage(1, ("RRR", "RRR")))
+    twice = analyse(random_linkages.linkage(4, ("RRR", "RRR")))
     assert classification(twice) == ("closed", "complex", "same type")
 
 

@@ -10,23 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, islice
 
 import numpy as np
 
+from tmm_cli.assembly.left_out import MOST_TRIES, leave_out
 from tmm_cli.assembly.search import close_from_afar, placed_by_angles, sketched_angles
 from tmm_cli.errors import MobilityError
 from tmm_cli.groups.newton import Newton
 from tmm_cli.groups.sequence import drives_at, frame_state
 from tmm_cli.groups.state import Pose, State
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.structure.assur import Group, Passive, Structure, analyse, ties_of
+from tmm_cli.structure.assur import Group, Passive, Structure, analyse, reduced, ties_of
 from tmm_cli.structure.graph import Tie
+from tmm_cli.structure.reduction import Reduction
 from tmm_cli.tolerances import CONVERGED, REDUNDANT, SHARED
 from tmm_cli.vectors import Real
 
 STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both ways
-MOST_TRIES = 3000
 STARTS = 200
 
 
@@ -54,7 +55,8 @@ def by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
     rank, whole = (int(np.linalg.matrix_rank(rows, rtol=REDUNDANT)) for rows in (undriven, matrix))
     if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _moves(kernel, linkage, state):
         return None
-    return _without_passive(linkage, structure, kernel, undriven, len(undriven) - rank)
+    everything = {**poses, **kernel.poses_of(state)}
+    return _without_passive(linkage, structure, kernel, undriven, everything, len(undriven) - rank)
 
 
 def _whole(linkage: Linkage, structure: Structure) -> Newton:
@@ -93,9 +95,9 @@ def _moves(kernel: Newton, linkage: Linkage, state: State) -> bool:
 
 
 def _without_passive(
-    linkage: Linkage, structure: Structure, kernel: Newton, undriven: Real, number: int
+    linkage: Linkage, structure: Structure, kernel: Newton, undriven: Real, poses: Mapping[str, Pose], number: int
 ) -> Structure | None:
-    """Leave out so many conditions, the last ones of the file first, that the count is right."""
+    """Leave out so many conditions that the count is right; of what the report leaves out first, then the last ones."""
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # combinations of rows that say nothing new
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]
     heavy = np.max(np.abs(left), axis=0) > SHARED
@@ -103,27 +105,31 @@ def _without_passive(
     pairs = {p.name: p for p in structure.pairs}
     among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))
     keys = {pairs[name].point or name if pairs[name].kind == "R" else name for name in names}
-    ties = [(k, tie) for k, tie in enumerate(ties_of(linkage)) if tie.name in keys]
-    choices = combinations_with_replacement([k for k, _ in reversed(ties)], number)
-    for tried, drop in enumerate(choices):
-        if tried > MOST_TRIES:
-            break
-        dropped = {k: drop.count(k) for k in drop}
-        if any(count > dict(ties)[k].constraints for k, count in dropped.items()):
-            continue
-        found = analyse(linkage, dropped)
-        if found.freedom == len(linkage.drivers) and not found.redundant_pairs and not found.under_constrained:
-            return replace(found, passive=tuple(_passives(found, dropped, dict(ties), among)))
+    ties = {k: tie for k, tie in enumerate(ties_of(linkage)) if tie.name in keys}
+    reduction = leave_out(linkage, poses, structure)
+    for report in (reduction, None) if reduction else (None,):
+        first = dict(report.conditions) if report else {}
+        from_ties = [k for k, tie in ties.items() if report is None or report.touches(tie)]
+        choices = combinations_with_replacement(from_ties[::-1], number - sum(first.values()))
+        for drop in islice(choices, MOST_TRIES):
+            dropped = first | {k: drop.count(k) for k in drop}
+            if any(count > ties[k].constraints for k, count in dropped.items()):
+                continue
+            found = analyse(linkage, dropped)
+            if found.freedom == len(linkage.drivers) and not found.redundant_pairs and not found.under_constrained:
+                whole = replace(found, passive=tuple(_passives(found, dropped, ties, among)))
+                return reduced(linkage, whole, report or Reduction(conditions=dropped))
     return None
 
 
 def _passives(
     found: Structure, dropped: Mapping[int, int], ties: Mapping[int, Tie], among: tuple[str, ...]
 ) -> Iterable[Passive]:
-    placed = {link: k for k, group in enumerate(found.groups) for link in group.links}
+    placed = {link: k for k, group in enumerate(found.all_groups) for link in group.links}
     for k, count in dropped.items():
         name = ties[k].name
         joined = [p for p in found.pairs if name in (p.name, p.point)]
+        joined = [p for p in joined if ties[k].b in (p.i, p.j)] or joined  # in a compound hinge: that of the tie's link
         pair = max(joined, key=lambda p: max(placed.get(p.i, -1), placed.get(p.j, -1)))
         links = sorted((pair.i, pair.j), key=lambda n: placed.get(n, -1))
         yield Passive(pair.name, count, (links[0], links[1]), among)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.results.reports.structure import ROLES
+from tmm_cli.results.reports.structure import ROLES, left_out
 from tmm_cli.results.understood import motion
 from tmm_cli.structure.assur import Group, Structure
 
@@ -27,6 +27,8 @@ def in_words(results: Results) -> Iterable[str]:
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=structure.roman
     )
+    for sentence in left_out(structure):
+        yield _("For the formula: {what}.").format(what=sentence)
     for group in structure.groups:
         text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
         yield text.format(

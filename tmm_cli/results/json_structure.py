@@ -66,6 +66,28 @@ GROUP = record(
     Field("inner", NAMES, "inner pairs", lambda group: [pair.name for pair in group.inner]),
     Field("outer", NAMES, "outer pairs", lambda group: [pair.name for pair in group.outer]),
 )
+RIGID = record(
+    "links that are rigid to one another",
+    Field("links", NAMES, "links; 0 is the frame"),
+    Field("redundant", NUMBER, "redundant constraints q among them", "constraints"),
+)
+REDUNDANT_LINK = record(
+    "a redundant link, or several that are rigid to one another",
+    Field("links", NAMES, "links"),
+    Field("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
+)
+REDUNDANT_PAIR = record(
+    "a pair with redundant constraints",
+    Field("pair", TEXT, "pair"),
+    Field("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
+    Field("left", NUMBER, "its constraints that are left"),
+)
+REDUCTION = record(
+    "what is redundant or rigid",
+    Field("rigid", list_of(RIGID), "sets of links that count as one"),
+    Field("links", list_of(REDUNDANT_LINK), "redundant links"),
+    Field("pairs", list_of(REDUNDANT_PAIR), "redundant pairs"),
+)
 
 
 STRUCTURE = record(
@@ -85,7 +107,9 @@ STRUCTURE = record(
           lambda results: classification(results.structure)),
     Field("formula", TEXT, "formula of structure", "structure.formula"),
     Field("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
-    Field("groups", list_of(GROUP), "in solving order", "structure.groups"),
+    Field("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),
+    Field("reduction", REDUCTION, "what the groups and the formula leave out", "structure.reduction",
+          lambda results: bool(results.structure.reduction)),
 )  # fmt: skip
 
 CONTOUR = record(

@@ -32,10 +32,10 @@ def steps(results: Results) -> Table:
     given = _("the drivers: their places are given") if linkage.others else _("the driver: its place is given")
     rows = [("1", drivers, given, "", _("in closed form"))]
     solved = {link: kernel for kernel in results.kernels for link in kernel.group.links}
-    for number, group in enumerate(results.structure.groups, 2):
+    for number, group in enumerate(results.structure.solved, 2):
         kernel = solved.get(group.links[0])
         how = "" if kernel is None else _how(kernel)
-        rows.append((str(number), f"{group.title} {group.type}", _neighbours(group), _assembly(kernel), how))
+        rows.append((str(number), f"{group.title} {group.type}".strip(), _neighbours(group), _assembly(kernel), how))
     note = _(
         "Each group: places, velocities, accelerations in closed form (places by iteration where "
         "the assembly is followed); then reactions, last group first; then the Zhukovsky lever "

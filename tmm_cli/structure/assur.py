@@ -1,7 +1,7 @@
 """Mobility, pairs and Assur groups of a linkage, from who is joined to whom alone.
 
-The order of a group is the number of its outer pairs; its class see group_class. A pair that is passive as a whole (an
-idle wheel in a ring) holds nothing, and gives a group no higher class.
+The order of a group is the number of its outer pairs; its class see group_class. The groups of the structural report
+are those of the linkage without its redundant links and pairs (see reduction); kinematics solves groups of all links.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Mesh, Slide
-from tmm_cli.structure.graph import Tie, components, count
+from tmm_cli.structure.graph import Count, Tie, components, count, rigid_sets
 from tmm_cli.structure.group_class import group_class
+from tmm_cli.structure.reduction import NOTHING, Reduction, RedundantPair, RigidSet
 
 ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
@@ -55,7 +56,8 @@ class Group:
     """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type.
 
     drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are.
-    redundant_pairs: names of its pairs that are passive as a whole; they do not count for its order.
+    rigid: links of it that are rigid to one another and count as one. as_higher: names of lower pairs that count as
+    higher ones, because one of their two conditions is redundant.
     """
 
     links: tuple[str, ...]
@@ -64,7 +66,8 @@ class Group:
     group_class: int
     type: str
     drivers: tuple[Driver, ...] = ()
-    redundant_pairs: tuple[str, ...] = ()
+    rigid: tuple[tuple[str, ...], ...] = ()
+    as_higher: tuple[str, ...] = ()
 
     def own(self, pair: Pair) -> str:
         """The link of the group in one of its outer pairs."""
@@ -84,7 +87,27 @@ class Group:
 
     @property
     def order(self) -> int:
-        return sum(pair.name not in self.redundant_pairs for pair in self.outer)
+        """The number of its external pairs."""
+        return len(self.outer)
+
+    @property
+    def bodies(self) -> tuple[tuple[str, ...], ...]:
+        """Its links, those that are rigid to one another together."""
+        return tuple(dict.fromkeys(next((r for r in self.rigid if link in r), (link,)) for link in self.links))
+
+    @property
+    def count(self) -> tuple[int, int, int]:
+        """n, p1, p2 of 3n - 2p1 - p2, which is zero; the two links of a driven pair count as one."""
+        pairs = (*self.inner, *self.outer)
+        lower = sum(pair.lower and pair.name not in self.as_higher for pair in pairs)
+        driven = len(self.drivers)
+        return len(self.bodies) - driven, lower - driven, len(pairs) - lower
+
+    @property
+    def mobility(self) -> int:
+        """3n - 2p1 - p2: zero for an Assur group."""
+        n, lower, higher = self.count
+        return 3 * n - 2 * lower - higher
 
     def rebind(self, linkage: Linkage) -> Group:
         """The same group with the numbers of another linkage."""
@@ -100,7 +123,7 @@ class Group:
     @property
     def title(self) -> str:
         """II(2,3): class and links, as the formula of structure writes it."""
-        return f"{self.roman}({','.join(self.links)})"
+        return f"{self.roman}({','.join(map('+'.join, self.bodies))})"
 
 
 @dataclass(frozen=True)
@@ -122,9 +145,10 @@ class Structure:
     """The structure of a linkage.
 
     mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
-    over-held). groups are in solving order. under_constrained and redundant_pairs name what is wrong when the mobility
-    is not the number of drivers. passive: what the numerical rank found to be redundant; mobility is then less than
-    the truth by as much.
+    over-held). groups are those of the structural report, all_groups those of all links, both in solving order;
+    reduction says what the report leaves out. under_constrained and redundant_pairs name what is wrong when the
+    mobility is not the number of drivers. passive: what the numerical rank found to be redundant; mobility is then
+    less than the truth by as much.
     """
 
     links: tuple[str, ...]
@@ -136,6 +160,8 @@ class Structure:
     under_constrained: tuple[str, ...] = ()
     redundant_pairs: tuple[tuple[str, tuple[str, ...]], ...] = ()
     passive: tuple[Passive, ...] = ()
+    all_groups: tuple[Group, ...] = ()
+    reduction: Reduction = NOTHING
 
     @property
     def redundant(self) -> int:
@@ -159,8 +185,9 @@ class Structure:
 
     def rebind(self, linkage: Linkage) -> Structure:
         """The same structure with the numbers of another linkage."""
-        groups = tuple(group.rebind(linkage) for group in self.groups)
-        return replace(self, pairs=tuple(pair.rebind(linkage) for pair in self.pairs), groups=groups)
+        groups, all_groups = (tuple(g.rebind(linkage) for g in some) for some in (self.groups, self.all_groups))
+        pairs = tuple(pair.rebind(linkage) for pair in self.pairs)
+        return replace(self, pairs=pairs, groups=groups, all_groups=all_groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
         """The pair in which a driver works; in a compound hinge its two links may both be attached to a third."""
@@ -176,14 +203,33 @@ class Structure:
     @property
     def formula(self) -> str:
         """Structural formula: I(0,1) -> II(2,3) -> II(4,5); branches as structural_formula() writes them."""
-        titles = {driver.link: f"I({driver.base},{driver.link})" for driver in self.drivers}
+        titles = {driver.link: self.driver_title(driver) for driver in self.drivers}
         parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
-        cranks = {driver.link: titles[driver.link] for driver in self.drivers if driver.base == FRAME}
-        title_of = cranks | {link: group.title for group in self.groups for link in group.links}
+        title_of = {
+            link: titles[driver.link]
+            for driver in self.drivers if driver.base == FRAME for link in self.rigid_with(driver.link)
+        }  # fmt: skip
+        title_of |= {link: group.title for group in self.groups for link in group.links}
         for group in self.groups:
             driving = [titles[driver.link] for driver in group.drivers]
-            parts[group.title] = [*driving, *(title_of[link] for link in group.known if link != FRAME)]
+            parts[group.title] = [*driving, *(title_of[link] for link in group.known if link in title_of)]
         return structural_formula(parts)
+
+    def rigid_with(self, link: str) -> tuple[str, ...]:
+        """A link with those that are rigid to it."""
+        return next((rigid.links for rigid in self.reduction.rigid if link in rigid.links), (link,))
+
+    def driver_title(self, driver: Driver) -> str:
+        """I(0,1): a driver, as the structural formula writes it."""
+        base, link = ("+".join(self.rigid_with(n)) if n != FRAME else n for n in (driver.base, driver.link))
+        return f"I({base},{link})"
+
+    @property
+    def count(self) -> tuple[int, int, int]:
+        """n, p1, p2 without what the structural report leaves out: their 3n - 2p1 - p2 is the mobility."""
+        counts = [group.count for group in self.groups]
+        n, lower, higher = (sum(column) for column in zip((0, 0, 0), *counts, strict=True))
+        return n + len(self.drivers), lower + len(self.drivers), higher
 
     @property
     def mechanism_class(self) -> int:
@@ -202,23 +248,23 @@ class Structure:
         Together they can pass where one of them alone is dead; that is what passive constraints are often for.
         """
         among = {link for passive in self.passive for link in passive.among}
-        held = [group for group in self.groups if among & set(group.links)]
+        held = [group for group in self.all_groups if among & set(group.links)]
         if len(held) < 2:
-            return self.groups
+            return self.all_groups
         links = {link for group in held for link in group.links}
         needed, dependent = set(links), set(links)
-        for group in reversed(self.groups):
+        for group in reversed(self.all_groups):
             if needed & set(group.links):
                 needed.update(group.links, group.depends_on)
-        for group in self.groups:
+        for group in self.all_groups:
             if dependent & group.depends_on:
                 dependent.update(group.links)
-        first = [group for group in self.groups if needed.issuperset(group.links)]
+        first = [group for group in self.all_groups if needed.issuperset(group.links)]
         together = [group for group in first if dependent.issuperset(group.links)]
         return (
             *(group for group in first if group not in together),
             self._united(together),
-            *(group for group in self.groups if group not in first),
+            *(group for group in self.all_groups if group not in first),
         )
 
     def _united(self, groups: Sequence[Group]) -> Group:
@@ -265,38 +311,99 @@ def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
 def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
     """Structure of a linkage; never fails: what is wrong with it is in the result.
 
-    dropped: how many conditions of which tie (by its number) are left out of the count.
+    dropped: how many conditions of which tie (by its number) are left out of the count; the groups of the report are
+    then still those of all links.
     """
     less = dropped or {}
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
-    loosened = {tie.name for k, tie in enumerate(ties) if k in less and not tie.constraints}
-    redundant_pairs = loosened - {hinge.point for hinge in linkage.hinges if len(hinge.links) > 2}
-    pins = tuple(_pin(h) for h in linkage.hinges if len(h.links) > 2 and not h.attached_to)
+    pins = _pins(linkage)
     bodies = tuple(linkage.links)
-    undriven = count(bodies, FRAME, ties, pins)
-    driven = count(bodies, FRAME, [*ties, *(Tie("driver", d.base, d.link, 1) for d in linkage.drivers)], pins)
-    parts = [tuple(b for b in part if b in linkage.links) for part in components(driven.depends)]
-    solved = [tuple(sorted(part, key=linkage.moving.index)) for part in parts if part and part != (FRAME,)]
+    undriven, driven = _counts(bodies, ties, pins, [(d.base, d.link) for d in linkage.drivers])
+    solved = _parts(driven, bodies)
     rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
     pairs = tuple(_pairs(linkage, rank))
     mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
-    sound = (
-        undriven.free == len(linkage.drivers)
-        and not undriven.redundant_pairs
-        and not driven.redundant_pairs
-        and driven.free == 0
-    )
+    sound = _sound(undriven, driven, linkage)
     cranks = {(driver.link,) for driver in linkage.cranks}
-    parts_left = [part for part in solved if part not in cranks] if sound else []
-    groups = tuple(_group(part, pairs, rank, linkage, redundant_pairs) for part in parts_left)
+    groups = tuple(_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
     order = {name: k for k, name in enumerate(linkage.links)}
     over_held = undriven.redundant_pairs or driven.redundant_pairs
-    return Structure(
+    structure = Structure(
         linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free,
         # with the driver in, a link is loose when it moves on its own; without it, every link may move with the crank
         tuple(sorted(driven.under_constrained, key=order.__getitem__)),
         tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in over_held),
+        all_groups=groups,
     )  # fmt: skip
+    if sound and not less:
+        rigid = Reduction(tuple(RigidSet(links) for links in rigid_sets(bodies, ties, pins)))
+        return (reduced(linkage, structure, rigid) or structure) if rigid else structure
+    return structure
+
+
+def reduced(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
+    """The structure with the groups of what a reduction leaves; None where these are not Assur groups.
+
+    Groups of all links get the class of the report's groups that they contain.
+    """
+    every = list(ties_of(linkage))
+    ties = list(reduction.ties(every))
+    tied = {end for tie in ties for end in (tie.a, tie.b)}
+    pins = tuple(pin for pin in _pins(linkage) if pin in tied)
+    bodies = reduction.bodies(linkage.links)
+    drivers = [(reduction.body(d.base), reduction.body(d.link)) for d in linkage.drivers]
+    undriven, driven = _counts(bodies, ties, pins, drivers)
+    if not _sound(undriven, driven, linkage):
+        return None
+    solved = _parts(driven, bodies)
+    rank = dict.fromkeys(reduction.members(FRAME), -1)
+    rank |= {link: k for k, part in enumerate(solved) for body in part for link in reduction.members(body)}
+    pairs = tuple(reduction.reduced_pairs(linkage, structure.pairs, rank, ties))
+    redundant, as_higher = [], set()
+    for number, constraints in reduction.conditions.items():
+        tie = every[number]
+        left = tie.constraints - constraints
+        pair = reduction.pair_of(tie, pairs if left else structure.pairs)
+        if pair is None:
+            return None
+        redundant.append(RedundantPair(pair.name, constraints, left))
+        if left and tie.constraints > 1:
+            as_higher.add(pair.name)
+    cranks = {(reduction.body(driver.link),) for driver in linkage.cranks}
+    groups = tuple(_group(part, pairs, rank, linkage, reduction, as_higher) for part in solved if part not in cranks)
+    if any(group.mobility for group in groups):
+        return None
+    grade = {link: group.group_class for group in groups for link in group.links}
+    all_groups = tuple(
+        replace(group, group_class=max(grade.get(link, 2) for link in group.links)) for group in structure.all_groups
+    )
+    return replace(
+        structure, groups=groups, all_groups=all_groups, reduction=replace(reduction, pairs=tuple(redundant))
+    )
+
+
+def _counts(
+    bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
+) -> tuple[Count, Count]:
+    """What the pebble game says without the drivers and with them."""
+    driving = [Tie("driver", base, link, 1) for base, link in drivers]
+    return count(bodies, FRAME, ties, pins), count(bodies, FRAME, [*ties, *driving], pins)
+
+
+def _parts(driven: Count, bodies: Sequence[str]) -> list[tuple[str, ...]]:
+    """The bodies of each group in solving order, without pins and the frame."""
+    parts = [tuple(body for body in part if body in bodies and body != FRAME) for part in components(driven.depends)]
+    return [tuple(sorted(part, key=bodies.index)) for part in parts if part]
+
+
+def _sound(undriven: Count, driven: Count, linkage: Linkage) -> bool:
+    """True if each freedom is driven, and nothing is held twice."""
+    held_twice = undriven.redundant_pairs or driven.redundant_pairs
+    return undriven.free == len(linkage.drivers) and not held_twice and driven.free == 0
+
+
+def _pins(linkage: Linkage) -> tuple[str, ...]:
+    return tuple(_pin(hinge) for hinge in linkage.hinges if len(hinge.links) > 2 and not hinge.attached_to)
 
 
 def _pin(hinge: Hinge) -> str:
@@ -314,6 +421,11 @@ def ties_of(linkage: Linkage) -> Iterable[Tie]:
             yield from (Tie(hinge.point, _pin(hinge), link, 2) for link in hinge.links)
     yield from (Tie(slide.name, slide.carrier, slide.runner, 2) for slide in linkage.slides)
     yield from (Tie(mesh.name, mesh.i, mesh.j, 1) for mesh in linkage.meshes)
+
+
+def pairs_within(linkage: Linkage) -> tuple[Pair, ...]:
+    """The pairs of a linkage whose solving order is not known."""
+    return tuple(_pairs(linkage, dict.fromkeys(linkage.links, 0)))
 
 
 def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
@@ -347,25 +459,32 @@ def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) ->
 
 
 def _group(
-    links: tuple[str, ...],
+    bodies: tuple[str, ...],
     pairs: tuple[Pair, ...],
     rank: Mapping[str, int],
     linkage: Linkage,
-    redundant_pairs: Collection[str],
+    reduction: Reduction = NOTHING,
+    as_higher: Collection[str] = (),
 ) -> Group:
-    """The group of these links; redundant_pairs: names of its pairs that are passive."""
-    here = rank[links[0]]
+    """The group of these bodies. `rank` is the number of a link's group; as_higher: see Group."""
+    here, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
+    links = tuple(link for body in bodies for link in member[body])
+    rigid = tuple(links for links in member.values() if len(links) > 1)
     inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
     outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
     own = {p.name: p.i if rank[p.i] == here else p.j for p in outer}
     outer.sort(key=lambda p: links.index(own[p.name]))
-    drivers = tuple(d for d in linkage.drivers if max(rank[d.base], rank[d.link]) == here and d not in linkage.cranks)
-    if len(links) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers:
+    drivers = tuple(
+        d for d in linkage.drivers
+        if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here
+    )  # fmt: skip
+    halved = tuple(pair.name for pair in (*inner, *outer) if pair.name in as_higher)
+    if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers and not halved:
         # The standard names write the turning end first: RRP, RPP.
         outer.sort(key=lambda p: p.kind == "P")
         kind = outer[0].kind + inner[0].kind + outer[1].kind
-        return Group(tuple(own[p.name] for p in outer), inner, tuple(outer), 2, kind)
+        in_order = tuple(link for p in outer for link in member[reduction.body(own[p.name])])
+        return Group(in_order, inner, tuple(outer), 2, kind, rigid=rigid)
     kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
-    within, leads = ([p for p in some if p.name not in redundant_pairs] for some in (inner, outer))
-    passive = tuple(p.name for p in (*inner, *outer) if p.name in redundant_pairs)
-    return Group(links, inner, tuple(outer), group_class(links, within, leads, drivers), kind, drivers, passive)
+    grade = group_class([*map(member.__getitem__, bodies)], inner, outer, drivers, halved)
+    return Group(links, inner, tuple(outer), grade, kind, drivers, rigid, halved)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TypeVar
 
 Node = TypeVar("Node", int, str)
@@ -86,12 +86,18 @@ class PebbleGame:
                     return [start, *rest]
         return None
 
-    def add(self, a: str, b: str) -> bool:
-        """Add one condition between a and b; False when it repeats what already holds."""
+    def rigid(self, a: str, b: str) -> bool:
+        """True if the conditions added so far leave two bodies no motion relative to one another."""
         while self.pebbles[a] + self.pebbles[b] <= FREEDOMS:
             keep = {a: FREEDOMS, b: FREEDOMS}  # their own stay
             if not ((self.pebbles[a] < FREEDOMS and self.bring(a, keep)) or self.bring(b, keep)):
-                return False
+                return True
+        return False
+
+    def add(self, a: str, b: str) -> bool:
+        """Add one condition between a and b; False when it repeats what already holds."""
+        if self.rigid(a, b):
+            return False
         tail, head = (a, b) if self.pebbles[a] > 0 and a != self.root else (b, a)
         self.pebbles[tail] -= 1
         self.out[tail].append(head)
@@ -119,6 +125,27 @@ def count(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[
     )
     depends = {body: tuple(dict.fromkeys(targets)) for body, targets in game.out.items()}
     return Count(free, depends, tuple(redundant_pairs), under_constrained)
+
+
+def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] = ()) -> tuple[tuple[str, ...], ...]:
+    """Sets of two bodies or more that are rigid to one another by the count.
+
+    Bodies of such a set are joined within it, so only bodies that share a tie or a pin are compared.
+    """
+    bodies, pins, ties = tuple(bodies), frozenset(pins), tuple(ties)
+    game = PebbleGame(bodies, "", pins)
+    joined = [(tie.a, tie.b) for tie in ties if pins.isdisjoint((tie.a, tie.b))]
+    for pin in pins:
+        joined += combinations((tie.b if tie.a == pin else tie.a for tie in ties if pin in (tie.a, tie.b)), 2)
+    for tie in ties:
+        for _ in range(tie.constraints):
+            game.add(tie.a, tie.b)
+    together: dict[str, tuple[str, ...]] = {body: (body,) for body in bodies}
+    for a, b in joined:
+        if together[a] != together[b] and game.rigid(a, b):
+            merged = tuple(body for body in bodies if body in together[a] + together[b])
+            together |= dict.fromkeys(merged, merged)
+    return tuple(dict.fromkeys(links for links in together.values() if len(links) > 1))
 
 
 def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:

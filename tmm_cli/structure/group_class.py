@@ -6,7 +6,7 @@ pairs, or of the inner pairs of its richest link when it has no contour.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import Driver
@@ -15,25 +15,31 @@ if TYPE_CHECKING:
     from tmm_cli.structure.assur import Pair
 
 
-def group_class(links: Iterable[str], inner: Iterable[Pair], outer: Iterable[Pair], drivers: Iterable[Driver]) -> int:
-    """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link."""
-    one = {name: name for name in links}
+def group_class(
+    bodies: Iterable[tuple[str, ...]], inner: Iterable[Pair], outer: Iterable[Pair], drivers: Iterable[Driver],
+    as_higher: Collection[str] = (),
+) -> int:  # fmt: skip
+    """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link.
+
+    Links of one body are rigid to one another; as_higher: names of lower pairs that count as higher ones.
+    """
+    one = {name: links[0] for links in bodies for name in links}
     for driver in drivers:
         if driver.base in one:
             keep, gone = one[driver.base], one[driver.link]
             one = {name: keep if as_one == gone else as_one for name, as_one in one.items()}
-    bodies = list(dict.fromkeys(one.values()))
+    replaced = list(dict.fromkeys(one.values()))
     joints: list[tuple[str, str]] = []
     for pair in (*inner, *outer):
         ends = [one[link] for link in (pair.i, pair.j) if link in one]
-        if not pair.lower:
-            bodies.append(f"tooth {pair.name}")
-            joints += [(end, bodies[-1]) for end in ends]
+        if not pair.lower or pair.name in as_higher:
+            replaced.append(f"tooth {pair.name}")
+            joints += [(end, replaced[-1]) for end in ends]
         elif len(set(ends)) == 2:
             joints.append((ends[0], ends[1]))
-    if len(bodies) <= 2:
+    if len(replaced) <= 2:
         return 2
-    return max(3, _largest_contour(bodies, joints), *(sum(body in joint for joint in joints) for body in bodies))
+    return max(3, _largest_contour(replaced, joints), *(sum(body in joint for joint in joints) for body in replaced))
 
 
 def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:

@@ -200,7 +200,7 @@ def _choose_all(heights: Heights, structure: Structure, pins_first: bool) -> dic
     pins = [p.point for p in structure.pairs if p.kind == "R"]
     shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
     kinds = {p.name: TOUCHING[1] for p in structure.pairs if not p.lower}
-    for group in structure.groups:
+    for group in structure.all_groups:
         chosen = _choose(heights, group.links, (*group.inner, *group.outer), shared)
         if chosen is None:
             return None

@@ -57,9 +57,9 @@ def synthesised_link(outcome: Outcome, results: Results) -> str | None:
     if on_frame is None:
         return output
     away = {FRAME: 0} | {driver.link: 0 for driver in linkage.drivers}  # groups from the driver to a link
-    for group in results.structure.groups:
+    for group in results.structure.all_groups:
         away |= dict.fromkeys(group.links, 1 + max(away[link] for link in group.known))
-    links = [link for group in results.structure.groups for link in group.links if on_frame(link)]
+    links = [link for group in results.structure.all_groups for link in group.links if on_frame(link)]
     return min(links, key=lambda link: (away[link], link != output), default=output)
 
 

@@ -88,9 +88,13 @@ def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], ro
 def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
     """What a part is, in lines that fit a width (mm)."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
-    if part.group is None:
+    if part.redundant is not None:
+        q = _("redundant, adds q = {q}").format(q=part.redundant.constraints)
+        words = [q, _("links: {links}").format(links=links)]
+        words.append(_("pairs: {pairs}").format(pairs=_listed(pairs_outside(part, pairs))))
+    elif part.group is None:
         words = [_("primary mechanism: driver and frame"), _("links: {links}").format(links=links)]
-        driving = [pair for pair in pairs if {pair.i, pair.j} == {FRAME, *part.links}]
+        driving = [pair for pair in pairs if FRAME in (pair.i, pair.j) and {pair.i, pair.j} <= {FRAME, *part.links}]
         if driving:
             words.append(_("driving pair: {pair}").format(pair=_listed(driving[-1:])))
     else:
@@ -111,6 +115,14 @@ def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: 
     return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
 
 
+def pairs_outside(part: Part, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
+    """The pairs that join a part to other links: those of a group, or all of a redundant link."""
+    if part.group is not None:
+        return part.group.outer
+    links = {*part.links}
+    return tuple(p for p in pairs if part.redundant and {p.i, p.j} & links and not {p.i, p.j} <= links)
+
+
 def _listed(pairs: Iterable[Pair]) -> str:
     return ", ".join(f"{p.name} ({p.i}-{p.j})" for p in pairs)
 
@@ -118,8 +130,8 @@ def _listed(pairs: Iterable[Pair]) -> str:
 def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     """One part in the field that the ground of the sheet has."""
     pairs, links = scene.structure.pairs, part.links
-    outer = part.group.outer if part.group else ()
-    inner = part.group.inner if part.group else tuple(p for p in pairs if {p.i, p.j} <= {*links, FRAME})
+    outer, frame = pairs_outside(part, pairs), () if part.group or part.redundant else (FRAME,)
+    inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
     most = math.inf if on_large_sheet() else LEAST + A_LINK * len(links)
     scene = fitted(sheet, scene, links, pad, most)
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))

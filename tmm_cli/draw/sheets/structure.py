@@ -17,13 +17,15 @@ from tmm_cli.draw.paper.picture import on_large_sheet
 from tmm_cli.draw.paper.room import snug
 from tmm_cli.draw.paper.sheet import DARK, Sheet
 from tmm_cli.draw.sheets.mechanism import place_of_driver
-from tmm_cli.draw.symbols.parts import PALETTE, STRUCTURAL, numbers, symbol_size
+from tmm_cli.draw.symbols.parts import FREE, PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
+from tmm_cli.results.reports.structure import left_out
 from tmm_cli.structure.assur import Group, Structure
+from tmm_cli.structure.reduction import RedundantLink
 from tmm_cli.vectors import Real, dot
 
 PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
@@ -36,25 +38,32 @@ HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others
 
 @dataclass(frozen=True)
 class Part:
-    """A driver on the frame (no group), or an Assur group; with its colour."""
+    """A driver on the frame (no group), an Assur group, or a redundant link; with its colour."""
 
     title: str
     links: tuple[str, ...]
     colour: str
     group: Group | None = None
+    redundant: RedundantLink | None = None
 
 
 def parts(structure: Structure) -> tuple[Part, ...]:
-    """The primary mechanisms and the groups, in solving order."""
-    grouped = {link for group in structure.groups for link in group.links}
-    primary = [(f"I({FRAME},{link})", (link,), None) for link in structure.links if link not in grouped]
-    every = [*primary, *((g.title, g.links, g) for g in structure.groups)]
-    return tuple(Part(title, links, PALETTE[n % len(PALETTE)], group) for n, (title, links, group) in enumerate(every))
+    """The primary mechanisms and the groups, in solving order; then the redundant links."""
+    cranks = [driver for driver in structure.drivers if driver.base == FRAME]
+    every: list[tuple[str, tuple[str, ...], Group | None]] = [
+        *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
+        *((group.title, group.links, group) for group in structure.groups),
+    ]
+    coloured = [Part(title, links, PALETTE[n % len(PALETTE)], g) for n, (title, links, g) in enumerate(every)]
+    redundant = [Part(", ".join(r.links), r.links, FREE, redundant=r) for r in structure.reduction.links]
+    return tuple(coloured + redundant)
 
 
 def colours(structure: Structure) -> dict[str, str]:
-    """The colour of every link; the frame is dark."""
-    return {FRAME: DARK} | {link: part.colour for part in parts(structure) for link in part.links}
+    """The colour of every link; the frame, and what is rigid to it, is dark."""
+    return dict.fromkeys((FRAME, *structure.links), DARK) | {
+        link: part.colour for part in parts(structure) for link in part.links
+    }
 
 
 def at_sketch(results: Results) -> tuple[str, Scene] | None:
@@ -150,6 +159,7 @@ class Legend:
                 p=sum(p.kind == "P" for p in structure.pairs), p2=higher),
             _("W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}").format(n=n, p1=lower, p2=higher, w=structure.mobility),
             _("Mechanism of class {roman}").format(roman=structure.roman),
+            *left_out(structure),
         ]  # fmt: skip
         points = [p.point for p in structure.pairs if p.kind == "R"]
         inner = [d for d in structure.drivers if d.base != FRAME]
@@ -170,6 +180,8 @@ class Legend:
 
     def words(self, part: Part) -> str:
         """What a part is."""
+        if part.redundant is not None:
+            return _("{title}: redundant, adds q = {q}").format(title=part.title, q=part.redundant.constraints)
         if part.group is None:
             return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
         group = part.group

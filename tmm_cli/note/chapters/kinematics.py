@@ -25,7 +25,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Driving links and positions"), 2)
     yield from drivers(subject)
     yield from positions(subject)
-    every = steps(results.linkage, results.structure.groups)
+    every = steps(results.linkage, results.structure.all_groups)
     for k in subject.detail:
         yield from _position(Here(subject, k, k == subject.detail[0]), every)
     yield Heading(_("Kinematics of all positions"), 2)

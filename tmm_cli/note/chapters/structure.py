@@ -27,7 +27,7 @@ from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
 from tmm_cli.note.tables import NONE, unbroken
 from tmm_cli.plans.record import Symbol
-from tmm_cli.results.reports.structure import PAIRS, ROLES
+from tmm_cli.results.reports.structure import PAIRS, ROLES, left_out
 from tmm_cli.results.stages import link_name
 from tmm_cli.structure.assur import Group, Structure
 
@@ -96,6 +96,12 @@ def _mobility(structure: Structure) -> Iterable[Block]:
             pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),
             true=str(structure.mobility + structure.redundant),
         )  # fmt: skip
+    if structure.reduction:
+        yield said(
+            _("For the structural formula {what}. For the links and pairs that are left:"),
+            what="; ".join(left_out(structure)),
+        )  # fmt: skip
+        yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
 
 
 def chebyshev(n: int, lower: int, higher: int) -> Expression:
@@ -133,15 +139,13 @@ def _apart(subject: Subject) -> Iterable[Block]:
         )  # fmt: skip
     for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
+        text = _("Redundant link {title}") if part.redundant else text
         yield Figure(text.format(title=part.title), drawing, stem)
 
 
 def _group(group: Group) -> tuple[Line, ...]:
-    pairs = [pair for pair in (*group.inner, *group.outer) if pair.name not in group.redundant_pairs]
-    lower = sum(pair.lower for pair in pairs)
-    higher, drivers, n = len(pairs) - lower, len(group.drivers), len(group.links)
-    w = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + (f" − {drivers}" if drivers else "")
-    own = f"{w} = {3 * n - 2 * lower - higher - drivers}"
+    n, lower, higher = group.count
+    own = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
     outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
     inner = ", ".join(pair.name for pair in group.inner) or NONE

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import _
+from tmm_cli.results.reports.structure import left_out
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.contours import Contour, contours
 from tmm_cli.structure.redundancy import space
@@ -38,12 +39,16 @@ def tables(results: Results) -> Iterable[Table]:
             "Pairs on the frame stay, they position shafts and guides. Out of the plane, the "
             "conditions of these pairs are independent (checked by rank)."
         )
+        title, notes = _("Pairs that leave no redundant constraints"), [note]
+        if found.redundant_then:
+            title = _("Pairs that leave no redundant constraints out of the plane")
+            notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(left_out(structure))))
         yield table_of_words(
-            "replacements", _("Pairs that leave no redundant constraints"),
+            "replacements", title,
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
             [(r.pair.name, f"{r.pair.i} - {r.pair.j}", _(r.was), _(r.kind), str(r.freedoms))
              for r in found.replacements],
-            (note,),
+            tuple(notes),
         )  # fmt: skip
 
 

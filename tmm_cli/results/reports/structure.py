@@ -80,10 +80,42 @@ def tables(results: Results) -> Iterable[Table]:
     )  # fmt: skip
     yield table_of_words(
         "groups", _("Assur groups, in solving order"),
-        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs")),
-        [(", ".join(g.links), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
-          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer)) for g in structure.groups],
+        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility")),
+        [(", ".join(map("+".join, g.bodies)), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
+          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer), counted_mobility(g.count)) for g in structure.groups],
     )  # fmt: skip
+
+
+def left_out(structure: Structure) -> Iterable[str]:
+    """What the structural report leaves out or counts as one, with the redundant constraints q that it adds."""
+    for rigid in structure.reduction.rigid:
+        links = ", ".join(link for link in rigid.links if link != FRAME)
+        if FRAME in rigid.links:
+            text = _("rigid to the frame, and part of it: {links}")
+            if rigid.constraints:
+                text = _("rigid to the frame, and part of it: {links}, adds q = {q}")
+        else:
+            text = _("links {links} are rigid to one another and count as one")
+            if rigid.constraints:
+                text = _("links {links} are rigid to one another and count as one, add q = {q}")
+        yield text.format(links=links, q=rigid.constraints)
+    for link in structure.reduction.links:
+        text = _("link {links} is redundant, adds q = {q}")
+        if len(link.links) > 1:
+            text = _("links {links} are redundant, add q = {q}")
+        yield text.format(links=", ".join(link.links), q=link.constraints)
+    for pair in structure.reduction.pairs:
+        text = _("pair {pair} is redundant, adds q = {q}")
+        if pair.left:
+            text = _("pair {pair} counts as a higher pair: one of its two constraints is redundant, adds q = {q}")
+        yield text.format(pair=pair.pair, q=pair.constraints)
+
+
+def counted_mobility(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 = 1: Chebyshev's formula with its numbers."""
+    n, lower, higher = count
+    held = f" - {higher}" if higher else ""
+    return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
 
 
 def called(label: str) -> str:
@@ -109,13 +141,11 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
     if structure.passive:
         yield _("W in truth, by rank"), str(w + structure.redundant)
-    for passive in structure.passive:
-        i, j = passive.links
-        told = _("{count} in pair {pair}, link {j} on link {i}; links {among} hold one another twice").format(
-            count=passive.constraints, pair=passive.pair, i=i, j=j, among=", ".join(passive.among)
-        )
-        yield _("passive constraint"), told
     yield _("independent contours K = p - n"), str(structure.contours)
     yield _("formula of structure"), structure.formula
+    for sentence in left_out(structure):
+        yield "", sentence
+    if structure.reduction:
+        yield _("W of the formula of structure"), counted_mobility(structure.count)
     yield _("chain, and kind of structure"), ", ".join(_(CLASSES[word]) for word in classification(structure))
     yield _("class of the mechanism"), structure.roman
