@@ -172,6 +172,26 @@ def test_the_driver_and_every_group_have_colours_of_their_own():
     assert len(set(colours)) == 7
 
 
+@pytest.mark.parametrize(
+    "name, redundant_links, mark",
+    [
+        ("parallel-couplers", [("4",)], "link 4 is redundant, adds q = 1"),
+        ("settings/breaking-rod", [], "links 2, 3 are rigid to one another and count as one, add q = 1"),
+    ],
+)
+def test_what_the_formula_leaves_out_is_drawn_and_marked(name, redundant_links, mark):
+    here = at_sketch(moved(name))[1]
+    every = parts(here.structure)
+    whole = scheme("title", "", here).finish()
+    in_one_line = " ".join(" ".join(text.split()) for text in texts(whole))
+    assert f"{mark} W of the formula of structure: 3·3 − 2·4 = 1" in in_one_line
+    redundant = [part for part in every if part.redundant is not None]
+    assert [part.links for part in redundant] == redundant_links
+    assert not {part.colour for part in redundant} & {part.colour for part in every if part not in redundant}
+    apart = set(texts(side_by_side("title", "", here, every, {}).finish()))
+    assert {p.name for p in here.structure.pairs if {p.i, p.j} == {"2", "3"}} <= apart
+
+
 def test_a_ternary_link_is_a_plate_and_a_binary_one_a_bar():
     sheet = Sheet("", "", [0j, 0.25 + 0.15j])
     assert len(by_pairs(sheet, TRIAD, "3").hull) == 3

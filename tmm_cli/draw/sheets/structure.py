@@ -20,10 +20,10 @@ from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.draw.symbols.parts import FREE, PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
-from tmm_cli.language import _
+from tmm_cli.language import _, typeset
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
-from tmm_cli.results.reports.structure import left_out
+from tmm_cli.results.reports.structure import counted_mobility, left_out
 from tmm_cli.structure.assur import Group, Structure
 from tmm_cli.structure.reduction import RedundantLink
 from tmm_cli.vectors import Real, dot
@@ -159,8 +159,12 @@ class Legend:
                 p=sum(p.kind == "P" for p in structure.pairs), p2=higher),
             _("W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}").format(n=n, p1=lower, p2=higher, w=structure.mobility),
             _("Mechanism of class {roman}").format(roman=structure.roman),
-            *left_out(structure),
         ]  # fmt: skip
+        if structure.reduction:
+            formula = _("W of the formula of structure: {count}").format(
+                count=typeset(counted_mobility(structure.count))
+            )
+            self.facts[1:1] = [*left_out(structure), formula]
         points = [p.point for p in structure.pairs if p.kind == "R"]
         inner = [d for d in structure.drivers if d.base != FRAME]
         if inner:

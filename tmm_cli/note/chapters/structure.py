@@ -98,7 +98,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         )  # fmt: skip
     if structure.reduction:
         yield said(
-            _("For the structural formula {what}. For the links and pairs that are left:"),
+            _("For the structural formula: {what}. The links and pairs that are left give:"),
             what="; ".join(left_out(structure)),
         )  # fmt: skip
         yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
