@@ -1,16 +1,22 @@
-"""A fuzzer of problem files: those of the bank, changed by the grammar of the format, are loaded, and some are solved.
+"""A fuzzer: files of the bank, changed by the grammar of the format, are loaded, solved, run by commands and graded.
 
-    python -m tests.fuzz --minutes 10 --seed 1
+    python tests/fuzz.py --minutes 10 --seed 1
+    python tests/fuzz.py --loads 100000 --solves 10000 --runs 1000 --grades 300
+
+A load reads a file. A solve computes it, with all its tables. A run draws it and writes its note and its sheets, and
+takes one of the other commands. A grade marks a group twice. With counts each kind ends at its own; without counts each
+takes its share of the time.
 
 What is right: a problem, or the product's own error. Reported, with a file that shows it: any other exception, a
-warning of Python, a load or solution longer than LONGEST, a number that is not finite where it is called sound, and one
-that is farther from the truth than its bound says.
+warning of Python, work beyond the limits of LONGEST, a number that is not finite where it is called sound, and one that
+is farther from the truth than its bound says.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import resource
 import signal
 import sys
 import time
@@ -18,23 +24,28 @@ import traceback
 import types
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, chdir, contextmanager, redirect_stderr, redirect_stdout
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cache
-from itertools import count
+from io import StringIO
 from pathlib import Path
 from random import Random
+from tempfile import TemporaryDirectory
 from typing import Any, Literal, Union, get_args, get_origin
+from unittest import mock
 from zlib import crc32
 
 import numpy as np
+from fuzz_blocks import with_blocks
 from pydantic import BaseModel
 
 from tmm_cli import solve
 from tmm_cli.accuracy.digits import at, exact
+from tmm_cli.cli.app import application
 from tmm_cli.double_double import array, exactly, rounded
+from tmm_cli.draw.formats import here
 from tmm_cli.library import problem_of
 from tmm_cli.problem.build import is_chain
 from tmm_cli.problem.build_chain import build_chain
@@ -45,14 +56,18 @@ from tmm_cli.problem.schema import File
 from tmm_cli.problem.schema_chain import SpatialFile
 from tmm_cli.problem.units import SYMBOLS
 from tmm_cli.quantities import ANGLE
+from tmm_cli.results.as_json import sections
 from tmm_cli.results.cells import cells, computed_tables, keys_of
 from tmm_cli.results.digits import accuracy
+from tmm_cli.results.reports import walk
+from tmm_cli.results.text import json_text
 from tmm_cli.synthesis import TASKS, block
 from tmm_cli.synthesis.reading import task_of
 
 ROOT = Path(__file__).parents[1]
-LONGEST = 10  # seconds of the processor
-SOLVED = 10  # one of so many loads is solved too
+LONGEST = {"load": 10, "solve": 30, "run": 60, "grade": 60}  # seconds of the processor, of each command
+SHARES = {"load": 1.0, "solve": 2.0, "run": 3.0, "grade": 1.0}  # of the time, where no counts are given
+MEMORY = 3 << 30  # bytes of addresses: a gigabyte, and what Python and its libraries map
 JUDGED = 3  # one of so many solutions is compared with double-doubles
 POSITIONS = 24  # of what is solved: more of them show no more
 NUMBERS = [
@@ -82,8 +97,11 @@ ODD = [
 SIGNS = [*":,[]{}-\"'&*!\t# .05А|\u200b", "- ", ": ", "1,5"]
 
 
-class Hang(Exception):
-    """A load or a solution that took too long."""
+Kind = Literal["load", "solve", "run", "grade"]
+
+
+class Hang(BaseException):
+    """Work that took too long; nothing catches it on its way."""
 
 
 @dataclass
@@ -272,14 +290,14 @@ def small(data: dict[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def limited() -> Iterator[None]:
+def limited(kind: str) -> Iterator[None]:
     """Raises Hang where what is inside takes too long."""
 
     def stop(*_: object) -> None:
         raise Hang
 
     before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, LONGEST)
+    signal.setitimer(signal.ITIMER_PROF, LONGEST[kind])
     try:
         yield
     finally:
@@ -328,98 +346,247 @@ def beyond(results: Any) -> str | None:
     return None
 
 
-def fault(text: str, solving: bool) -> tuple[str, str]:
-    """What is wrong with reading, or solving, this file ("" for nothing), and how it ended."""
+@dataclass(frozen=True)
+class Case:
+    """A problem file and what is done with it. command: of a run, after its three; group: of a grade, by its files."""
+
+    kind: Kind
+    text: str
+    command: tuple[str, ...] = ()
+    group: dict[str, bytes] = field(default_factory=dict)
+
+
+def fault(case: Case) -> tuple[str, str, str]:
+    """What is wrong with a case ("" for nothing), how it ended, and where the fault is in the product."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         try:
-            with limited():
-                ended, wrong = _ended(text, solving)
+            ended, wrong = DONE[case.kind](case)
         except Hang:
-            return f"longer than {LONGEST} s", "fault"
+            return f"longer than {LONGEST[case.kind]} s", "fault", f"{case.kind} hangs"
         except Exception as error:  # whatever it is, it is a fault
             frames = traceback.extract_tb(error.__traceback__)
             own = next((f for f in reversed(frames) if "tmm_cli" in f.filename), frames[-1])
-            return f"{type(error).__name__}: {error} ({own.filename.split('tmm_cli/')[-1]}:{own.lineno})", "fault"
+            place = f"{own.filename.split('tmm_cli/')[-1]}:{own.lineno}"
+            return f"{type(error).__name__}: {error} ({place})", "fault", f"{type(error).__name__} {place}"
+    told = [one for one in told if case.kind in ("load", "solve") or not issubclass(one.category, RuntimeWarning)]
     if told and not wrong:
-        one = told[0]
-        wrong = f"warning: {one.message} ({one.filename.split('tmm_cli/')[-1]}:{one.lineno})"
-    return wrong, "fault" if wrong else ended
+        place = f"{told[0].filename.split('tmm_cli/')[-1]}:{told[0].lineno}"
+        wrong = f"warning: {told[0].message} ({place})"
+    return wrong, "fault" if wrong else ended, wrong.partition(":")[0] + wrong.rpartition("(")[2]
+
+
+def _loaded(case: Case) -> tuple[str, str]:
+    return _ended(case.text, solving=False)
+
+
+def _solved(case: Case) -> tuple[str, str]:
+    return _ended(case.text, solving=True)
 
 
 def _ended(text: str, solving: bool) -> tuple[str, str]:
     try:
-        tree = read_text(text, "fuzz.yaml")
-        if is_chain(tree):
-            build_chain(tree)
-            return "loaded", ""
-        problem = problem_of(tree)
-        if "synthesis" in tree.data and tree.data["synthesis"]["task"] == "optimal":
-            task_of(tree)  # which a file with a search does not need before it is solved
-        if not solving:
-            return "loaded", ""
-        results = solve(problem)
-        if odd := unsound(results):
-            return "solved", f"not finite: {odd}"
-        if crc32(text.encode()) % JUDGED == 0 and (far := beyond(results)):
-            return "solved", f"beyond its bound: {far}"
-        return "solved", ""
+        with limited("solve" if solving else "load"):
+            tree = read_text(text, "fuzz.yaml")
+            if is_chain(tree):
+                build_chain(tree)
+                return "loaded", ""
+            problem = problem_of(tree)
+            if "synthesis" in tree.data and tree.data["synthesis"]["task"] == "optimal":
+                task_of(tree)  # which a file with a search does not need before it is solved
+            if not solving:
+                return "loaded", ""
+            results = solve(problem)
+            if odd := unsound(results):
+                return "solved", f"not finite: {odd}"
+            if crc32(text.encode()) % JUDGED == 0 and (far := beyond(results)):
+                return "solved", f"beyond its bound: {far}"
+            if not (sum(len(table.columns) for table in walk(results)) and list(json_text(sections(results)))):
+                return "solved", "no tables"
+            return "solved", ""
     except ProblemError as error:
         str(error)
         return "refused", ""
 
 
-def cases(random: Random) -> Iterator[tuple[str, bool]]:
-    """Files without end, and whether to solve them."""
+def _run(case: Case) -> tuple[str, str]:
+    """The three commands that draw and write everything, then another one."""
+    with TemporaryDirectory() as folder, chdir(folder):
+        Path("fuzz.yaml").write_text(case.text, encoding="utf-8")
+        digits = ("--digits",) if crc32(case.text.encode()) % JUDGED == 0 else ()
+        codes = [
+            _command(*words)
+            for words in (("run", "fuzz.yaml", *digits), ("note", "fuzz.yaml"), ("sheets", "fuzz.yaml"), case.command)
+        ]
+        if codes[0] == 0 and not (Path("outputs") / "fuzz" / "result.json").exists():
+            return "run", "run wrote nothing"
+    return ("refused" if codes[:3] == [2, 2, 2] else "run"), ""
+
+
+def _graded(case: Case) -> tuple[str, str]:
+    """Graded twice: the second time what is kept of the first one is read back, and gives the same marks."""
+    with TemporaryDirectory() as folder, chdir(folder):
+        Path("task.yaml").write_text(case.text, encoding="utf-8")
+        for name, content in case.group.items():
+            Path(name).parent.mkdir(parents=True, exist_ok=True)
+            Path(name).write_bytes(content)
+        handed = next((name for name in case.group if name.startswith("answers")), "submissions")
+        words = ("grade", "task.yaml", "--variants", "variants.csv", "--submissions", handed, "--jobs", "1")
+        codes, marks = [], []
+        for _ in range(2):
+            codes.append(_command(*words))
+            marks.append(
+                {f.name: f.read_bytes() for f in Path("marks").glob("*.csv")} if Path("marks").exists() else {}
+            )
+        if codes[0] != codes[1] or marks[0] != marks[1]:
+            return "graded", f"a second run of grade differs: codes {codes}"
+    return ("refused" if codes[0] == 2 else "graded"), ""
+
+
+DONE: dict[str, Callable[[Case], tuple[str, str]]] = {
+    "load": _loaded, "solve": _solved, "run": _run, "grade": _graded,
+}  # fmt: skip
+
+
+def _command(*words: str) -> int:
+    """Call a command in this process, drawing in it too; its exit code. What it raises else is a fault."""
+    with limited("grade" if words[0] == "grade" else "run"), ExitStack() as stack:
+        for module in ("tmm_cli.cli.sheets", "tmm_cli.cli.pictures"):
+            stack.enter_context(mock.patch(f"{module}.by_all_cores", lambda jobs, quiet=False: here(jobs)))
+        stack.enter_context(redirect_stdout(StringIO()))
+        stack.enter_context(redirect_stderr(StringIO()))
+        try:
+            application(words)(list(words))
+        except SystemExit as ended:
+            code = int(ended.code or 0)
+    if code not in (0, 1, 2):
+        raise AssertionError(f"{words[0]} ended with exit code {code}")
+    return code
+
+
+def cases(kind: Kind, seed: int) -> Iterator[Case]:
+    """Cases of a kind without end."""
+    random = Random(f"{seed} {kind}")
+    grammar = Grammar(random)
+    if kind == "grade":
+        yield from _groups(grammar)
     texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "problems").glob("*.yaml"))]
     trees = [read_text(text, "bank").data for text in texts]
-    grammar = Grammar(random)
-    for number in count():
-        k, solving = random.randrange(len(texts)), number % SOLVED == 0
-        if not solving and random.random() < 0.2:
-            yield grammar.cut(texts[k]), False
-        else:
-            data = grammar.changed(trees[k], gently=random.random() < (0.8 if solving else 0.4))
-            yield json.dumps(small(data), ensure_ascii=False), solving
+    while True:
+        k, kept = random.randrange(len(texts)), 0.4 if kind == "load" else 0.8
+        if kind == "load" and random.random() < 0.2:
+            yield Case(kind, grammar.cut(texts[k]))
+            continue
+        pick, data = random.random(), trees[k]
+        if pick < 0.5 and "structure" not in data:
+            data = with_blocks(data, random)
+        if pick > 0.3:
+            data = grammar.changed(data, gently=random.random() < kept)
+        command = _further(data, random) if kind == "run" else ()
+        yield Case(kind, json.dumps(small(data), ensure_ascii=False), command)
+
+
+def _further(data: dict[str, Any], random: Random) -> tuple[str, ...]:
+    """A command that is not in every run."""
+    parameters = data.get("parameters")
+    swept = random.choice(list(parameters)) if isinstance(parameters, dict) and parameters else "a"
+    out = ("-o", "further")
+    return random.choice([
+        ("kinematics", "fuzz.yaml", "--extremes", "--centres", *out), ("kinematics", "fuzz.yaml", "--assemblies", *out),
+        ("forces", "fuzz.yaml", "--hodographs", "--extremes", *out), ("forces", "fuzz.yaml", "--digits", *out),
+        ("structure", "fuzz.yaml", "--drawings", *out), ("dynamics", "fuzz.yaml", *out), ("explain", "fuzz.yaml"),
+        ("animate", "fuzz.yaml", "-o", "further.html"), ("note", "fuzz.yaml", "--as", "docx", *out),
+        ("sweep", "fuzz.yaml", "--over", f"{swept}=20..200:5", "--show", "H,k,M_b", "--jobs", "1"),
+    ])  # fmt: skip
+
+
+def _groups(grammar: Grammar) -> Iterator[Case]:
+    """Tasks of the bank with what their groups handed in, changed here and there."""
+    random = grammar.random
+    folders = sorted(path.parent for path in (ROOT / "problems" / "grading").glob("*/task.yaml"))
+    while True:
+        folder = random.choice(folders)
+        text = (folder / "task.yaml").read_text(encoding="utf-8")
+        if random.random() < 0.3:
+            data = small(grammar.changed(read_text(text, "task").data, gently=random.random() < 0.8))
+            text = json.dumps(data, ensure_ascii=False)
+        files = [path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix != ".json"]
+        group = {str(path.relative_to(folder)): path.read_bytes() for path in files if path.name != "task.yaml"}
+        for name in [name for name in group if not name.endswith(".xlsx") and random.random() < 0.3]:
+            content = group[name]
+            for _ in range(random.choice([1, 2, 5])):
+                content = grammar.cut(content.decode("utf-8")).encode("utf-8", "replace")
+            group[name] = content
+        handed = [name for name in group if name.startswith("submissions")]
+        if handed and random.random() < 0.5:  # of a student whom nobody knows
+            group["submissions/" + random.choice(["Nobody.csv", "Иванов.csv", "a b.csv"])] = group[
+                random.choice(handed)
+            ]
+        yield Case("grade", text, group=group)
 
 
 def fuzz(
-    seed: int, loads: int | None = None, until: float | None = None,
-    found: Callable[[str, str], None] = lambda wrong, text: None,
-) -> tuple[Counter[str], dict[str, str]]:  # fmt: skip
-    """How files ended, and faults with the first file that shows each; so many loads, or until a time.
+    seed: int, counts: Mapping[str, int] | None = None, until: float | None = None,
+    found: Callable[[str, Case], None] = lambda wrong, case: None,
+) -> tuple[Counter[str], dict[str, Case]]:  # fmt: skip
+    """How cases ended, and faults with the first case that shows each.
 
-    found: told of each fault as it is met.
+    counts: so many of each kind; without them shares of the time. until: the time (monotonic) at which it ends anyhow.
+    found: called with each fault as it is met.
     """
-    random = Random(seed)
+    wanted = dict(counts) if counts is not None else dict.fromkeys(SHARES, sys.maxsize)
+    streams = {kind: cases(kind, seed) for kind in wanted}
+    spent = dict.fromkeys(wanted, 0.0)
     ended: Counter[str] = Counter()
-    faults: dict[str, str] = {}
-    for number, (text, solving) in enumerate(cases(random)):
-        if (loads is not None and number >= loads) or (until is not None and time.monotonic() > until):
+    faults: dict[str, Case] = {}
+    known: set[str] = set()
+    while until is None or time.monotonic() < until:
+        left = [kind for kind in wanted if ended[kind] < wanted[kind]]
+        if not left:
             break
-        wrong, how = fault(text, solving)
-        ended.update([how, "solves" if solving else "loads"])
-        if wrong and wrong not in faults:
-            faults[wrong] = text
-            found(wrong, text)
+        kind = min(left, key=lambda one: spent[one] / SHARES[one])
+        start, case = time.process_time(), next(streams[kind])
+        wrong, how, place = fault(case)
+        spent[kind] += time.process_time() - start
+        ended.update([kind, f"{kind}: {how}"])
+        if wrong and place not in known:
+            known.add(place)
+            faults[wrong] = case
+            found(wrong, case)
     return ended, faults
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=10)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, help="when it ends; 10 where no counts are given")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for the files that show a fault")
+    for kind in SHARES:
+        parser.add_argument(f"--{kind}s", type=int, help=f"so many cases of this kind: {kind}")
     given = parser.parse_args()
+    counts = {kind: count for kind in SHARES if (count := getattr(given, f"{kind}s")) is not None}
+    minutes = given.minutes if given.minutes is not None or counts else 10
 
-    def keep(wrong: str, text: str) -> None:
-        print(f"{wrong}\n  {text[:2000]}\n", flush=True)
+    def keep(wrong: str, case: Case) -> None:
+        words = " ".join(case.command)
+        print(f"{case.kind}: {wrong}\n  {words}\n  {case.text[:2000]}\n", flush=True)
         if given.keep:
-            given.keep.mkdir(parents=True, exist_ok=True)
-            (given.keep / f"{given.seed}-{crc32(wrong.encode()):08x}.yaml").write_text(text, encoding="utf-8")
+            name = f"{given.seed}-{crc32(wrong.encode()):08x}"
+            for file, content in {f"{name}.yaml": case.text.encode(), **case.group}.items():
+                target = given.keep / (Path(name) / file if case.group else file)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(content)
 
-    ended, faults = fuzz(given.seed, until=time.monotonic() + 60 * given.minutes, found=keep)
-    print(", ".join(f"{how}: {count}" for how, count in sorted(ended.items())))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, resource.RLIM_INFINITY))
+    until = None if minutes is None else time.monotonic() + 60 * minutes
+    ended, faults = fuzz(given.seed, counts or None, until, keep)
+    for kind in SHARES:
+        if ended[kind]:
+            how = ", ".join(
+                f"{name.partition(': ')[2]} {n}" for name, n in sorted(ended.items()) if name.startswith(f"{kind}: ")
+            )
+            print(f"{kind}s: {ended[kind]} ({how})")
+    print(f"different faults: {len(faults)}")
     return 1 if faults else 0
 
 

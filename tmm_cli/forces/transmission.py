@@ -47,5 +47,6 @@ def _transmitted(motion: Motion, reactions: Reactions, group: str, lead: Lead) -
     else:
         radius = reaction.at - motion.poses[link].at(motion.linkage.local(link, outer.point))
         couple = 0.0 if reaction.couple is None else reaction.couple * (1 if reaction.on == link else -1)
-        work = (dot(force, 1j * radius) + couple) / np.abs(radius)
+        with np.errstate(all="ignore"):  # a pair on the pivot drives by its couple alone, at no radius
+            work = (dot(force, 1j * radius) + couple) / np.abs(radius)
     return TransmittedForce(group, link, pair.name, np.abs(force), np.abs(work))
