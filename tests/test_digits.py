@@ -431,3 +431,15 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
 def test_a_load_by_the_stroke_is_judged_in_files_too(tmp_path):
     """Its strokes are computed anew with each length changed; then the largest of their travels is one of arrays."""
     assert tmm("forces", ROOT / "problems" / "toggle-press.yaml", "--digits", "-o", tmp_path).returncode == 0
+
+
+def test_a_moment_by_the_swing_of_its_rocker_is_judged():
+    """In float64 and in double-doubles the angle of the rocker is the same but for whole turns."""
+    text = (ROOT / "problems" / "crank-rocker.yaml").read_text(encoding="utf-8")
+    constant, table = "moment: -40 N*m", "{against: share of stroke, table: [[0, -10], [0.4, -30], [1, -5]]}"
+    assert constant in text
+    results = solve(build(read_text(text.replace(constant, f"moment: {table}"), "x.yaml")))
+    name = next(one for one in computed_tables(results) if one.name == "balance")
+    moment = next(column for column in accuracy(results).table(name).columns if column.header == "M_b")
+    assert 0 < np.max(moment.bound) < 1e-10 * np.max(np.abs(moment.array))
+    assert beyond(results) is None

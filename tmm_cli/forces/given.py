@@ -127,7 +127,8 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
     first = strokes.strokes[0]
     run: Real = output_place(motion, strokes.link) - first.low
     if strokes.kind == "swing":
-        run = np.angle(np.exp(1j * (run - first.run / 2))) + first.run / 2
+        turns = np.round((run - first.run / 2) / (2 * np.pi))
+        run = run - 2 * pi(run) * turns
     worked: Real = run / first.run if table.shares else run * np.sign(first.run)
     return worked
 
