@@ -117,25 +117,25 @@ def _power(motion: Motion, acting: Iterable[Applied]) -> tuple[Real, Real]:
 
 
 def _driving(results: Results, load: Load) -> str:
-    reverse = _("load {load} acts in the direction of motion during the whole working stroke. Reverse its sign")
-    strokes = results.strokes and results.strokes.of_link(load.stroke_link)
+    strokes = results.strokes
     if strokes is None or not strokes.working:
-        return reverse.format(load=load.name)
+        return _(
+            "load {load} acts in the direction of motion during the whole working stroke. Reverse its sign"
+        ).format(load=load.name)
     other = "backward" if strokes.working[0].run > 0 else "forward"
     link = results.linkage.output_point(strokes.link) or strokes.link
-    output = f"{{link: {link}, working: {other}}}"
-    if results.strokes is not None and strokes is not results.strokes:
-        output = f"[{results.linkage.output_point(results.strokes.link) or results.strokes.link}, {output}]"
-    return _("{reverse}, or choose the other stroke: {output}").format(
-        reverse=reverse.format(load=load.name), output=f"output: {output}"
-    )
+    return _(
+        "load {load} acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
+        "other stroke: {output}"
+    ).format(load=load.name, output=f"output: {{link: {link}, working: {other}}}")
 
 
 def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str:
     """What to write instead is seen at the position in which the point of the load is fastest."""
-    velocity = motion.point(load.link, load.at).v
-    k = int(np.argmax(np.where(np.abs(applied.force) > 0, np.abs(velocity), -1.0)))
-    if not np.any(applied.force):
+    velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
+    acting = motion.moving & (np.abs(applied.force) > 0)
+    k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))
+    if not np.any(acting):
         return _("load {load} does no work in the working stroke: link {link} does not rotate. Write a force").format(
             load=load.name, link=load.link
         )
