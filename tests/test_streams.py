@@ -5,13 +5,16 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import partial
 
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
+from tmm_cli.cli.talk import tell_fault
+from tmm_cli.grading.workers import processes
 from tmm_cli.library import problem_of
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import NUMBER
+from tmm_cli.quantities import NUMBER, product_text
 from tmm_cli.results.table import Column, Table, table_of_words
 from tmm_cli.results.text import csv_text
 
@@ -227,6 +230,14 @@ def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_
     monkeypatch.setenv("TMM_TRACEBACK", "1")
     told = tmm("forces", SINE).stderr
     assert told.startswith("Traceback (most recent call last):") and told.endswith(done.stderr)
+
+
+def test_a_fault_in_another_process_is_placed_where_it_was_raised(capsys):
+    try:
+        list(processes(2)([partial(product_text, 3)] * 2, lambda: False))
+    except Exception as error:
+        assert tell_fault(error, ["grade"]) == 3
+    assert re.match(r"internal fault: AttributeError at tmm_cli/quantities\.py:\d+ \(", capsys.readouterr().err)
 
 
 def test_a_fault_of_one_file_does_not_keep_the_others_from_being_worked_on(monkeypatch):

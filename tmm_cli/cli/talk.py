@@ -56,19 +56,26 @@ def tell_fault(error: Exception, words: Sequence[str]) -> int:
     if isinstance(error, MemoryError):
         say(_("error: there is not enough memory; fewer positions, variants or drawings take less"))
         return FAULT
-    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
-    home = Path(tmm_cli.__file__).parent
-    own = [f"{file.relative_to(home.parent).as_posix()}:{line}" for file, line in frames if home in file.parents]
+    place = _place_of(error)
     command = next((word for word in words if not word.startswith("-")), "")
     told = _(
         "internal fault: {name} at {place} (tmm {version}, command {command}): please report this line and the file; "
         "{variable}=1 prints the traceback"
     )
-    name, place = type(error).__name__, own[-1] if own else "?"
-    say(
-        told.format(name=name, place=place, version=tmm_cli.__version__, command=clean(command, 40), variable=TRACEBACK)
-    )
+    name, version = type(error).__name__, tmm_cli.__version__
+    say(told.format(name=name, place=place, version=version, command=clean(command, 40), variable=TRACEBACK))
     return FAULT
+
+
+def _place_of(error: Exception) -> str:
+    """The innermost line of the program that an exception passed, in the process where it was raised."""
+    remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
+    frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
+    frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    home = Path(tmm_cli.__file__).parent
+    own = [f"{Path(file).relative_to(home.parent).as_posix()}:{line}" for file, line in frames
+           if home in Path(file).parents]  # fmt: skip
+    return own[-1] if own else "?"
 
 
 def refuse_addresses(named: Mapping[str, Any]) -> None:

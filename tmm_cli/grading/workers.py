@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import signal
 import time
 import warnings
@@ -23,6 +24,9 @@ from tmm_cli.problem.errors import ProblemError, quote
 RETRIES = 3  # of what a cluster failed at
 ANSWERS = 10  # s within which a scheduler answers, and has a worker
 POLL = 0.02  # s
+SCHEDULER = re.compile(
+    r"(?:tcp://)?(?:\[[\da-fA-F:.%]+\]|[\w.-]+):\d{1,5}"
+)  # TLS needs certificates, which are not read
 
 Job = Callable[[], Any]  # may be pickled
 Stopped = Callable[[], bool]
@@ -76,12 +80,12 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     except ImportError:
         raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what fails is reported here
+    if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
+        raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
     try:
         client = distributed.Client(address, timeout=ANSWERS, set_as_default=False)
-    except Exception as error:  # of an address: whatever distributed raises, and no scheduler
-        reason = str(error).strip().partition("\n")[0] if isinstance(error, TypeError | ValueError) else ""
-        message = _("no scheduler answers there: {reason}") if reason else _("no scheduler answers there")
-        raise ProblemError(message.format(reason=reason), found=quote(address), allowed="tcp://host:8786") from None
+    except (OSError, ValueError, TypeError, RuntimeError):
+        raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
     with client:
         _refuse_other_programs(client, address)
         futures = {
