@@ -60,10 +60,9 @@ def parts(structure: Structure) -> tuple[Part, ...]:
 
 
 def colours(structure: Structure) -> dict[str, str]:
-    """The colour of every link; the frame, and what is rigid to it, is dark."""
-    return dict.fromkeys((FRAME, *structure.links), DARK) | {
-        link: part.colour for part in parts(structure) for link in part.links
-    }
+    """The colour of every link, by solving order; the frame, and what is rigid to it, is dark."""
+    of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK)
+    return of_frame | {link: part.colour for part in parts(structure) for link in part.links}
 
 
 def at_sketch(results: Results) -> tuple[str, Scene] | None:
