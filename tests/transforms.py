@@ -280,9 +280,12 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
         joint = points[d.joint] if d.kind == "turn" else d.joint
         return replace(d, link=names[d.link], base=names[d.base], joint=joint, end=points.get(d.end, ""))
 
+    def output_name(link: str) -> str:
+        point, dot, axis = link.rpartition(".")
+        return f"{points[point]}.{axis}" if dot else names[link] if link else ""
+
     def output(o: Output) -> Output:
-        point, dot, axis = o.link.rpartition(".")
-        return replace(o, link=f"{points[point]}.{axis}" if dot else names[o.link])
+        return replace(o, link=output_name(o.link))
 
     links = {
         names[n]: replace(
@@ -292,7 +295,10 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
     }  # fmt: skip
     return replace(
         it, links=links,
-        hinges=tuple(Hinge(points[h.point], tuple(names[n] for n in shuffled(h.links))) for h in shuffled(it.hinges)),
+        hinges=tuple(
+            Hinge(points[h.point], tuple(names[n] for n in shuffled(h.links)), names.get(h.attached_to, ""))
+            for h in shuffled(it.hinges)
+        ),
         slides=tuple(
             replace(s, carrier=names[s.carrier], runner=names[s.runner], point=points.get(s.point, ""))
             for s in shuffled(it.slides)
@@ -306,7 +312,11 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
             angles={names[n]: a for n, a in shuffled(it.sketch.angles.items())},
         ),
         loads=tuple(
-            replace(x, link=names[x.link], base=names[x.base], point=points.get(x.point, ""))
+            replace(
+                x, link=names[x.link], base=names[x.base], point=points.get(x.point, ""),
+                stroke_link=output_name(x.stroke_link),
+                table=x.table and replace(x.table, stroke_link=output_name(x.table.stroke_link)),
+            )
             for x in shuffled(it.loads)
         ),
         springs=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.springs)),
