@@ -304,6 +304,13 @@ def test_pressures_in_bare_pascals_are_warned_of():
     assert doubt.startswith("dynamics.run.drive comes to 460000 MPa, more than 1000 MPa")
 
 
+def test_keys_that_are_left_empty_are_no_slip():
+    empty = ("at: [100, 30], force", "at: [100, 30], pressure: , force")
+    law = "output: 5\ndynamics: {mean speed: , delta: , motor: , run: , flywheel: {inertia: 9}}"
+    assert told(empty, ("output: 5", law)) == []
+    assert told(empty, say=understood)[2].endswith("forces 1500 N (F); gravity 9.81 m/s^2 downwards")
+
+
 def test_an_inertia_far_too_small_for_its_link_is_warned_of():
     assert told(("inertia: 1.1", "inertia: 0.01")) == []
     assert told(("inertia: 1.1", "inertia: 1.1e-3")) == [

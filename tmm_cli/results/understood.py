@@ -105,12 +105,12 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
         return
     data = problem.source.data
     blocks: list[tuple[Path, Any]] = [(("loads", name), load) for name, load in (data.get("loads") or {}).items()]
-    blocks = [((*path, "pressure"), load["pressure"]) for path, load in blocks if "pressure" in load]
+    blocks = [((*path, "pressure"), load["pressure"]) for path, load in blocks if load.get("pressure")]
     drive = ((data.get("dynamics") or {}).get("run") or {}).get("drive")
-    if isinstance(drive, dict) and "area" in drive:
+    if isinstance(drive, dict) and drive.get("area") is not None:
         blocks.append((("dynamics", "run", "drive"), drive))
-    for path, given in blocks:
-        rows = [row[1] for row in given["table"]] if "table" in given else [given["size"]]
+    for path, block in blocks:
+        rows = [row[1] for row in block["table"]] if block.get("table") else [block["size"]]
         yield path, max(abs(float(rounded(problem.values.number(row, PRESSURE, path)))) for row in rows)
 
 
@@ -278,16 +278,16 @@ def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
 
 def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
     """A coefficient of fluctuation that is written in per cent twice over."""
-    given = (data.get("dynamics") or {}).get("delta")
-    if given is None:
+    written = (data.get("dynamics") or {}).get("delta")
+    if written is None:
         return
-    delta = float(rounded(values.number(given, NUMBER, ("dynamics", "delta"))))
+    delta = float(rounded(values.number(written, NUMBER, ("dynamics", "delta"))))
     if delta < UNIFORM:
         yield _(
-            "dynamics.delta is {given} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
+            "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
             "`{per_cent} %`, if that is meant"
         ).format(
-            given=given, parts=f"{1 / delta:.0f}", hundredfold=numeral(100 * delta, ".6g"),
+            written=written, parts=f"{1 / delta:.0f}", hundredfold=numeral(100 * delta, ".6g"),
             per_cent=numeral(1e4 * delta, ".6g"),
         )  # fmt: skip
 
@@ -306,7 +306,7 @@ def _far_places(problem: Problem) -> Iterator[str]:
         distances = [float(abs(point - at)) for point in linkage.links[link].points.values()]
         distance = min(distances, default=0.0)
         if distance > FAR * size:
-            told = _(
+            sentence = _(
                 "{key}: this place is {distance} from every point of link {link}, farther than the mechanism is long "
                 "(its largest link, {points}, is {size}): is the unit right? a bare length is in {unit}"
             ).format(
@@ -314,8 +314,8 @@ def _far_places(problem: Problem) -> Iterator[str]:
                 size=with_unit(problem.units, size, LENGTH), unit=problem.units.spelt(LENGTH),
             )  # fmt: skip
             names = "".join(list(linkage.links[link].points)[:2])
-            share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=told, points=names)
-            yield share if len(distances) > 1 else told
+            share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
+            yield share if len(distances) > 1 else sentence
 
 
 def _high_pressures(problem: Problem) -> Iterator[str]:

@@ -157,12 +157,14 @@ def short_tables(results: Results) -> Iterable[str]:
     """Tables of loads that end before the motion does."""
     for load in results.linkage.loads if results.loads else ():
         if load.table is not None and _short(results, load, load.table):
-            told = _(
+            sentence = _(
                 "the table of load {load} does not reach as far as the {against} goes: its end value is held"
             ).format(load=load.name, against=_(load.table.against))
             if load.table.against == "stroke" and not load.table.shares:
-                told = _("{slip}; rows in shares reach over every stroke (against: share of stroke)").format(slip=told)
-            yield told
+                sentence = _("{slip}; rows in shares reach over every stroke (against: share of stroke)").format(
+                    slip=sentence
+                )
+            yield sentence
 
 
 def long_tables(results: Results) -> Iterable[str]:
