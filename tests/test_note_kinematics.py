@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from models import PROBLEMS
+from models import PROBLEMS, solved_text
+from test_jams import planets
 
 from tmm_cli import load, solve
 from tmm_cli.draw.paper.picture import Picture
@@ -85,3 +86,12 @@ def test_scales_are_those_of_the_drawings(name):
         assert isinstance(drawing, Picture)
         here = Here(subject(name), k, first=True)
         assert (here.v if stem == "velocity" else here.a).mu == drawing.mu
+
+
+def test_wheels_that_turn_evenly_have_no_accelerations_made_of_rounding():
+    """Three planets hold one another twice: least squares leave 1e-31 rad/s2 where nothing accelerates."""
+    results = solved_text(planets(3, "h"))
+    told = [block for block in blocks(Subject(results, drawn=False)) if isinstance(block, Found)]
+    rates = {block.name.name: block.result for block in told if block.name.name.startswith(("ω", "ε"))}
+    assert rates["ωs"] == pytest.approx(3.0)  # Willis: 1 + 80/40
+    assert all(value == 0 for name, value in rates.items() if name.startswith("ε"))

@@ -59,8 +59,11 @@ def readings(plan: Plan) -> list[Reading]:
 def turns(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[Turn]:
     """Of all links that turn in any of the positions."""
     letter = {"omega": "ω", "epsilon": "ε"}[what]
-    rates = {link: getattr(motion.link(link), what) for link in motion.linkage.moving}
+    links = {link: motion.link(link) for link in motion.linkage.moving}
+    rates = {link: getattr(own, what) for link, own in links.items()}
     largest = max((float(np.nanmax(np.abs(rate))) for rate in rates.values()), default=0.0)
+    if what == "epsilon":  # where all turn evenly, rounding is small against omega squared only
+        largest = max([largest, *(float(np.nanmax(np.abs(own.omega))) ** 2 for own in links.values())])
     for link, rate in rates.items():
         if np.nanmax(np.abs(rate)) > NO_VECTOR * largest:
             value = float(rate[k])
