@@ -5,6 +5,7 @@ from test_commands import ROOT, tmm
 
 from tmm_cli import load
 from tmm_cli.problem.budget import refuse_options
+from tmm_cli.problem.errors import ProblemError
 
 SHAPER = (ROOT / "problems" / "shaper.yaml").read_text(encoding="utf-8")
 LOAD = "F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}"
@@ -61,6 +62,13 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
         ("run",): "positions.detail: these are too many drawings for so many links, points and positions "
         "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
         ("structure", "--drawings"): "allowed: without drawings",
+        ("note",): "positions.detail: these are too many drawings for so many links, points and positions "
+        "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
+        ("sheets",): "positions.detail: these are too many drawings",
+        ("sheets", "--positions", "all"): "found: 12 positions in detail; 5 links, 508 points, 1 loads",
+        ("kinematics", "--centres", *(word for k in range(6) for word in ("-p", str(k)))):
+        "--centres: these are too many instantaneous centres for so many links and positions "
+        "found: 6 positions in detail; 5 links, 508 points, 1 loads allowed: at most 3 in detail, or without centres",
         **{(name, "--digits"): "--digits: too many positions and too large a linkage for all digits to be judged "
            "found: 12 positions; 5 links, 508 points, 1 loads allowed: at most 2 positions, or without --digits"
            for name in ("run", "kinematics", "forces")},
@@ -76,3 +84,24 @@ def test_every_problem_of_the_bank_may_be_drawn_in_twelve_positions_and_judged()
         linkage = load(str(ROOT / "problems" / f"{name}.yaml")).linkage
         refuse_options(linkage, 12, digits=True, detail=12)
         refuse_options(linkage, 3600, digits=False, detail=12)
+
+
+def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp_path, monkeypatch):
+    """They are drawn again until they are full: 24 positions of a crank-slider took more than a minute of it."""
+    text = SHAPER.replace("count: 12", "count: 48")
+    assert "count: 48" in text
+    file = tmp_path / "much.yaml"
+    file.write_text(text, encoding="utf-8")
+    monkeypatch.setattr("tmm_cli.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
+    for options, told in {
+        ("--positions", "all"): "error: plans of so many positions fill no sheet that is read found: 48 allowed: 24 at "
+        "most; with --positions detail: those of positions.detail",
+        ("--positions", "all", "--set", "n1=1 rpm"): "fill no sheet that is read",
+    }.items():
+        done = tmm("sheets", file, *options, "-o", tmp_path / "refused", cwd=tmp_path)
+        assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr
+    linkage = load(str(ROOT / "problems" / "shaper.yaml")).linkage
+    refuse_options(linkage, 12, digits=False, detail=12, large=True)
+    with pytest.raises(ProblemError) as refused:
+        refuse_options(linkage, 24, digits=False, detail=24, large=True)
+    assert refused.value.allowed == "at most 15 in detail, or without drawings"

@@ -14,7 +14,7 @@ from tmm_cli.analysis.extremes import with_extremes
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.assembly.enumerate import listed
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
-from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
@@ -60,7 +60,11 @@ def kinematics(
 
         if assemblies:
             return _list_assemblies(file, as_json, out, position, own)
-        results = solve(opened(file, own, position, digits), "kinematics", position, asked)
+        problem = opened(file, own, position, digits)
+        if centres or problem.whole.request.centres:
+            number = len(position) if position else count_detail(problem.whole)
+            afford(problem.whole, position, digits=digits, centres=number)
+        results = solve(problem, "kinematics", position, asked)
         if extremes:
             results = with_extremes(results)
         if centres:

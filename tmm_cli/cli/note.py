@@ -9,7 +9,7 @@ import typer
 
 from tmm_cli import solve
 from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
-from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.draw import remarks
 from tmm_cli.language import _
@@ -31,7 +31,9 @@ def note(
 
     def work(file: str) -> int:
         wanted = formats_of(formats)
-        results = solve(opened(file, variant_settings(file, variants, variant, settings)))
+        problem = opened(file, variant_settings(file, variants, variant, settings))
+        afford(problem.whole, None, detail=count_detail(problem.whole))
+        results = solve(problem)
         for remark in remarks(results):
             say(remark)
         for warning in warnings(results):

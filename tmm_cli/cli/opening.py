@@ -65,16 +65,21 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
 
 
 def afford(
-    problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: Sequence[int] | None = None
-) -> None:
-    """Refuse more work than the budget holds, before it starts. detail: positions that are drawn
-    in detail; None where nothing is drawn. Raises ProblemError."""
+    problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: int | None = None,
+    large: bool = False, centres: int = 0,
+) -> None:  # fmt: skip
+    """Refuse more work than the budget holds, before it starts: as budget.refuse_options. Raises ProblemError."""
     request = problem.request
     count = len(positions or request.places) or request.count
     try:
-        refuse_options(problem.linkage, count, digits=digits, detail=None if detail is None else len(detail))
+        refuse_options(problem.linkage, count, digits=digits, detail=detail, large=large, centres=centres)
     except ProblemError as error:
         raise error.located(problem.file) from None
+
+
+def count_detail(problem: Problem) -> int:
+    """How many positions are drawn in detail; where the file names none, that of the largest balancing moment."""
+    return len(problem.request.detail) or 1
 
 
 def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tmm_cli.analysis.pipeline import Results, Stage
 from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
-from tmm_cli.cli.opening import afford, introduce, tree_of
+from tmm_cli.cli.opening import afford, count_detail, introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.library import count, problem_of, redrive, solve, structure_of
@@ -57,7 +57,7 @@ def computed(
     if digits or drawings:
         whole = problem.whole
         single = positions is not None and len(positions) == 1
-        shown = () if stage == "structure" else (0,) if single else whole.request.detail or (0,)
+        shown = 0 if stage == "structure" else 1 if single else count_detail(whole)
         afford(whole, positions, digits=digits, detail=shown if drawings else None)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 

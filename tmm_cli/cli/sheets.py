@@ -11,12 +11,12 @@ import typer
 from tmm_cli import solve
 from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.drawing import by_all_cores
-from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.draw import remarks
 from tmm_cli.draw.formats import FORMATS
-from tmm_cli.draw.layout.files import files_of_sheets, formats_of
+from tmm_cli.draw.layout.files import files_of_sheets, formats_of, refuse_plans
 from tmm_cli.results.warnings import warnings
 
 
@@ -37,6 +37,10 @@ def sheets(
     def work(file: str) -> int:
         wanted = formats_of(formats)
         problem = opened(file, variant_settings(file, variants, variant, settings))
+        request = problem.whole.request
+        plans = (len(request.places) or request.count) if positions == "all" else count_detail(problem.whole)
+        refuse_plans(plans)
+        afford(problem.whole, None, detail=plans, large=True)
         results = solve(problem, "forces")
         for remark in remarks(results):
             say(remark)

@@ -12,6 +12,8 @@ EACH = 8  # positions more for each link: what is searched for in each group com
 LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their measured times and tables
 SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
 SHEETS = 6  # that are drawn beside those in detail
+LAID_OUT = 6  # positions in detail from which laying large sheets out takes longer than drawing: as their square
+CENTRES = 0.1  # positions that a sheet of centres counts for besides, times the square of the number of links
 JUDGED = 0.4  # positions that a part counts for in each that is judged: against all data, so it grows with the square
 FIRST, LONG = 20, 720  # positions more that are judged for what was searched for; the most that are
 
@@ -40,10 +42,14 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
         )  # fmt: skip
 
 
-def refuse_options(linkage: Linkage, count: int, *, digits: bool, detail: int | None) -> None:
+def refuse_options(
+    linkage: Linkage, count: int, *, digits: bool, detail: int | None, large: bool = False, centres: int = 0
+) -> None:
     """Refuse what the options of a command add to the work at so many positions, before it starts.
 
-    detail: positions that are drawn in detail; None where nothing is drawn. Raises ProblemError, not yet located.
+    detail: positions that are drawn in detail; None where nothing is drawn. large: on large sheets, which are drawn
+    again and again until they are full. centres: positions whose instantaneous centres are found and drawn.
+    Raises ProblemError, not yet located.
     """
     size = parts(linkage)
     left = BUDGET / size - _searched(linkage) - count
@@ -59,14 +65,28 @@ def refuse_options(linkage: Linkage, count: int, *, digits: bool, detail: int | 
                 allowed=_("without --digits") if most < 1
                 else _("at most {most} positions, or without --digits").format(most=most),
             )  # fmt: skip
-    if detail is not None and SHEET * (SHEETS + detail) > left:
-        most = int(left // SHEET) - SHEETS
+    each = SHEET + CENTRES * len(linkage.moving) ** 2
+    if each * centres > left:
+        most = int(left // each)
+        raise ProblemError(
+            _("these are too many instantaneous centres for so many links and positions"), path=("--centres",),
+            found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_told(linkage)),
+            allowed=_("without centres") if most < 1
+            else _("at most {most} in detail, or without centres").format(most=most),
+        )  # fmt: skip
+    if detail is not None and SHEET * _sheets(detail, large) > left:
+        most = max((few for few in range(detail) if SHEET * _sheets(few, large) <= left), default=-1)
         raise ProblemError(
             _("these are too many drawings for so many links, points and positions"), path=("positions", "detail"),
             found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_told(linkage)),
             allowed=_("without drawings") if most < 0
             else _("at most {most} in detail, or without drawings").format(most=most),
         )  # fmt: skip
+
+
+def _sheets(detail: int, large: bool) -> float:
+    """Sheets of positions that drawings count for."""
+    return SHEETS + detail * (1 + large * detail / LAID_OUT)
 
 
 def _searched(linkage: Linkage) -> int:

@@ -24,6 +24,15 @@ def formats_of(text: str) -> list[str]:
     return wanted
 
 
+def refuse_plans(count: int) -> None:
+    """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
+    if count > MOST:
+        raise ProblemError(
+            _("plans of so many positions fill no sheet that is read"), found=str(count),
+            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
+        )  # fmt: skip
+
+
 def files_of_sheets(
     results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], way: Way = here, *, every: bool
 ) -> Iterator[tuple[str, bytes]]:
@@ -32,11 +41,7 @@ def files_of_sheets(
     way: who draws and who writes. every: whether motion plans are drawn of all positions.
     """
     choice = chosen(results, every=every)
-    if len(choice.plans) > MOST:
-        raise ProblemError(
-            _("plans of so many positions fill no sheet that is read"), found=str(len(choice.plans)),
-            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
-        )  # fmt: skip
+    refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
         say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
     sheets = dict(large_sheets(choice, paper, way))
