@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -159,6 +160,13 @@ def test_an_address_that_is_none_is_one_line(address):
     assert str(refused.value) == told
 
 
+def test_a_server_that_says_nothing_is_one_line(monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "ANSWERS", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as server, pytest.raises(ProblemError, match="no scheduler answers"):
+        graded(task(), TABLE, GROUP, cluster(f"127.0.0.1:{server.getsockname()[1]}"))
+
+
 def started(tmp_path, kind, *options, path=ROOT):
     """A process of Dask. path: where it finds the program."""
     note = tmp_path / "scheduler.json"
@@ -235,3 +243,17 @@ def test_a_cluster_that_loses_a_worker_on_the_way_gives_the_same_gradebook(dask,
 
     assert repr(graded(task(), TABLE, GROUP, cluster(address), None, lose)) == repr(graded(task(), TABLE, GROUP))
     assert seen == [0, *[1] * 12]
+
+
+def test_a_cluster_that_loses_all_its_workers_is_one_line(dask, monkeypatch):
+    monkeypatch.setattr(run, "CHUNK", 1)
+    address, processes_of_dask = dask
+
+    def lose(count):
+        if count:
+            monkeypatch.setattr(workers, "ANSWERS", 2)
+            for one in processes_of_dask:
+                one.kill()
+
+    with pytest.raises(ProblemError, match="the scheduler has no workers"):
+        graded(task(), TABLE, GROUP, cluster(address), None, lose)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import re
 import signal
+import socket
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -83,8 +84,9 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
         raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
     try:
+        _wait_for_greeting(address)
         client = distributed.Client(address, timeout=ANSWERS, set_as_default=False)
-    except (OSError, ValueError, TypeError, RuntimeError):
+    except (OSError, ValueError, OverflowError):
         raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
     with client:
         _refuse_other_programs(client, address)
@@ -98,19 +100,31 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                 return
 
 
+def _wait_for_greeting(address: str) -> None:
+    """Wait until a scheduler introduces itself; a client would wait for ever where none does. Raises OSError."""
+    host, __, port = address.removeprefix("tcp://").rpartition(":")
+    with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERS) as connection:
+        if not connection.recv(1):
+            raise ConnectionError
+
+
 def _finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
     """Futures as they finish. Raises ProblemError when no worker is left for so long that none will come."""
-    worked = time.monotonic()
+    worked = asked = time.monotonic()
     while count:
         batch = completed.next_batch(block=False)
         count -= len(batch)
         yield from batch
-        if batch or client.nthreads():
-            worked = time.monotonic()
-        elif time.monotonic() - worked > ANSWERS:
-            raise _no_workers(address)
-        if not batch:
-            time.sleep(POLL)
+        now = time.monotonic()
+        if batch:
+            worked = now
+            continue
+        if now - asked > ANSWERS / 10:
+            asked = now
+            worked = now if client.nthreads() else worked
+            if now - worked > ANSWERS:
+                raise _no_workers(address)
+        time.sleep(POLL)
 
 
 def _refuse_other_programs(client: Any, address: str) -> None:
