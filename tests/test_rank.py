@@ -21,6 +21,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.reports.structure import left_out
 from tmm_cli.structure.assur import Passive, analyse, ties_of
 from tmm_cli.structure.contours import classification
+from tmm_cli.tolerances import CROSSING_AGREES
 
 WITH_A_DYAD = Path("tests/data/redundant-first.yaml").read_text(encoding="utf-8")
 
@@ -329,7 +330,9 @@ def test_a_dyad_on_a_parallelogram_with_two_couplers_moves_as_on_a_rotating_link
     angle = results.motion.q
     height = 0.12 * np.sin(angle) + 0.15
     expected = 0.4 + 0.12 * np.cos(angle) + np.sqrt(0.35**2 - height**2)
-    assert np.allclose(results.motion.spot("F").real, expected, rtol=0, atol=1e-14)
+    change_points = np.abs(np.sin(angle)) < 1e-9  # passed by a fit, and known as well as it
+    known = np.where(change_points, CROSSING_AGREES, 2e-15)
+    assert np.all(np.abs(results.motion.spot("F").real - expected) <= known)
 
 
 def test_every_command_accepts_a_redundant_link_before_the_group_that_follows(tmp_path):
