@@ -222,6 +222,15 @@ output: 3
             id="without the second coupler the dyad on it would fall apart",
         ),
         pytest.param(
+            WITH_A_DYAD, "I(0,1) -> II(2,3) -> II(5,6)", ["link 4 is redundant, adds q = 1"],
+            id="the second coupler on a compound hinge",
+        ),
+        pytest.param(
+            WITH_A_DYAD.replace("links:\n", "hinges: {B: {attached to: 4}}\nlinks:\n"),
+            "I(0,1) -> II(3,4) -> II(5,6)", ["link 2 is redundant, adds q = 1"],
+            id="the file attaches the dyad to the second coupler",
+        ),
+        pytest.param(
             ON_BOTH, "I(0,1) -> II(2,3) -> II(4) -> II(5,6), II(2,3) -> II(7,8)",
             ["pair E counts as a higher pair: one of its two constraints is redundant, adds q = 1"],
             id="neither coupler can be left out",

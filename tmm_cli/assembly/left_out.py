@@ -2,8 +2,8 @@
 
 Decided by the rank of the equations at one position: without what is left out the mobility is the same. Links that are
 rigid to one another count as one. Links between moving links are left out first, then pairs, then links connected to
-the frame; the later in the file before the earlier, loaded links last. Drivers and outputs stay. Where nothing more can
-be left out as a whole, pairs lose single conditions.
+the frame; the later in the file before the earlier, loaded links last. Drivers, outputs and links to which the file
+attaches others stay. Where nothing more can be left out as a whole, pairs lose single conditions.
 """
 
 from __future__ import annotations
@@ -131,49 +131,77 @@ def _alike(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
     return [tuple(links) for links in sets if len(links) > 1]
 
 
+class _Selection:
+    """What is left of a linkage while redundant links and pairs are left out, one after another."""
+
+    def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
+        self.left = Remainder(linkage, poses, tuple(linkage.links))
+        self.among_rigid = {links: replace(self.left, links=links).redundant for links in self.left.rigid_sets()}
+        self.reduction = Reduction(tuple(RigidSet(links, number) for links, number in self.among_rigid.items()))
+        self.every = list(ties_of(linkage))
+        self.links: list[RedundantLink] = []
+
+    def excess(self, left: Remainder) -> int:
+        """The redundant constraints that do not lie within rigid sets."""
+        there = {*left.links}
+        return left.redundant - sum(number for links, number in self.among_rigid.items() if there.issuperset(links))
+
+    @property
+    def ties(self) -> list[int]:
+        """The ties between the bodies that are left, the last of the file first."""
+        between = [
+            k for k, tie in enumerate(self.every)
+            if self.reduction.body(tie.a) != self.reduction.body(tie.b) and k not in self.left.ties
+        ]  # fmt: skip
+        gone = {link for redundant in self.links for link in redundant.links}
+        return [k for k in reversed(between) if gone.isdisjoint((self.every[k].a, self.every[k].b))]
+
+    def leave_links(self, bodies: Iterable[str]) -> None:
+        """Leave out each of these bodies that is redundant."""
+        for body in bodies:
+            members = self.reduction.members(body)
+            trial = self.left.without(members)
+            excess = self.excess(self.left)
+            if excess and self.excess(trial) < excess and trial.moves:
+                self.links.append(RedundantLink(members, excess - self.excess(trial)))
+                self.left = trial
+
+    def leave_pairs(self) -> None:
+        """Leave out each pair all constraints of which are redundant."""
+        stay = _driven_and_axles(self.left.linkage)
+        for k in self.ties:
+            constraints = self.every[k].constraints
+            if constraints > self.excess(self.left) or self.every[k].name in stay:
+                continue
+            trial = self.left.without(ties=[k])
+            if self.left.redundant - trial.redundant == constraints and trial.moves:
+                self.left = trial
+
+
 def leave_out(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
     """Rigid sets, redundant links and conditions such that what is left are Assur groups; None if there are none."""
-    whole = Remainder(linkage, poses, tuple(linkage.links))
-    sets = {links: replace(whole, links=links).redundant for links in whole.rigid_sets()}
-    rigid = tuple(RigidSet(links, number) for links, number in sets.items())
-    reduction = Reduction(rigid)
-    inside = {k for k, tie in enumerate(ties_of(linkage)) if _internal(reduction, tie.a, tie.b)}
-
-    def excess(left: Remainder) -> int:
-        return left.redundant - sum(number for links, number in sets.items() if {*links} <= {*left.links})
-
-    left, links = whole, []
-    between, on_frame = _candidates(linkage, reduction)
-    for bodies, ties in ((between, False), ((), True), (on_frame, False)):
-        for body in bodies:
-            members = reduction.members(body)
-            trial = left.without(members)
-            if excess(left) and excess(trial) < excess(left) and trial.moves:
-                links.append(RedundantLink(members, excess(left) - excess(trial)))
-                left = trial
-        for k, tie in reversed([*enumerate(ties_of(linkage))] if ties else []):
-            if k in inside or excess(left) < tie.constraints or not {tie.a, tie.b} & {*left.links}:
-                continue
-            trial = left.without(ties=[k])
-            if left.redundant - trial.redundant == tie.constraints and trial.moves:
-                left = trial
-    every = list(ties_of(linkage))
-    whole_ties = {k: every[k].constraints for k in left.ties}
-    links.sort(key=lambda redundant: linkage.moving.index(redundant.links[0]))
-    reduction = replace(reduction, links=tuple(links), conditions=whole_ties)
-    free = [k for k in reversed(range(len(every))) if k not in inside and k not in left.ties]
-    for drop in islice(combinations_with_replacement(free, excess(left)), MOST_TRIES):
-        conditions = whole_ties | {k: drop.count(k) for k in drop}
-        trial_reduction = replace(reduction, conditions=conditions)
-        if all(n <= every[k].constraints for k, n in conditions.items()) and reduced(
-            linkage, structure, trial_reduction
-        ):
-            return trial_reduction
+    selection = _Selection(linkage, poses)
+    between, on_frame = _candidates(linkage, selection.reduction)
+    selection.leave_links(between)
+    selection.leave_pairs()
+    selection.leave_links(on_frame)
+    links = sorted(selection.links, key=lambda redundant: linkage.moving.index(redundant.links[0]))
+    whole_pairs = {k: selection.every[k].constraints for k in selection.left.ties}
+    single = combinations_with_replacement(selection.ties, selection.excess(selection.left))
+    for drop in islice(single, MOST_TRIES):
+        conditions = whole_pairs | {k: drop.count(k) for k in drop}
+        reduction = replace(selection.reduction, links=tuple(links), conditions=conditions)
+        possible = all(number <= selection.every[k].constraints for k, number in conditions.items())
+        if possible and reduced(linkage, structure, reduction) is not None:
+            return reduction
     return None
 
 
-def _internal(reduction: Reduction, a: str, b: str) -> bool:
-    return reduction.body(a) == reduction.body(b)
+def _driven_and_axles(linkage: Linkage) -> set[str]:
+    """Names of the pairs in which drivers work, and of those of gears, cams and followers with their carrier."""
+    on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
+    slides = {mesh.slide for mesh in linkage.meshes}
+    return {driver.joint for driver in linkage.drivers} | {name for name in on_carrier | slides if name}
 
 
 def _candidates(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
@@ -182,7 +210,8 @@ def _candidates(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], 
     driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
     outputs = [linkage.output_carrier(output.link) for output in linkage.outputs]
     outputs = outputs or [link for link in on_frame if link not in driving][-1:]
-    stay = {reduction.body(link) for link in (FRAME, *driving, *outputs)}
+    carrying = [hinge.attached_to for hinge in linkage.hinges if hinge.attached_to]
+    stay = {reduction.body(link) for link in (FRAME, *driving, *outputs, *carrying)}
     loaded = {reduction.body(link) for load in linkage.loads for link in (load.link, load.base)}
     bodies = [body for body in reversed(reduction.bodies(linkage.moving)) if body not in stay]
     bodies.sort(key=lambda body: body in loaded)
