@@ -26,7 +26,7 @@ from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
 from tmm_cli.problem.templates import template_text, templates, translations
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.compare import Difference, difference_table
+from tmm_cli.results.compare import Difference, difference_table, differences
 from tmm_cli.results.reports import tables
 from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
 
@@ -385,3 +385,18 @@ def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
         assert "…" not in text
         assert all(len(line) <= width for line in text.splitlines())
         assert ("Cycle (continued)" in text) == (width < 120)
+
+
+def test_zeros_of_a_golden_run_are_compared_with_the_largest_value_of_their_kind():
+    """Each processor rounds a zero in its own way; what is larger than such rounding is a difference."""
+    expected = {
+        "links": {"2": {"second": [125.0, 3.0]}, "3": {"second": [0.0, -7e-14]}},
+        "energy": {"inertia": [1410.0, 1410.0], "slope": [-3.8e-11, 0.0]},
+    }
+    found = json.loads(json.dumps(expected))
+    found["links"]["3"]["second"] = [1e-12, 2e-13]
+    found["energy"]["slope"] = [-5.5e-11, 1e-11]
+    assert differences(expected, found, 1e-9) == []
+    found["links"]["3"]["second"][0] = 1e-10
+    found["energy"]["slope"][1] = 1e-8
+    assert [one.quantity for one in differences(expected, found, 1e-9)] == ["links.3.second", "energy.slope"]
