@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
+from typing import get_args, get_origin
 
 import mpmath as mp
 import numpy as np
@@ -15,8 +16,12 @@ import pytest
 import yaml
 from models import PROBLEMS
 from mpmath import arg, conj, cos, mpf, pi, sin, sqrt
+from pydantic import BaseModel
 
 from tmm_cli import load, solve
+from tmm_cli.problem.reader import read_text
+from tmm_cli.problem.schema import File
+from tmm_cli.problem.schema_chain import SpatialFile
 from tmm_cli.results.properties import properties_shown
 
 mp.mp.dps = 40
@@ -597,3 +602,54 @@ def test_every_property_of_the_bank_has_an_expected_value():
     blocks = {name: yaml.safe_load(text)["shows"] for name, text in texts.items() if re.search(r"^shows:", text, re.M)}
     assert len(blocks) > 40
     assert not [f"{name}: {key}" for name, shows in blocks.items() for key in shows if "expected" not in shows[key]]
+
+
+def models_in(kind):
+    """The pydantic models that an annotation names."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        yield kind
+    for inner in get_args(kind):
+        yield from models_in(inner)
+
+
+def blocks_used(data, kind):
+    """Blocks (model and, at the top of a file, key) that a file or a part of it uses."""
+    if isinstance(data, list):
+        for value in data:
+            yield from blocks_used(value, kind)
+    if not isinstance(data, dict):
+        return
+    for model in models_in(kind):
+        fields = {one.alias or name: one.annotation for name, one in model.model_fields.items()}
+        if get_origin(kind) is not dict and data.keys() <= fields.keys():
+            yield model.__name__
+            for key, value in data.items():
+                if model in TOP:
+                    yield key
+                yield from blocks_used(value, fields[key])
+        elif get_origin(kind) is dict:
+            for value in data.values():
+                yield from blocks_used(value, model)
+
+
+def all_blocks(model, seen):
+    seen.add(model)
+    for one in model.model_fields.values():
+        for inner in models_in(one.annotation):
+            if inner not in seen:
+                all_blocks(inner, seen)
+    return seen
+
+
+TOP = (File, SpatialFile)
+
+
+def test_every_block_of_the_format_is_in_the_bank():
+    """So every command meets it on every file of the bank: friction, which none had, ended --digits."""
+    used = set()
+    for path in [*PROBLEMS.glob("*.yaml"), *PROBLEMS.glob("*/*.yaml"), *PROBLEMS.glob("grading/*/task.yaml")]:
+        data = read_text(path.read_text(encoding="utf-8"), path.name).data
+        used.update(blocks_used(data, SpatialFile if "structure" in data else File))
+    there = {model.__name__ for top in TOP for model in all_blocks(top, set())}
+    keys = {one.alias or name for top in TOP for name, one in top.model_fields.items()}
+    assert sorted((there | keys) - used) == []
