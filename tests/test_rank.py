@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import random_linkages
 from bank import EVERY, problem, solved
 from models import solved_text
 from test_commands import tmm
@@ -16,7 +17,7 @@ from test_jams import planets
 
 from tmm_cli import solve
 from tmm_cli.assembly.rank import mobile
-from tmm_cli.linkage import FRAME
+from tmm_cli.linkage import FRAME, Hinge, Link
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.results.reports.structure import left_out
 from tmm_cli.structure.assur import Passive, analyse, ties_of
@@ -264,6 +265,34 @@ def test_rigid_links_count_as_one_and_redundant_links_and_pairs_are_left_out_of_
     assert [group.mobility for group in structure.groups] == [0] * len(structure.groups)
     n, lower, higher = structure.count
     assert 3 * n - 2 * lower - higher == 1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
+    """Two bolts are two hinges: they repeat one constraint, and the plate counts as one with its link."""
+    random = np.random.default_rng(seed)
+    linkage = random_linkages.linkage(seed, tuple(map(str, random.choice(random_linkages.TYPES, 2))))
+    plain = analyse(linkage)
+    link = str(random.choice([name for name in linkage.moving if len(linkage.links[name].points) > 1]))
+    bolts = sorted(linkage.links[link].points)[-2:]
+    first, last = (linkage.local(link, bolt) for bolt in bolts)
+    plate = Link("plate", {bolts[0]: 0j, bolts[1]: (last - first) * 1j})  # its axes are turned by -90 degrees
+    known = {hinge.point: hinge.links for hinge in linkage.hinges}
+    hinges = [Hinge(point, (*known.get(point, (link,)), "plate")) for point in bolts]
+    others = [hinge for hinge in linkage.hinges if hinge.point not in bolts]
+    sketched = {**linkage.sketch.angles, "plate": linkage.sketch.angles[link] - math.pi / 2}
+    bolted = mobile(
+        replace(
+            linkage, links={**linkage.links, "plate": plate}, hinges=(*others, *hinges),
+            sketch=replace(linkage.sketch, angles=sketched),
+        )
+    )  # fmt: skip
+    alike = next((links for rigid in plain.reduction.rigid if link in (links := rigid.links)), (link,))
+    (rigid,) = (rigid for rigid in bolted.reduction.rigid if "plate" in rigid.links)
+    assert (set(rigid.links), rigid.constraints) == ({*alike, "plate"}, 1)
+    assert bolted.redundant == 1
+    assert [(group.type, group.roman) for group in bolted.groups] == [(g.type, g.roman) for g in plain.groups]
+    assert bolted.count == plain.count
 
 
 @pytest.mark.parametrize(

@@ -149,12 +149,8 @@ class _Selection:
     @property
     def ties(self) -> list[int]:
         """The ties between the bodies that are left, the last of the file first."""
-        between = [
-            k for k, tie in enumerate(self.every)
-            if self.reduction.body(tie.a) != self.reduction.body(tie.b) and k not in self.left.ties
-        ]  # fmt: skip
-        gone = {link for redundant in self.links for link in redundant.links}
-        return [k for k in reversed(between) if gone.isdisjoint((self.every[k].a, self.every[k].b))]
+        gone = replace(self.reduction, links=tuple(self.links)).touched(self.every) | self.left.ties
+        return [k for k in reversed(range(len(self.every))) if k not in gone]
 
     def leave_links(self, bodies: Iterable[str]) -> None:
         """Leave out each of these bodies that is redundant."""

@@ -105,11 +105,12 @@ def _without_passive(
     pairs = {p.name: p for p in structure.pairs}
     among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))
     keys = {pairs[name].point or name if pairs[name].kind == "R" else name for name in names}
-    ties = {k: tie for k, tie in enumerate(ties_of(linkage)) if tie.name in keys}
+    every = tuple(ties_of(linkage))
+    ties = {k: tie for k, tie in enumerate(every) if tie.name in keys}
     reduction = leave_out(linkage, poses, structure)
     for report in (reduction, None) if reduction else (None,):
         first = dict(report.conditions) if report else {}
-        from_ties = [k for k, tie in ties.items() if report is None or report.touches(tie)]
+        from_ties = [k for k in ties if report is None or k in report.touched(every)]
         choices = combinations_with_replacement(from_ties[::-1], number - sum(first.values()))
         for drop in islice(choices, MOST_TRIES):
             dropped = first | {k: drop.count(k) for k in drop}

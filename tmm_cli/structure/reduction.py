@@ -81,9 +81,15 @@ class Reduction:
         """The bodies that are left of these links."""
         return tuple(dict.fromkeys(self.body(link) for link in links if link not in self.removed))
 
-    def touches(self, tie: Tie) -> bool:
-        """True if a tie lies within a rigid set or joins a redundant link."""
-        return self.body(tie.a) == self.body(tie.b) or not self.removed.isdisjoint((tie.a, tie.b))
+    def within(self, ties: Sequence[Tie]) -> frozenset[int]:
+        """The numbers of the ties within rigid sets; in a compound hinge those of several links of one set."""
+        ends = [(tie.name, self.body(tie.a), self.body(tie.b)) for tie in ties]
+        return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
+
+    def touched(self, ties: Sequence[Tie]) -> frozenset[int]:
+        """The numbers of the ties within rigid sets and of those of redundant links."""
+        removed = (k for k, tie in enumerate(ties) if not self.removed.isdisjoint((tie.a, tie.b)))
+        return self.within(ties) | {*removed}
 
     def ties(self, ties: Iterable[Tie]) -> Iterator[Tie]:
         """The ties between the bodies that are left, with the conditions that are left."""
