@@ -15,6 +15,7 @@ Path = tuple[str, ...]
 
 IGNORED = {"files", "part", "tmm", "problem", "warnings", "checks", "digits"}  # checks and warnings rest on the others
 DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
+HALF_KNOWN = {"other_at"}  # where an extreme lies: its value grows by the square of the distance from there
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 NOTHING = 1e-4  # SI: where all values are smaller, with a tolerance of 1e-9 rounding of sums that vanish passes
 FLOOR = 1e-4  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-13 of it passes
@@ -73,7 +74,7 @@ def _scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
             scales[path] = math.pi
         elif set(path) & SHARES:
             scales[path] = max(1.0, peak)  # of a synthesis a margin may be one in newtons
-        elif path[-1] == "at":  # a place of the driver, which may be the zero
+        elif path[-1] == "at" or path[-1] in HALF_KNOWN:  # a place of the driver, which may be the zero
             scales[path] = max(scales[path], largest.get("driver", 0.0))
     return scales
 
@@ -108,6 +109,8 @@ def _worst(path: Path, expected: list[Any], found: list[Any], scale: float) -> D
         if path[-1] == "angle":  # a turn more or less is the same place
             gap = abs(math.remainder(gap, 2 * math.pi))
         size = gap / scale if scale else (0.0 if gap == 0 else math.inf)
+        if path[-1] in HALF_KNOWN:
+            size = size * size
         if worst is None or size > (worst.size or 0.0):
             worst = Difference(_text(path), position, a, b, size)
     return worst
