@@ -379,3 +379,12 @@ def test_every_command_accepts_a_redundant_link_before_the_group_that_follows(tm
     for command in ("structure", "explain", "forces"):
         done = tmm(command, file, cwd=tmp_path)
         assert (done.returncode, "Traceback" in done.stderr) == (0, False), (command, done.stderr)
+
+
+def test_a_load_on_a_coupler_follows_the_stroke_of_the_output_although_a_guide_is_redundant():
+    """The second guide changes no force, and the stroke is a length with it as without it."""
+    load = "loads: {F: {on: 2, at: B, force: {angle: 0, against: stroke, table: [[0, 0], [60 mm, -10 N]]}}}\n"
+    text = GUIDES.replace("ANGLE", "0") + load
+    alone = text.replace(", {on: y, point: K}", "").replace(", y: {through: [0, 40], angle: 0}", "")
+    both, expected = (solved_text(each).reactions.balance.moment for each in (text, alone))
+    assert np.allclose(both, expected, rtol=0, atol=1e-13 * np.max(np.abs(expected)))

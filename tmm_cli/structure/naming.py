@@ -58,12 +58,15 @@ def _cylinder(linkage: Linkage, name: str) -> str | None:
 
 
 def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
-    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder."""
+    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder.
+
+    Where constraints are redundant the groups are not known yet; then the links stand in the order of the file.
+    """
     if linkage.output is not None:
         return linkage.output.link
     driving = {link for driver in linkage.drivers for link in (driver.link, driver.base)}
-    for group in reversed(groups):
-        held = [link for link in group.links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
+    for links in [group.links for group in reversed(groups)] or [linkage.moving[::-1]]:
+        held = [link for link in links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
         held = [link for link in held if link not in driving] or held
         if held:
             return next((link for link in held if linkage.slides_on_frame(link)), held[0])
