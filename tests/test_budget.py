@@ -65,7 +65,7 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
         ("note",): "positions.detail: these are too many drawings for so many links, points and positions "
         "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
         ("sheets",): "positions.detail: these are too many drawings",
-        ("sheets", "--positions", "all"): "found: 12 positions in detail; 5 links, 508 points, 1 loads",
+        ("sheets", "--positions", "all"): "positions.detail: these are too many drawings",
         ("kinematics", "--centres", *(word for k in range(6) for word in ("-p", str(k)))):
         "--centres: these are too many instantaneous centres for so many links and positions "
         "found: 6 positions in detail; 5 links, 508 points, 1 loads allowed: at most 3 in detail, or without centres",
@@ -105,3 +105,13 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     with pytest.raises(ProblemError) as refused:
         refuse_options(linkage, 24, digits=False, detail=24, large=True)
     assert refused.value.allowed == "at most 15 in detail, or without drawings"
+
+
+def test_plans_of_all_positions_count_less_than_positions_in_detail():
+    """Of the press of class III all 24 take 15 s on a core, and are drawn."""
+    press = load(str(ROOT / "problems" / "press-class-iii.yaml")).linkage
+    refuse_options(press, 24, digits=False, detail=1, large=True, plans=24)
+    with pytest.raises(ProblemError) as refused:
+        refuse_options(press, 36_000, digits=False, detail=1, large=True, plans=24)
+    assert (refused.value.path, refused.value.found) == (("--positions",), "24 positions; 7 links, 14 points, 1 loads")
+    assert refused.value.allowed == "plans of at most 19, or --positions detail"

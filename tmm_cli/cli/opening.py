@@ -66,13 +66,13 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
 
 def afford(
     problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: int | None = None,
-    large: bool = False, centres: int = 0,
+    large: bool = False, plans: int = 0, centres: int = 0,
 ) -> None:  # fmt: skip
     """Refuse more work than the budget holds, before it starts: as budget.refuse_options. Raises ProblemError."""
     request = problem.request
     count = len(positions or request.places) or request.count
     try:
-        refuse_options(problem.linkage, count, digits=digits, detail=detail, large=large, centres=centres)
+        refuse_options(problem.linkage, count, digits=digits, detail=detail, large=large, plans=plans, centres=centres)
     except ProblemError as error:
         raise error.located(problem.file) from None
 

@@ -38,9 +38,9 @@ def sheets(
         wanted = formats_of(formats)
         problem = opened(file, variant_settings(file, variants, variant, settings))
         request = problem.whole.request
-        plans = (len(request.places) or request.count) if positions == "all" else count_detail(problem.whole)
-        refuse_plans(plans)
-        afford(problem.whole, None, detail=plans, large=True)
+        detail, plans = count_detail(problem.whole), (len(request.places) or request.count) * (positions == "all")
+        refuse_plans(max(detail, plans))
+        afford(problem.whole, None, detail=detail, large=True, plans=plans)
         results = solve(problem, "forces")
         for remark in remarks(results):
             say(remark)

@@ -13,6 +13,7 @@ LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their 
 SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
 SHEETS = 6  # that are drawn beside those in detail
 LAID_OUT = 6  # positions in detail from which laying large sheets out takes longer than drawing: as their square
+PLANS = 0.25  # sheets that the plans of motion of a position count for on large sheets
 CENTRES = 0.1  # positions that a sheet of centres counts for besides, times the square of the number of links
 JUDGED = 0.4  # positions that a part counts for in each that is judged: against all data, so it grows with the square
 FIRST, LONG = 20, 720  # positions more that are judged for what was searched for; the most that are
@@ -43,12 +44,14 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
 
 
 def refuse_options(
-    linkage: Linkage, count: int, *, digits: bool, detail: int | None, large: bool = False, centres: int = 0
-) -> None:
+    linkage: Linkage, count: int, *, digits: bool, detail: int | None, large: bool = False, plans: int = 0,
+    centres: int = 0,
+) -> None:  # fmt: skip
     """Refuse what the options of a command add to the work at so many positions, before it starts.
 
     detail: positions that are drawn in detail; None where nothing is drawn. large: on large sheets, which are drawn
-    again and again until they are full. centres: positions whose instantaneous centres are found and drawn.
+    again and again until they are full; plans: positions whose plans of motion alone are on them. centres: positions
+    whose instantaneous centres are found and drawn.
     Raises ProblemError, not yet located.
     """
     size = parts(linkage)
@@ -73,6 +76,14 @@ def refuse_options(
             found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_told(linkage)),
             allowed=_("without centres") if most < 1
             else _("at most {most} in detail, or without centres").format(most=most),
+        )  # fmt: skip
+    if detail is not None and SHEET * (_sheets(detail, large) + PLANS * plans) > left >= SHEET * _sheets(detail, large):
+        raise ProblemError(
+            _("these are too many drawings for so many links, points and positions"), path=("--positions",),
+            found=_("{count} positions; {linkage}").format(count=plans, linkage=_told(linkage)),
+            allowed=_("plans of at most {most}, or --positions detail").format(
+                most=int((left / SHEET - _sheets(detail, large)) / PLANS)
+            ),
         )  # fmt: skip
     if detail is not None and SHEET * _sheets(detail, large) > left:
         most = max((few for few in range(detail) if SHEET * _sheets(few, large) <= left), default=-1)
