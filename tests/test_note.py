@@ -136,6 +136,7 @@ def known(results: Results) -> np.ndarray:
         drive = getattr(task, "drive", None)
         found += [*drive.arguments, *drive.values] if drive is not None else []
     for mesh in results.linkage.meshes:
+        found.append(mesh.offset)  # a formula in the file
         if mesh.law is not None:  # where its pieces begin and end
             found += [*np.cumsum([mesh.law.start, *(piece.over for piece in mesh.law.pieces)])]
             found += [*np.cumsum([mesh.offset, *(piece.rise for piece in mesh.law.pieces)])]
