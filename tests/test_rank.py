@@ -334,6 +334,11 @@ def test_kinematics_and_forces_keep_what_the_structural_formula_leaves_out():
     results = solved("crossed-slots")
     assert [sorted(kernel.group.links) for kernel in results.kernels] == [["2", "3", "4"]]
     assert all(np.all(np.isfinite(results.reactions.of(pair).force)) for pair in ("A", "B", "B'"))
+    shown = " ".join(tmm("forces", "problems/crossed-slots.yaml", "--position", 1).stdout.split())
+    assert (
+        "Redundant constraints make the reactions of links 0, 1, 2, 3, 4 with one another statically indeterminate: "
+        "the least ones are given. The balancing load is exact."
+    ) in shown
 
 
 def test_the_table_of_the_structure_says_what_is_redundant_below_the_formula():

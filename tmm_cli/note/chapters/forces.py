@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Heading, said
+from tmm_cli.note.blocks import Block, Heading, paragraph, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces import lever, loads, sections, tables
 from tmm_cli.note.forces.parts import parts_of
 from tmm_cli.plans.record import Symbol
+from tmm_cli.results.reports.structure import indeterminate
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
@@ -26,6 +27,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
           "magnitudes are positive; the arms {h} are measured in the figures."),
         R=Symbol("R"), h=Symbol("h"),
     )  # fmt: skip
+    yield from map(paragraph, indeterminate(subject.results.structure))
     for k in subject.detail:
         yield from _position(subject, k)
     yield Heading(_("Forces in all positions"), 2)

@@ -12,6 +12,7 @@ from tmm_cli.plans.bodies import load_names
 from tmm_cli.quantities import ANGLE, FORCE, LOAD, MOMENT, REACTION, TRANSMITTED, columns
 from tmm_cli.results.reports.cycle import driver_columns, signs
 from tmm_cli.results.reports.long import long_table
+from tmm_cli.results.reports.structure import indeterminate
 from tmm_cli.results.table import Column, Table
 
 
@@ -29,6 +30,7 @@ def tables(results: Results) -> Iterable[Table]:
         N_("name"): [label(r.by, r.on) for r in reactions.all],
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
+    note = " ".join([note, *indeterminate(results.structure)])
     values = [columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
     pins = reactions.pins(results.linkage)

@@ -111,6 +111,16 @@ def left_out(structure: Structure) -> Iterable[str]:
         yield text.format(pair=pair.pair, q=pair.constraints)
 
 
+def indeterminate(structure: Structure) -> Iterable[str]:
+    """What redundant constraints do to reactions: nothing to the balancing load."""
+    among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
+    if among:
+        yield _(
+            "Redundant constraints make the reactions of links {links} with one another statically indeterminate: the "
+            "least ones are given. The balancing load is exact."
+        ).format(links=", ".join(among))
+
+
 def counted_mobility(count: tuple[int, int, int]) -> str:
     """3*3 - 2*4 = 1: Chebyshev's formula with its numbers."""
     n, lower, higher = count
