@@ -63,9 +63,11 @@ def alike(one, other, names, points, *, sense, spin, shift=0j):
         for link, value in values.items():
             aside = shift if part == "x" else 0
             same(spin(value) + aside, getattr(n.centre(names[link]), part), scale)
+    fastest = 1e-3
     for part in ("omega", "epsilon"):
         values = {link: getattr(m.link(link), part) for link in links}
-        scale = max(np.nanmax(np.abs(v), initial=0) for v in values.values()) + 1e-3
+        scale = max(np.nanmax(np.abs(v), initial=0) for v in values.values()) + fastest
+        fastest = scale**2  # what rotates with a steady speed has no other scale of epsilon
         for link, value in values.items():
             same(sense * value, getattr(n.link(names[link]), part), scale)
     assert np.array_equal(one.locked, other.locked)
