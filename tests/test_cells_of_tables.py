@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import subprocess
+import sys
 import zipfile
 
 import pytest
@@ -141,6 +143,10 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
         parts = {name: sound.read(name) for name in sound.namelist()}
     many = SHARED.format(count='uniqueCount="4294967295"')  # memory for so many texts is reserved
     path = packed(path, {**parts, "xl/sharedStrings.xml": many})
+    limited = "import resource, sys, python_calamine; resource.setrlimit(resource.RLIMIT_AS, (2**31, 2**31)); "
+    read = [sys.executable, "-c", limited + "python_calamine.load_workbook(sys.argv[1])", str(path)]
+    if subprocess.run(read, capture_output=True).returncode == 0:
+        pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
         blind.setattr(cells, "_inspect", lambda *unused: None)
         told = "reading it takes too much memory, or ends the process that reads it\n  allowed: a table as CSV"
