@@ -375,10 +375,12 @@ def test_digits_stand_beside_the_values():
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     assert done.returncode == 0
     start = lines.index("what value ± rounding ± lengths ± paper unit")
-    quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 10]]
+    quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",
         "coefficient of change of mean speed k 1 tiny 0 0",
+        "1/k = T_idle/T_working 1 tiny 0 0",
+        "stroke angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
         "working stroke starts at 180 tiny 0 0 deg",
         "link 3 is then at 160 tiny 0.28 2 mm",
         "working stroke lasts 180 tiny 0 0 deg",

@@ -7,7 +7,7 @@ the driver that turns back while the group that stops it goes on: the end goes a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -56,6 +56,9 @@ def responses(results: Results, data: tuple[Length, ...]) -> Mapping[str, Real]:
     for k, pressure in enumerate(results.pressure):
         place, largest = beside.pressure(pressure)
         found |= {f"pressure[{k}].place": place, f"pressure[{k}].largest": largest}
+        if np.isfinite(pressure.other):
+            place, other = beside.pressure(replace(pressure, place=pressure.other_place, largest=pressure.other))
+            found |= {f"pressure[{k}].other_place": place, f"pressure[{k}].other": other}
     return {path: np.where(np.isfinite(rate), rate, 0.0) for path, rate in found.items()}
 
 

@@ -109,6 +109,10 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
         largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
         yield found(f"pressure[{k}].largest", largest, -1)
         yield found(f"pressure[{k}].place", there)
+        if np.isfinite(pressure.other):
+            other, there = wide.pressure(pressure.group, pressure.link, pressure.other_place, pressure.other, span)
+            yield found(f"pressure[{k}].other", other, -1)
+            yield found(f"pressure[{k}].other_place", there)
     if results.losses is not None:  # a sum over half as many places has a larger error than theirs
         rough = cycle_losses(results, CYCLE // 2, ranges=False)
 

@@ -126,7 +126,7 @@ class Wide:
         return min(float(distance[0]), GUESS * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
-        """Of a largest pressure angle, and of the driver's place there: where it is flat, half the digits only.
+        """Of an extreme pressure angle, and of the driver's place there: where it is flat, half the digits only.
 
         At an end of the way it is where the end is; where it is the same all the way, no place is known (infinity).
         """
@@ -146,7 +146,7 @@ class Wide:
         for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
             if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)
-        bend = float(2 * here - b1 - a1) / step**2
+        bend = abs(float(2 * here - b1 - a1)) / step**2  # of an extreme of either kind
         if not bend * step**2 > error:  # no bend that could be told from rounding
             return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
