@@ -17,6 +17,7 @@ from tmm_cli.language import _
 from tmm_cli.plans.moments import LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import extent as extent_of
+from tmm_cli.tolerances import SAME_PLACES
 
 MOST = 12  # arms on one sheet
 
@@ -74,6 +75,8 @@ def _sheets(
         return Beneath(lines, (table_of_forces(shown), table_of_arms(equations, units, mu)))
 
     sized = [*((place, 0j) for place in places), *extent(shown)]
+    if extent_of([place for place, __ in sized])[0] <= SAME_PLACES * here.motion.largest.size:  # but for rounding one
+        places, sized = places[:1], [(places[0], along) for __, along in sized]
     sheet, text = above(here, title, sized, beneath, links=", ".join(part.links))
     measured(sheet, scene, links=part.links)
     bars = sheet.ground.crowd
