@@ -209,7 +209,7 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
     with pytest.raises(ProblemError) as caught:
         build(read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml"))
     assert str(caught.value) == (
-        "x.yaml:11:9: synthesis.vary: with values in the middle of these bounds link 1 cannot be driven: pairs or "
+        "x.yaml:12:9: synthesis.vary: with values in the middle of these bounds link 1 cannot be driven: pairs or "
         "other drivers hold it already\n"
         "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
         "  allowed: W = 1"

@@ -117,7 +117,8 @@ def _kinds(
 ) -> dict[str, str]:
     """The dimension of each: of its values, else the first that the file takes them for, lengths before others.
 
-    Of what the file refuses whatever it is, the first whose dimension it does not mind.
+    A bare number is a number where the file takes it for a length too (a share of the way between two points). Of what
+    the file refuses whatever it is, the first whose dimension it does not mind.
     """
     found = {name: next((k for v in own if (k := _kind_of(v, sense))), "") for name, own in given.items()}
 
@@ -138,8 +139,11 @@ def _kinds(
         return 0
 
     lengths = {name: kind or "length" for name, kind in found.items()}
-    if lengths == found or not minded(lengths):
+    if lengths == found:
         return lengths
+    if not minded(lengths):
+        bare = (name for name, kind in found.items() if not kind)
+        return lengths | {name: "number" for name in bare if not minded(lengths | {name: "number"})}
     plain = dict(found)
     for name in (name for name, kind in plain.items() if not kind):
         found[name] = min(("length", *KINDS), key=lambda kind: minded(plain | {name: kind}))
