@@ -59,7 +59,7 @@ def test_a_rocker_in_one_position_has_no_swing_on_its_sheet(command, tmp_path):
         assert "ψ =" not in drawing and "ends of the output" not in drawing
 
 
-@pytest.mark.parametrize("command", ["run", "sheets"])
+@pytest.mark.parametrize("command", ["run", "sheets", "note"])
 def test_a_block_whose_points_are_one_but_for_rounding_is_drawn(command, tmp_path):
     """The scale of its free body was one of rounding, at which its guide was 1e16 mm long."""
     (tmp_path / "one.yaml").write_text(with_one_position("sine"), encoding="utf-8")

@@ -59,9 +59,15 @@ class Loaded:
 
     @classmethod
     def at(cls, motion: Motion, reactions: Reactions, k: int) -> Loaded:
-        """A position by its index."""
-        places = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
-        return cls(motion, reactions, k, max((abs(p - q) for p in places for q in places), default=0.0) or 1.0)
+        """A position by its index. Its size is that of the moving points, at least the longest link.
+
+        In one position all moving points may coincide but for rounding.
+        """
+        moving = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
+        bodies = [moving, *([complex(p) for p in link.points.values()] for link in motion.linkage.links.values())]
+        return cls(
+            motion, reactions, k, max((abs(p - q) for body in bodies for p in body for q in body), default=0.0) or 1.0
+        )
 
     def place(self, link: str, local: complex) -> complex:
         """A point of a link, m."""
