@@ -6,6 +6,7 @@ on which velocities are continuous, that changes.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -42,31 +43,43 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
     with np.errstate(invalid="ignore"):  # of places where nothing is
         rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
-    found: list[float] = []
-    for k in np.flatnonzero(near) + 1:
-        place = _exact(linkage, upto, float(q[k]), float(step))
-        if place is not None:
-            found.append(place - 2 * half * float(np.floor((place - start) / (2 * half))) if turns else place)
-    places = np.array([p for k, p in enumerate(sorted(found)) if not k or p - sorted(found)[k - 1] > step])
+    found = np.sort(_exact(linkage, upto, q[np.flatnonzero(near) + 1], float(step)))
+    if turns:
+        found = np.sort(found - 2 * half * np.floor((found - start) / (2 * half)))
+    places = found[np.diff(found, prepend=-np.inf) > step]
     if len(places) > 1 and turns and places[0] + 2 * half - places[-1] < step:
         places = places[:-1]
     return SmoothWay(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
 
 
-def _exact(linkage: Linkage, upto: tuple[Kernel, ...], place: float, step: float) -> float | None:
-    """A change point near a place, to the last bit; None where the group has room to spare or cannot pass."""
+def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float) -> Real:
+    """The change points near places (places,), to the last bit, where the group has no room to spare and can pass."""
+    if not places.size:
+        return places
     to_spare = partial(slack, linkage, upto)
-    closer = to_spare(place + step * np.linspace(-1, 1, CLOSER))
-    if not np.all(np.isfinite(closer)) or np.abs(np.min(closer)) > 2 * np.max(np.abs(np.diff(closer))):
-        return None
-    best = pinned(linkage, upto, least(to_spare, place - step, place + step)[0], step)
-    beside = best + step * BESIDE * np.array([-2, -1, 0, 1, 2])
-    states = link_states(linkage, upto, beside, 0, blank=False)
+    closer = _rows(to_spare, places, step * np.linspace(-1, 1, CLOSER))
+    with np.errstate(invalid="ignore"):
+        falls = np.abs(np.min(closer, axis=1)) <= 2 * np.max(np.abs(np.diff(closer, axis=1)), axis=1)
+    places = places[np.all(np.isfinite(closer), axis=1) & falls]
+    if not places.size:
+        return places
+    best = pinned(linkage, upto, least(to_spare, places - step, places + step)[0], step)
+    beside = best[:, None] + step * BESIDE * np.array([-2, -1, 0, 1, 2])
+    states = link_states(linkage, upto, beside.ravel(), 0, blank=False)
     at = states.placements[-1]
-    det = np.abs(at.det)
-    if not at.dead[2] or not np.all(states.placed) or det[0] > SIMPLE * det[1] or det[4] > SIMPLE * det[3]:
-        return None
-    return best
+    det, dead, placed = (
+        np.broadcast_to(values, beside.size).reshape(beside.shape)
+        for values in (np.abs(at.det), at.dead, states.placed)
+    )
+    passes = (det[:, 0] <= SIMPLE * det[:, 1]) & (det[:, 4] <= SIMPLE * det[:, 3])
+    exact: Real = best[dead[:, 2] & np.all(placed, axis=1) & passes]
+    return exact
+
+
+def _rows(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
+    """Values of a function at steps from each place, (places, steps)."""
+    q = places[:, None] + steps
+    return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 
 
 def slack(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
@@ -74,21 +87,24 @@ def slack(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
     return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
-def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], place: float, step: float) -> float:
-    """A dead position inside the range to the last bit: there the residual of the last group stops growing.
+def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], places: Real, step: float) -> Real:
+    """Dead positions inside the range (places,) to the last bit: there the residual of the last group stops growing.
 
     The least of a quantity is known to half the digits only, the root of its rate to all of them.
     """
     last = kernels[-1]
     if not isinstance(last, Closed):
-        return place
+        return places
 
     def residual_rate(q: Real) -> Real:
         before = link_states(linkage, kernels[:-1], q, 1)
         return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
 
-    low, high = np.array([place - step]), np.array([place + step])
+    low, high = places - step, places + step
     with np.errstate(all="ignore"):
-        if not np.sign(residual_rate(low))[0] * np.sign(residual_rate(high))[0] < 0:
-            return place
-        return float(roots(residual_rate, low, high)[0])
+        changes = np.sign(residual_rate(low)) * np.sign(residual_rate(high)) < 0
+        if not np.any(changes):
+            return places
+        found = places.copy()
+        found[changes] = roots(residual_rate, low[changes], high[changes])
+    return found

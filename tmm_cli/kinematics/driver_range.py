@@ -273,7 +273,7 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: Drive
         narrowest = least(partial(_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
         for best, left in zip(*narrowest, strict=True):
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
-                best = pinned(linkage, upto, best, steps)
+                best = float(pinned(linkage, upto, np.array([best]), steps)[0])
                 passive = getattr(dyad, "passive", False)  # what holds it twice leads it through
                 found.append(DeadPosition(best, dyad.group.title, left, passive))
     return tuple(sorted(found, key=lambda d: d.place))
