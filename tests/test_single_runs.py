@@ -170,6 +170,17 @@ def test_oil_that_carries_a_boom_on_its_way_down_resists_the_run():
     assert run.speed[-1] == pytest.approx(1.305, abs=5e-4)  # 6 m/s where the oil pulled the boom down
 
 
+def test_a_run_of_links_without_masses_is_refused():
+    text = (PROBLEMS / "press-single-run.yaml").read_text().split("masses:")[0]
+    tail = "gravity: 0\noutput: 3\ndynamics: {run: {from: 0, to: 30, drive: 40}}\npositions: {count: 4}\n"
+    with pytest.raises(ProblemError) as refused:
+        solve(problem_of(read_text(text + tail, "press.yaml")))
+    assert str(refused.value).partition(": ")[2] == (
+        "dynamics.run: the run has no law of motion: nothing that moves with the driver has mass or inertia\n"
+        "  found:   at 0 deg of the driver's way\n  allowed: masses of the links, or flywheel: {inertia: 0.5}"
+    )
+
+
 def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too():
     text = (PROBLEMS / "press-single-run.yaml").read_text().split("loads:")[0]
     for sense, turns in ((1, "ccw"), (-1, "cw")):

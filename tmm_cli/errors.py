@@ -165,6 +165,14 @@ class StandstillError(LinkageError):
         self.place = place
 
 
+class NoInertiaError(LinkageError):
+    """A single run has no law of motion: nothing has inertia that moves with the driver at the way `place`."""
+
+    def __init__(self, place: float) -> None:
+        super().__init__(place)
+        self.place = place
+
+
 class LostDigitsError(LinkageError):
     """The law of motion is lost in rounding: a motor changes the speed by too small a `share` of itself in a cycle."""
 

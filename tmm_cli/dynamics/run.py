@@ -20,9 +20,9 @@ from scipy.integrate import OdeSolution, solve_ivp
 from tmm_cli.dynamics.curves import Curve
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import RunTask
-from tmm_cli.errors import LongRunError, StandstillError
+from tmm_cli.errors import LongRunError, NoInertiaError, StandstillError
 from tmm_cli.roots import roots
-from tmm_cli.tolerances import SEAM
+from tmm_cli.tolerances import ROUNDOFF, SEAM
 from tmm_cli.vectors import Real
 
 TOLERANCE = 1e-12  # of a step, relative
@@ -84,7 +84,14 @@ class Run:
 
 
 def run(machine: Reduced, task: RunTask) -> Run:
-    """From the beginning of the way to its end. Raises StandstillError where it does not start, and LongRunError."""
+    """From the beginning of the way to its end.
+
+    Raises NoInertiaError, StandstillError where it does not start, and LongRunError.
+    """
+    places = machine.inertia.places()
+    inertia = task.flywheel + machine.inertia(places)
+    if not np.min(inertia) > ROUNDOFF * np.max(inertia):
+        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)

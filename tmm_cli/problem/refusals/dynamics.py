@@ -9,6 +9,7 @@ from tmm_cli.errors import (
     LongRunError,
     LostDigitsError,
     NoFlywheelError,
+    NoInertiaError,
     RunawayError,
     StandstillError,
     UnsettledError,
@@ -58,6 +59,16 @@ def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
         path=("dynamics",), key=True,
         found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
         allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+    )  # fmt: skip
+
+
+@worded.register
+def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("the run has no law of motion: nothing that moves with the driver has mass or inertia"),
+        path=("dynamics", "run"), key=True,
+        found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
+        allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
     )  # fmt: skip
 
 
