@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from random import Random
 
+import numpy as np
 from fuzz import cases, fuzz
 from fuzz_blocks import BLOCKS, Parts
 from models import PROBLEMS
+from test_commands import tmm
 
+from tmm_cli.groups.state import State
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -40,3 +44,48 @@ def test_every_kind_of_block_fits_some_problem() -> None:
             except ProblemError:
                 pass
         assert fitting > 4, block.__name__
+
+
+# what a long run of the fuzzer found
+
+
+def changed_bank_file(tmp_path, name, *edits):
+    """A file of the bank with other texts in it."""
+    text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
+    for before, after in edits:
+        assert before in text, before
+        text = text.replace(before, after, 1)
+    file = tmp_path / "changed.yaml"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def test_a_cam_at_rest_has_a_note_and_a_ratio_to_its_speed_has_no_value(tmp_path):
+    file = changed_bank_file(tmp_path, "cam-lever", ("driver: {link: 1, speed: n1}", "driver: {link: 1, speed: 0}"))
+    assert tmm("note", file, "-o", tmp_path).returncode == 0
+    done = tmm("kinematics", file, "--json")
+    ratio = json.loads(done.stdout)["properties"][0]
+    assert (done.returncode, ratio["value"]) == (1, None)  # it is not what is expected
+
+
+def test_a_balancing_force_in_the_pivot_of_the_crank_is_refused(tmp_path):
+    file = changed_bank_file(tmp_path, "crank-slider", ("turns: ccw}", "balance: force, end: O}"))
+    done = tmm("forces", file)
+    assert done.returncode == 2
+    assert "driver.end: a balancing force in the pivot O has no arm\n  found:   'O'\n" in done.stderr
+    assert "  allowed: another point of the link" in done.stderr
+
+
+def test_a_sweep_of_links_that_hold_one_another_is_refused_in_the_words_of_the_file(tmp_path):
+    file = changed_bank_file(
+        tmp_path, "crank-slider", ("points: {O: [0, 0]}", "points: {O: [0, 0], C: [300, 90]}"),
+        ("driver:", "  4: {points: [C, B], length: 100}\ndriver:"),
+    )  # fmt: skip
+    done = tmm("sweep", file, "--over", "l=200..240:3")
+    assert done.returncode == 2
+    assert "driver.link: link 1 cannot be driven: pairs or other drivers hold it already" in done.stderr
+
+
+def test_no_states_of_a_group_are_moved_by_no_step():
+    none = State(np.zeros((0, 4), complex), np.zeros((0, 4))).moved(np.zeros((0, 12)), 1.0)
+    assert none.x.shape == none.unwrapped.shape == (0, 4)

@@ -18,6 +18,7 @@ from tmm_cli.problem.errors import ProblemError, placed_in, quote, unknown_name
 from tmm_cli.problem.expressions import evaluate_quantity
 from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.refusals import in_words_of
 from tmm_cli.problem.settings import with_settings
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
@@ -102,8 +103,9 @@ class Task:
     @cached_property
     def quantities(self) -> dict[str, Quantity]:
         """All that could be asked, by name."""
-        linkage = self.problem.whole.linkage
-        return quantities(linkage, mobile(linkage))
+        whole = self.problem.whole
+        with in_words_of(whole):
+            return quantities(whole.linkage, mobile(whole.linkage))
 
     @property
     def positions(self) -> int:

@@ -191,7 +191,7 @@ class State:
 
     def moved(self, step: Real, size: Real | float) -> State:
         """The state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in sizes (m)."""
-        parts = step.reshape(*np.shape(step)[:-1], -1, 3)
+        parts = step.reshape(*np.shape(step)[:-1], np.shape(step)[-1] // 3, 3)
         return State(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
 
     def part(self, chosen: slice) -> State:

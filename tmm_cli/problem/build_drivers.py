@@ -82,6 +82,9 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
         raise part.refusal("speed", twice, str(given.speed), _("a positive speed with turns: ccw or cw"))
     if given.end is not None:
         part.known("end", members.links[link].points, f"point of link {link}")
+        if given.end == pivot:
+            has_no_arm = _("a balancing force in the pivot {point} has no arm").format(point=pivot)
+            raise part.refusal("end", has_no_arm, quote(given.end), _("another point of the link"))
     if first == (given.at is not None):
         raise part.refusal(
             "at", _("the place of the first driver stands in the sketch, that of each other one here"), at_key=True,

@@ -121,7 +121,8 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         if by is None:
             value /= values.positive(task.per, dimension, ("per",))
         elif not ratio:
-            value /= _one(by, task, results)
+            by_value = _one(by, task, results)
+            value = value / by_value if by_value else np.nan
         dimension = NUMBER
     compared = task.expected is not None and (quantity.stage == "structure" or not _of_own_numbers(task, problem))
     expected = values.number(task.expected, dimension, ("expected",)) if compared else None

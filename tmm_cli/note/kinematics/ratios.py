@@ -153,7 +153,7 @@ def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
     assert mesh.law is not None
     __, first, second = (float(value[here.k]) for value in mesh.law(here.motion.poses[mesh.i].turned))
     omega, epsilon = _turning(here, mesh.i, "ω"), _turning(here, mesh.i, "ε")
-    assert omega is not None
+    omega = Leaf(Symbol("ω", mesh.i), 0.0) if omega is None else omega  # of a driver at rest
     by_law = Leaf(_derivative(mesh, 1), first)
     expression: Expression = by_law * omega
     if letter == "ε":
