@@ -51,6 +51,18 @@ masses: {2: {mass: 3 kg}}
 gravity: 9.81
 positions: {at: [0, 10, 20]}
 """
+BOLTED = """
+tmm: 1
+points: {O: [0, 0]}
+guides: {x: {through: O, angle: 0}}
+links:
+  1: {points: [O, A], length: 60}
+  2: {points: {A: [0, 0], M: [100, 0], N: [140, 20]}}
+  3: {points: {M: [0, 0], N: [40, 20], B: [120, 0]}}
+  4: {points: [B], slides: x}
+driver: {link: 1, speed: 300 rpm}
+sketch: {at: 90, A: [0, 60], M: [95, 35], N: [140, 45], B: [211, 0]}
+"""
 GUIDES = """tmm: 1
 points: {O: [0, 0]}
 guides: {x: {through: [0, 0], angle: 0}, y: {through: [0, 40], angle: ANGLE}}
@@ -252,6 +264,10 @@ output: 3
         pytest.param(
             GUIDES.replace("ANGLE", "0"), "I(0,1) -> II(2,3)", ["pair y is redundant, adds q = 2"],
             id="a second parallel guide",
+        ),
+        pytest.param(
+            BOLTED, "I(0,1) -> II(2+3,4)", ["links 2, 3 are rigid to one another and count as one, add q = 1"],
+            id="two parts bolted together, and the slider for an instant as quick as they are",
         ),
         pytest.param(
             planets(3, "h"), "I(0,h) -> II(p0) -> II(s)",

@@ -109,7 +109,7 @@ class Remainder:
             origin = complex(np.ravel(self.poses[link].x)[0]) / size
             fields[link] = np.concatenate([x + 1j * y - 1j * turn * origin, turn])
         sets = _alike(fields)
-        if len(sets) == 1:
+        if sets == [self.links]:  # others may only have the same velocities at this one position
             return sets
         return [rigid for links in sets for rigid in replace(self, links=links).rigid_sets()]
 
