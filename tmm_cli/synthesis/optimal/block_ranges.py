@@ -138,12 +138,15 @@ def _kinds(
             return 2  # said when its bounds are read
         return 0
 
+    def is_share(name: str, kinds: Mapping[str, str]) -> bool:
+        """True if the file takes a number for it, and not whatever it is, as of what it uses nowhere."""
+        return not minded({**kinds, name: "number"}) and bool(minded({**kinds, name: "angle"}))
+
     lengths = {name: kind or "length" for name, kind in found.items()}
     if lengths == found:
         return lengths
     if not minded(lengths):
-        bare = (name for name, kind in found.items() if not kind)
-        return lengths | {name: "number" for name in bare if not minded(lengths | {name: "number"})}
+        return lengths | {name: "number" for name, kind in found.items() if not kind and is_share(name, lengths)}
     plain = dict(found)
     for name in (name for name, kind in plain.items() if not kind):
         found[name] = min(("length", *KINDS), key=lambda kind: minded(plain | {name: kind}))
