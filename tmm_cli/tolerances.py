@@ -75,7 +75,7 @@ TRUNCATED = 1e-10  # of the largest singular value: what least squares takes for
 
 # At rest, or nothing
 RESTS = 1e-12  # of the longest run: less is rounding
-AT_REST = 1e-9  # of the largest speed in the mechanism: what moves slower is at rest, and rounding gives its sign
+AT_REST = 1e-5  # of the largest speed in the mechanism: slower is at rest; lengths typed to 6 figures give such signs
 WHOLE_TURNS = 1e-9  # turns: a wheel that has made whole ones but for less has made them but for rounding
 SHOCKLESS = 1e-9  # of the largest angular speed: what jumps by less at the ends of a stroke does not jump
 NO_DWELL = 1e-6  # rad: about a mere end of a stroke rounding makes a speed of zero over less than that

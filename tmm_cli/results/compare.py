@@ -19,7 +19,7 @@ HALF_KNOWN = {"other_at"}  # where an extreme lies: its value grows by the squar
 SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
 NOTHING = 1e-4  # SI: where all values are smaller, with a tolerance of 1e-9 rounding of sums that vanish passes
 FLOOR = 1e-4  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-13 of it passes
-SOURCES = {"slope": "inertia"}  # what is a difference of values of another name rounds as these do
+SOURCES = {"slope": "inertia", "rate": "kinetic"}  # what is a difference of values of another name rounds as these do
 
 
 @dataclass(frozen=True)
