@@ -74,6 +74,37 @@ def test_no_reaction_is_put_in_before_it_is_found(name):
         known |= {Symbol("R", found.below)} if found.above else set()
 
 
+def at_one_position(name: str, *, at: str) -> list[Block]:
+    """The force analysis of a problem of the bank at one driver angle (deg)."""
+    text = re.sub(
+        "(?m)^positions: .*", f"positions: {{count: 1, from: {at}}}", (PROBLEMS / f"{name}.yaml").read_text("utf-8")
+    )
+    return list(blocks(Subject(solved_text(text), drawn=False)))
+
+
+@pytest.mark.parametrize("at", ["0", "30", "90"])
+def test_a_sine_mechanism_has_a_force_analysis_at_any_one_position(at):
+    """At 0 deg all its moving points coincide, and nothing has a moment about the hinge of the sliding block."""
+    found = [b for b in at_one_position("sine", at=at) if isinstance(b, Found)]
+    assert all(block.printed()[1] for block in found)
+
+
+def test_moments_that_cancel_are_written_out():
+    """With the crank at 0 deg the four reactions of a four-cylinder engine have moments about the shaft that cancel."""
+    driving = section(at_one_position("engine-four", at="0"), "Driving link 1")
+    (equation,) = [b for b in driving if isinstance(b, Equation) and "ΣM" in repr(b)]
+    assert [name for name in ("R₂₁", "R₄₁", "R₆₁", "R₈₁") if name in names(equation)] == ["R₂₁", "R₄₁", "R₆₁", "R₈₁"]
+    (moment,) = [b for b in driving if isinstance(b, Found) and b.name.letter == "M"]
+    assert moment.result == 0
+    assert not any("Nothing has a moment" in str(b.line) for b in driving if isinstance(b, Paragraph))
+
+
+def names(equation: Equation) -> list[str]:
+    """The letters of an equation."""
+    rows = [equation.node] if isinstance(equation.node, Row) else equation.node.nodes
+    return [n.symbol.name for row in rows for n in row.nodes if isinstance(n, Letter)]
+
+
 def test_groups_come_from_the_last_to_the_driving_link():
     headings = [block.text for block in chapter("shaper") if isinstance(block, Heading)]
     assert headings == [

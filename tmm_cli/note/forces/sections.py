@@ -126,7 +126,7 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
     elif sought.arm:
         text = _("The equation of moments about the point {point} ({links}) gives the distance from it to the line "
                  "of action of the reaction {symbol}:")  # fmt: skip
-    elif found is None:
+    elif found is None and not equation.terms:
         text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
@@ -137,6 +137,8 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
     if found is not None:
         yield from (Equation(moments(equation)), found)
     elif not sought.arm:
+        if equation.terms:  # they cancel
+            yield Equation(moments(equation))
         yield read(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
 
 
