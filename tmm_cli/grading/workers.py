@@ -80,7 +80,8 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         distributed: Any = import_module("distributed")  # typed in part alone
     except ImportError:
         raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what fails is reported here
+    for library in ("distributed", "asyncio"):
+        logging.getLogger(library).setLevel(logging.CRITICAL)  # what fails is reported here
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
         raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
     try:
@@ -95,9 +96,19 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
             for number, job in enumerate(jobs)
         }
         for future in _finished(client, distributed.as_completed(futures, loop=client.loop), len(futures), address):
-            yield futures[future], future.result()
+            yield futures[future], _result(client, future, address)
             if stopped():
                 return
+
+
+def _result(client: Any, future: Any, address: str) -> Any:
+    """What a finished job gave; its worker may be lost before it is fetched. Raises ProblemError if none is left."""
+    while True:
+        try:
+            return future.result(timeout=ANSWERS)
+        except TimeoutError:
+            if not client.nthreads():
+                raise _no_workers(address) from None
 
 
 def _wait_for_greeting(address: str) -> None:
