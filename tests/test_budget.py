@@ -1,7 +1,5 @@
 """One budget of work: what would take longer than a minute, or more than a gigabyte, is refused before it starts."""
 
-import json
-
 import pytest
 from test_commands import ROOT, tmm
 
@@ -117,23 +115,3 @@ def test_plans_of_all_positions_count_less_than_positions_in_detail():
         refuse_options(press, 36_000, digits=False, detail=1, large=True, plans=24)
     assert (refused.value.path, refused.value.found) == (("--positions",), "24 positions; 7 links, 14 points, 1 loads")
     assert refused.value.allowed == "plans of at most 19, or --positions detail"
-
-
-def test_a_chain_of_81_links_is_refused_before_its_change_points_are_searched(tmp_path):
-    """Twenty parallelograms take ten seconds, forty would take minutes."""
-
-    def chain(count):
-        points = {"O": [0, 0]} | {f"D{k}": [200 * (k + 1), 0] for k in range(count)}
-        links, sketch, before = {1: {"points": ["O", "A"], "length": 50}}, {"at": 60, "A": [25, 43.3]}, "A"
-        for k in range(count):
-            links[2 * k + 2] = {"points": [before, f"B{k}"], "length": 200}
-            links[2 * k + 3] = {"points": [f"D{k}", f"B{k}"], "length": 50}
-            sketch[f"B{k}"], before = [200 * (k + 1) + 25, 43.3], f"B{k}"
-        return {"tmm": 1, "points": points, "links": links, "driver": {"link": 1, "speed": 1}, "sketch": sketch}
-
-    for count, code in ((40, 2), (2, 0)):
-        file = tmp_path / "chain.yaml"
-        file.write_text(json.dumps(chain(count)), encoding="utf-8")
-        done = tmm("structure", file)
-        assert done.returncode == code, done.stderr
-        assert ("links: this linkage is too large" in done.stderr) == (code == 2)

@@ -9,7 +9,6 @@ from tmm_cli.problem.errors import ProblemError
 BUDGET = 3_000_000  # parts at positions, each up to 20 us and 160 B: 40 parts at 74 280 took 44 s and 536 MB
 SEARCHED = 720  # positions more: the range, the strokes and the trajectories are found on a grid of their own
 EACH = 8  # positions more for each link: what is searched for in each group computes all links before it
-LONG_CHAIN, CHAINED = 40, 2.5  # links beyond which they grow with the square; a chain of 81 took more than 100 s
 LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their measured times and tables
 SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
 SHEETS = 6  # that are drawn beside those in detail
@@ -102,9 +101,7 @@ def _sheets(detail: int, large: bool) -> float:
 
 
 def _searched(linkage: Linkage) -> int:
-    """Positions that searches count for; in long chains change points are found one within another."""
-    links = len(linkage.moving)
-    return SEARCHED + EACH * links + int(CHAINED * max(0, links - LONG_CHAIN) ** 2)
+    return SEARCHED + EACH * len(linkage.moving)
 
 
 def _told(linkage: Linkage) -> str:
