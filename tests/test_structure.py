@@ -8,14 +8,22 @@ import numpy as np
 import pytest
 from bank import NAMES, REPEATED, moved, problem, solved
 from models import CLASS_III, SI, results_of
-from test_commands import SHAPER
+from test_commands import SHAPER, tmm
 
 from tmm_cli import solve
 from tmm_cli.analysis.pipeline import at_places
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
+from tmm_cli.results.reports.structure import (
+    counted_by_classes,
+    counted_generally,
+    counted_with_replacements,
+    motion_in_words,
+)
 from tmm_cli.results.warnings import warnings
 from tmm_cli.structure.assur import analyse
+from tmm_cli.structure.contours import classification, contours, is_dependent
+from tmm_cli.structure.naming import basic_schemes, four_link_scheme, link_motion, six_bar_schemes
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
 
@@ -213,3 +221,97 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
         "the table of load F does not reach as far as the stroke goes: its end value is held; rows in shares reach "
         "over every stroke (against: share of stroke)"
     ]
+
+
+@pytest.mark.parametrize(
+    "name, p5, p4, w, types, kind, motions",
+    [  # counted by hand on the drawings; motions of links 1, 2, ...: r rotation, t translation, p plane motion
+        ("crank-slider", 4, 0, 1, [(2, "ВВП")], ("simple",), "rpt"),
+        ("crank-rocker", 4, 0, 1, [(1, "ВВВ")], ("simple",), "rpr"),
+        ("slotted-lever", 4, 0, 1, [(3, "ВПВ")], ("simple",), "rpr"),
+        ("tangent", 4, 0, 1, [(4, "ПВП")], ("simple",), "rpt"),
+        ("sine", 4, 0, 1, [(5, "ВПП")], ("simple",), "rtt"),
+        ("six-bar", 7, 0, 1, [(1, "ВВВ"), (2, "ВВП")], ("complex", "several types"), "rprpt"),
+        ("shaper", 7, 0, 1, [(3, "ВПВ"), (2, "ВВП")], ("complex", "several types"), "rprpt"),
+        ("engine-four", 13, 0, 1, [(2, "ВВП")] * 4, ("complex", "same type"), "rptptptpt"),
+        ("five-bar", 5, 0, 2, [(1, "ВВВ")], ("simple",), "rppr"),
+        ("cam-lever", 5, 1, 1, [(None, ""), (2, "ВВП")], ("complex", "several types"), "rrpt"),
+        ("shaking-screen", 7, 0, 1, [(None, "")], ("simple",), None),
+        ("clamp", 10, 0, 1, [(1, "ВВВ"), (2, "ВВП"), (2, "ВВП")], ("complex", "combined"), "tprptpt"),
+        ("parallel-couplers", 6, 0, 0, [(1, "ВВВ")], ("simple",), "rprp"),
+    ],
+)  # fmt: skip
+def test_pairs_groups_and_motions_are_those_counted_by_hand(name, p5, p4, w, types, kind, motions):
+    results = solve(problem(name), "structure")
+    structure, n = results.structure, len(results.structure.links)
+    assert [sum(pair.pair_class == k for pair in structure.pairs) for k in (5, 4)] == [p5, p4]
+    assert 3 * n - 2 * p5 - p4 == structure.mobility == w
+    assert [(group.type_number, group.letters) for group in structure.groups] == types
+    assert {group.mobility for group in structure.groups} == {0}
+    assert classification(structure)[1:] == kind
+    if motions:
+        assert "".join(link_motion(results.linkage, link)[0] for link in structure.links) == motions
+
+
+def test_a_planar_pair_has_its_freedoms_class_and_code():
+    pairs = {pair.name: pair for pair in moved("cam-lever").structure.pairs}
+    assert [(pairs[n].freedoms, pairs[n].pair_class, pairs[n].code) for n in ("O", "x", "cam")] == [
+        (1, 5, "1в"), (1, 5, "1п"), (2, 4, ""),
+    ]  # fmt: skip
+
+
+def test_formulas_of_mobility_have_their_numbers():
+    """A cam with a rocker, a rod and a slider: n = 4, five lower pairs and a higher one; replaced, n = 5 and p1 = 7."""
+    assert counted_by_classes((4, 5, 1)) == "3*4 - 2*5 - 1 = 1"
+    assert counted_generally((4, 5, 1)) == "3*4 - 2*5 - 1*1 = 1"
+    assert counted_with_replacements((4, 5, 1)) == "3*5 - 2*7 = 1"
+
+
+@pytest.mark.parametrize(
+    "kinds, scheme",
+    [
+        ("RRRR", "hinged four-bar"), ("RRRP", "crank-slider"), ("PRRR", "crank-slider"), ("RRPR", "slotted-lever"),
+        ("RPRR", "slotted-lever"), ("RRPP", "sine"), ("PPRR", "sine"), ("RPRP", "tangent"), ("PRPR", "tangent"),
+        ("RPPR", "double slotted-link"), ("PRRP", "double-slider"), ("RPPP", None),
+    ],
+)  # fmt: skip
+def test_a_contour_of_four_links_has_the_name_of_the_textbooks(kinds, scheme):
+    assert four_link_scheme(kinds) == scheme
+
+
+@pytest.mark.parametrize(
+    "name, contours_of_four, six_bar",
+    [
+        ("shaper", {"0-1-2-3-0": "slotted-lever", "0-3-4-5-0": "crank-slider"}, ("Watt II",)),
+        # the rod at the compound hinge B belongs to the rocker (Watt II) or to the coupler (Stephenson III)
+        ("six-bar", {"0-1-2-3-0": "hinged four-bar", "0-3-4-5-0": "crank-slider"}, ("Stephenson III", "Watt II")),
+        ("course-2", {"0-1-2-3-0": "slotted-lever", "0-3-4-5-0": "sine"}, ("Watt II",)),
+        ("cranks/double-stroke-press", {"0-1-2-3-0": "hinged four-bar"}, ("Stephenson III",)),
+        ("engine-four", {f"0-1-{k}-{k + 1}-0": "crank-slider" for k in (2, 4, 6, 8)}, ()),
+        ("five-bar", {}, ()),
+    ],
+)  # fmt: skip
+def test_basic_schemes_of_the_bank(name, contours_of_four, six_bar):
+    structure = solve(problem(name), "structure").structure
+    assert basic_schemes(structure) == contours_of_four
+    assert six_bar_schemes(structure) == six_bar
+
+
+@pytest.mark.parametrize("name, dependent", [("parallel-couplers", 1), ("four-bars/transfer", 3), ("six-bar", 0)])
+def test_a_contour_closed_by_a_redundant_link_is_dependent(name, dependent):
+    structure = solve(problem(name), "structure").structure
+    marked = [is_dependent(contour, structure) for contour in contours(structure.pairs, structure.links)]
+    assert (marked[0], sum(marked)) == (False, dependent)
+
+
+def test_motion_of_a_link_names_its_axis_or_its_guide():
+    linkage = moved("sine").linkage
+    words = [motion_in_words(linkage, link) for link in linkage.moving]
+    assert words == ["turns about O", "translation", "slides along guide x"]
+
+
+def test_explain_gives_the_structure_in_the_words_of_a_note():
+    text = tmm("explain", "problems/shaper.yaml").stdout
+    assert "slotted-lever 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
+    assert "type RPR (ВПВ, 3)" in text
+    assert "1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides along guide x." in text

@@ -7,7 +7,14 @@ from collections.abc import Iterable
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import _
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.results.reports.structure import ROLES, left_out
+from tmm_cli.results.reports.structure import (
+    ROLES,
+    counted_by_classes,
+    counted_mobility,
+    left_out,
+    motion_in_words,
+    schemes_in_words,
+)
 from tmm_cli.results.understood import motion
 from tmm_cli.structure.assur import Group, Structure
 
@@ -16,6 +23,8 @@ def in_words(results: Results) -> Iterable[str]:
     """Whole sentences, in the order of a note."""
     structure = results.structure
     yield _mobility(structure)
+    count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
+    yield _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
     if structure.passive:
         yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
             count=structure.redundant, w=structure.mobility + structure.redundant
@@ -27,14 +36,23 @@ def in_words(results: Results) -> Iterable[str]:
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=structure.roman
     )
+    schemes = schemes_in_words(structure)
+    if schemes:
+        yield _("Basic schemes in it: {schemes}.").format(schemes=schemes)
+    motions = (f"{link}: {motion_in_words(results.linkage, link)}" for link in structure.links)
+    yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in left_out(structure):
         yield _("For the formula: {what}.").format(what=sentence)
     for group in structure.groups:
         text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
+        kind = f"{group.type} ({group.letters}, {group.type_number})" if group.type_number else group.type
         yield text.format(
-            group=group.title, number=group.roman, order=group.order, type=group.type,
+            group=group.title, number=group.roman, order=group.order, type=kind,
             outer=_outer(group),
         )  # fmt: skip
+        yield _("For the group {group}, 3n - 2 p1 - p2 = {count}.").format(
+            group=group.title, count=counted_mobility(group.count)
+        )
     if structure.groups:
         yield _(
             "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "

@@ -19,7 +19,8 @@ from tmm_cli.results.shapes import (
     optional,
     record,
 )  # fmt: skip
-from tmm_cli.structure.contours import classification, contours
+from tmm_cli.structure.contours import classification, contours, is_dependent
+from tmm_cli.structure.naming import basic_schemes, link_motion, six_bar_schemes
 
 PROBLEM = record(
     "what was computed", Field("name", TEXT, "of the file"), Field("title", TEXT, "title"),
@@ -32,6 +33,7 @@ class LinkInRole(NamedTuple):
 
     link: Link
     role: str
+    motion: str
 
 
 LINK = record(
@@ -40,6 +42,7 @@ LINK = record(
     Field("role", TEXT, "crank, rocker, coupler, ..."),
     Field("label", TEXT, "the file's own name", "link.label"),
     Field("points", NAMES, "its points", "link.points"),
+    Field("motion", TEXT, "rotation, translation or plane motion"),
 )
 ENDS = Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j))
 PAIR = record(
@@ -48,6 +51,9 @@ PAIR = record(
     Field("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
     ENDS,
     Field("point", TEXT, "hinge or running point"),
+    Field("freedoms", NUMBER, "relative freedoms in the plane"),
+    Field("class", NUMBER, "5 of a lower pair, 4 of a higher one", "pair_class"),
+    Field("code", TEXT, "1в revolute, 1п prismatic; empty for a higher pair"),
 )
 PASSIVE = record(
     "conditions that only repeat others",
@@ -63,6 +69,8 @@ GROUP = record(
     Field("order", NUMBER, "number of outer pairs"),
     Field("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
     Field("name", TEXT, "II(2,3)", "title"),
+    Field("type_number", NUMBER, "1 to 5 for a class II group of two links", there="type_number"),
+    Field("letters", TEXT, "its type as ВВВ, ВВП, ВПВ, ПВП, ВПП", there="type_number"),
     Field("inner", NAMES, "inner pairs", lambda group: [pair.name for pair in group.inner]),
     Field("outer", NAMES, "outer pairs", lambda group: [pair.name for pair in group.outer]),
 )
@@ -94,7 +102,7 @@ STRUCTURE = record(
     "links, pairs and Assur groups",
     Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
     Field("links", list_of(LINK), "moving links",
-          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n]) for n in r.structure.links]),
+          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], link_motion(r.linkage, n)) for n in r.structure.links]),
     Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
     Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
           lambda results: results.structure.mobility + results.structure.redundant),
@@ -105,6 +113,13 @@ STRUCTURE = record(
     Field("contours", NUMBER, "independent contours K = p - n", "structure.contours"),
     Field("classification", NAMES, "closed or open; elementary, simple, complex; of one type or several",
           lambda results: classification(results.structure)),
+    Field("dependent_contours", NUMBER, "contours closed by redundant links or pairs",
+          lambda r: sum(is_dependent(c, r.structure) for c in contours(r.structure.pairs, r.structure.links)),
+          lambda r: bool(r.structure.reduction)),
+    Field("six_bar", NAMES, "Watt I, II or Stephenson I, II, III; several where a compound hinge can be drawn in "
+          "several ways", lambda r: six_bar_schemes(r.structure), lambda r: bool(six_bar_schemes(r.structure))),
+    Field("basic_schemes", map_of(TEXT), "of the contours of four links, by contour",
+          lambda r: basic_schemes(r.structure)),
     Field("formula", TEXT, "formula of structure", "structure.formula"),
     Field("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
     Field("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),

@@ -17,6 +17,8 @@ from tmm_cli.structure.reduction import NOTHING, Reduction, RedundantPair, Rigid
 
 ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
+CODES = {"R": "1в", "P": "1п"}  # K. S. Alyushin: freedoms, then the first letter of "rotational" or "translational"
+DYADS = {"RRR": 1, "RRP": 2, "RPR": 3, "PRP": 4, "RPP": 5}  # types of a class II group with two links
 LOWER = ("R", "P")  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
 
 
@@ -39,6 +41,21 @@ class Pair:
     def lower(self) -> bool:
         """Whether it leaves one freedom only."""
         return self.kind in LOWER
+
+    @property
+    def freedoms(self) -> int:
+        """Relative freedoms in the plane: 1 of a lower pair, 2 of a higher one."""
+        return 1 if self.lower else 2
+
+    @property
+    def pair_class(self) -> int:
+        """The class of the pair in space: 5 for a lower pair, 4 for a higher one."""
+        return 6 - self.freedoms
+
+    @property
+    def code(self) -> str:
+        """1в for a revolute pair, 1п for a prismatic one; empty for a higher pair, which has no code."""
+        return CODES.get(self.kind, "")
 
     def other(self, link: str) -> str:
         """The link at the other side."""
@@ -114,6 +131,16 @@ class Group:
         inner, outer = (tuple(pair.rebind(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
         drivers = tuple(d for own in self.drivers for d in linkage.drivers if d.link == own.link)
         return replace(self, inner=inner, outer=outer, drivers=drivers)
+
+    @property
+    def type_number(self) -> int | None:
+        """The number 1 to 5 of the type of a class II group of two links; None for any other group."""
+        return DYADS.get(self.type)
+
+    @property
+    def letters(self) -> str:
+        """The type of such a group in Russian letters: ВВВ, ВВП, ВПВ, ПВП or ВПП; empty for any other group."""
+        return self.type.translate({ord("R"): "В", ord("P"): "П"}) if self.type_number else ""
 
     @property
     def roman(self) -> str:

@@ -63,7 +63,8 @@ def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...
 def classification(structure: Structure) -> tuple[str, ...]:
     """Words for a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
 
-    Elementary: the driver alone; simple: one group on it; complex: two groups or more.
+    Elementary: the driver alone; simple: one group on it; complex: two groups or more. Combined: some of its groups are
+    alike and others are not.
     """
     chain = "closed" if structure.contours > 0 else "open"
     if not structure.groups:
@@ -71,7 +72,15 @@ def classification(structure: Structure) -> tuple[str, ...]:
     if len(structure.groups) == 1:
         return (chain, "simple")
     types = {(group.group_class, group.order, group.type) for group in structure.groups}
-    return (chain, "complex", "several types" if len(types) > 1 else "same type")
+    if len(types) == 1:
+        return (chain, "complex", "same type")
+    return (chain, "complex", "combined" if len(types) < len(structure.groups) else "several types")
+
+
+def is_dependent(contour: Contour, structure: Structure) -> bool:
+    """Return True if the contour repeats another one: a link or pair of it is redundant."""
+    pairs = {redundant.pair for redundant in structure.reduction.pairs if not redundant.left}
+    return not structure.reduction.removed.isdisjoint(contour.links) or not pairs.isdisjoint(contour.pairs)
 
 
 def reached(pairs: Sequence[Joint]) -> set[str]:

@@ -1,11 +1,17 @@
-"""What each link is called, from its pairs and from whether it can turn all the way round or not; the output."""
+"""What each link and the whole scheme are called, from the pairs and from what can turn all the way round; the output.
+
+Six-bar chains: R. L. Norton, Design of Machinery, ch. 2; basic schemes: I. I. Artobolevsky, Theory of Mechanisms and
+Machines, ch. 2.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
 
 from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.structure.assur import Group
+from tmm_cli.structure.assur import Group, Pair, Structure
+from tmm_cli.structure.contours import Contour, contours
 
 
 def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
@@ -71,3 +77,88 @@ def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
         if held:
             return next((link for link in held if linkage.slides_on_frame(link)), held[0])
     return None
+
+
+def link_motion(linkage: Linkage, name: str) -> str:
+    """The motion of a link relative to the frame, as far as its pairs alone show it.
+
+    Returns:
+        "rotation" (it has a revolute pair with the frame), "translation" (prismatic pairs alone connect it to the
+        frame, directly or through other links, so it keeps its direction) or "plane motion".
+    """
+    if linkage.hinged_to_frame(name):
+        return "rotation"
+    parallel = {FRAME}
+    for _repeat in linkage.slides:
+        parallel |= {end for s in linkage.slides for end in (s.carrier, s.runner) if parallel & {s.carrier, s.runner}}
+    return "translation" if name in parallel else "plane motion"
+
+
+def four_link_scheme(kinds: str) -> str | None:
+    """The basic scheme of a contour of four links, from its pairs in order, both of the frame at the ends.
+
+    It does not depend on which link drives. None for a contour without a name.
+    """
+    schemes = {
+        "RRRR": "hinged four-bar",
+        "RRRP": "crank-slider", "RRPR": "slotted-lever",
+        "RRPP": "sine", "RPRP": "tangent",
+        "RPPR": "double slotted-link", "PRRP": "double-slider",
+    }  # fmt: skip
+    return schemes.get(kinds) or schemes.get(kinds[::-1])
+
+
+def contour_scheme(contour: Contour, structure: Structure) -> str | None:
+    """The basic scheme of a contour of four links with the frame; None for any other contour."""
+    if len(contour.links) != 4 or contour.links[0] != FRAME:
+        return None
+    kind = {pair.name: pair.kind for pair in structure.pairs}
+    return four_link_scheme("".join(kind[name] for name in contour.pairs))
+
+
+def basic_schemes(structure: Structure) -> dict[str, str]:
+    """The basic schemes of all contours of four links with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
+    named = (
+        (contour.title, contour_scheme(contour, structure)) for contour in contours(structure.pairs, structure.links)
+    )
+    return {title: scheme for title, scheme in named if scheme}
+
+
+def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
+    """The names of a six-link mechanism with seven lower pairs: Watt I or II, Stephenson I, II or III.
+
+    A compound hinge of three links can be drawn in three ways, which may have different names: all of them are
+    returned. Empty for any other mechanism, and for one that has redundant links or pairs.
+    """
+    if len(structure.links) != 5 or len(structure.pairs) != 7 or structure.higher or structure.reduction:
+        return ()
+    names = (_six_bar(pairs) for pairs in _attachments(structure.pairs))
+    return tuple(sorted({name for name in names if name}))
+
+
+def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]:
+    """The links of all pairs, for each choice of the link that carries the others in each compound hinge."""
+    by_place: dict[str, list[tuple[str, str]]] = {}
+    for pair in pairs:
+        by_place.setdefault(pair.point if pair.kind == "R" else f"slide {pair.name}", []).append((pair.i, pair.j))
+    choices = []
+    for ends in by_place.values():
+        links = tuple(dict.fromkeys(link for pair in ends for link in pair))
+        stars = [tuple((centre, link) for link in links if link != centre) for centre in links]
+        choices.append(stars if len(ends) > 1 else [tuple(ends)])
+    for chosen in product(*choices):
+        yield tuple(pair for star in chosen for pair in star)
+
+
+def _six_bar(pairs: tuple[tuple[str, str], ...]) -> str | None:
+    """The name of a six-link chain with two ternary links on a frame; None for other chains."""
+    degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
+    ternary = {link for link in degree if degree[link] == 3}
+    if sorted(degree.values()) != [2, 2, 2, 2, 3, 3]:
+        return None
+    if any(set(pair) == ternary for pair in pairs):
+        return "Watt II" if FRAME in ternary else "Watt I"
+    if FRAME in ternary:
+        return "Stephenson III"
+    between = {link for pair in pairs if FRAME in pair for link in pair if link != FRAME}
+    return "Stephenson I" if between == ternary else "Stephenson II"

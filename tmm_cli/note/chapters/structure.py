@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.draw.sheets.structure import counted, parts
-from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.language import _, typeset
 from tmm_cli.note.blocks import (
     Block,
     Equation,
@@ -27,7 +26,15 @@ from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
 from tmm_cli.note.tables import NONE, unbroken
 from tmm_cli.plans.record import Symbol
-from tmm_cli.results.reports.structure import PAIRS, ROLES, left_out
+from tmm_cli.results.reports.structure import (
+    PAIRS,
+    ROLES,
+    counted_by_classes,
+    counted_with_replacements,
+    left_out,
+    motion_in_words,
+    schemes_in_words,
+)
 from tmm_cli.results.stages import link_name
 from tmm_cli.structure.assur import Group, Structure
 
@@ -54,26 +61,30 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        cells(name, _(ROLES[roles[name]]), _motion(linkage, name), ", ".join(linkage.links[name].points))
+        cells(name, _(ROLES[roles[name]]), motion_in_words(linkage, name), ", ".join(linkage.links[name].points))
         for name in subject.results.structure.links
     )
     return Rows(_("Moving links"), cells(_("link"), _("kind"), _("motion"), _("points")), rows, "links")
 
 
-def _motion(linkage: Linkage, name: str) -> str:
-    """What a link does, told by what holds it on the frame."""
-    if linkage.hinged_to_frame(name):
-        return _("turns about {point}").format(point=linkage.shared(FRAME, name))
-    guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
-    return _("slides along guide {guide}").format(guide=guides[0]) if guides else _("plane motion")
-
-
 def _pairs(structure: Structure) -> Rows:
     rows = tuple(
-        cells(p.name, f"{link_name(p.i)} – {link_name(p.j)}", _(PAIRS[p.kind]), "1" if p.lower else "2")
+        cells(
+            p.name,
+            f"{link_name(p.i)} – {link_name(p.j)}",
+            _(PAIRS[p.kind]),
+            str(p.freedoms),
+            str(p.pair_class),
+            p.code or NONE,
+        )
         for p in structure.pairs
     )
-    return Rows(_("Kinematic pairs"), cells(_("pair"), _("links"), _("kind"), _("freedoms")), rows, "pairs")
+    return Rows(
+        _("Kinematic pairs"),
+        cells(_("pair"), _("links"), _("kind"), _("freedoms"), _("class"), _("code")),
+        rows,
+        "pairs",
+    )
 
 
 def _mobility(structure: Structure) -> Iterable[Block]:
@@ -88,6 +99,11 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         turning=str(turning), sliding=str(lower - turning),
     )  # fmt: skip
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
+    classes = _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.")
+    yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
+    if higher:
+        text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
+        yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))
     if structure.passive:
         yield said(
             _("The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "
@@ -124,6 +140,9 @@ def _groups(subject: Subject) -> Iterable[Block]:
     yield Equation(Words(structure.formula.replace("->", "→")))
     text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
     yield said(text, source=Link("frolov"), number=structure.roman)
+    schemes = schemes_in_words(structure)
+    if schemes:
+        yield paragraph(_("Basic schemes in it: {schemes}.").format(schemes=schemes))
     yield from _apart(subject)
 
 
@@ -150,4 +169,5 @@ def _group(group: Group) -> tuple[Line, ...]:
     outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
     inner = ", ".join(pair.name for pair in group.inner) or NONE
     roman, order = group.roman, str(group.order)
-    return cells(group.title, roman, order, counted(group.type), inner, outer, own)
+    kind = counted(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")
+    return cells(group.title, roman, order, kind, inner, outer, own)

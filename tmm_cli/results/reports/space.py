@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import _
 from tmm_cli.results.reports.structure import left_out
 from tmm_cli.results.table import Table, table_of_words
-from tmm_cli.structure.contours import Contour, contours
+from tmm_cli.structure.assur import Structure
+from tmm_cli.structure.contours import Contour, contours, is_dependent
 from tmm_cli.structure.redundancy import space
 
 
 def tables(results: Results) -> Iterable[Table]:
     """Three small tables."""
     structure = results.structure
-    yield contour_table(contours(structure.pairs, structure.links))
+    yield contour_table(contours(structure.pairs, structure.links), structure)
     found = space(results.linkage, structure)
     facts = [
         (_("W by Somov-Malyshev"), found.chain.count),
@@ -52,12 +53,15 @@ def tables(results: Results) -> Iterable[Table]:
         )  # fmt: skip
 
 
-def contour_table(found: Iterable[Contour]) -> Table:
-    """Independent contours by links and pairs."""
-    return table_of_words(
-        "contours", _("Independent contours"), (_("contour"), _("pairs")),
-        [(contour.title, ", ".join(contour.pairs)) for contour in found],
-    )  # fmt: skip
+def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
+    """Contours by links and pairs; of a planar linkage with redundant links or pairs, which of them are dependent."""
+    headers, rows = [_("contour"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
+    if structure is None or not any(is_dependent(contour, structure) for contour in found):
+        return table_of_words("contours", _("Independent contours"), headers, rows)
+    kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in found]
+    rows = [[*row, kind] for row, kind in zip(rows, kinds, strict=True)]
+    note = _("A dependent contour repeats another one: the links or pairs that close it are redundant.")
+    return table_of_words("contours", _("Contours"), [*headers, _("kind")], rows, (note,))
 
 
 def redundancy(wanted: int, local: int, mobility: int, redundant: int) -> str:

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.language import N_, _
-from tmm_cli.linkage import FRAME
+from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.contours import classification
+from tmm_cli.structure.naming import basic_schemes, link_motion, six_bar_schemes
 
 ROLES = {
     "crank": N_("crank"),
@@ -59,6 +60,16 @@ CLASSES = {
     "complex": N_("complex: the driver and several groups"),
     "same type": N_("of the same type"),
     "several types": N_("of several types"),
+    "combined": N_("combined: some groups alike, others not"),
+}
+SCHEMES = {
+    "hinged four-bar": N_("hinged four-bar"),
+    "crank-slider": N_("crank-slider"),
+    "slotted-lever": N_("slotted-lever"),
+    "sine": N_("sine (Scotch yoke)"),
+    "tangent": N_("tangent"),
+    "double slotted-link": N_("double slotted-link (Oldham)"),
+    "double-slider": N_("double-slider (elliptic trammel)"),
 }
 
 
@@ -69,20 +80,25 @@ def tables(results: Results) -> Iterable[Table]:
     links, roles = [linkage.links[name] for name in structure.links], results.roles
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
-        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points")),
-        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points)) for x in links],
+        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points"), _("motion")),
+        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(linkage, x.name))
+         for x in links],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
     yield table_of_words(
-        "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("where")),
+        "pairs", _("Kinematic pairs"),
+        (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
         [(p.name, f"{p.i} - {p.j}", _(PAIRS[p.kind]),
-          _("on the frame") if FRAME in (p.i, p.j) else _("between moving links")) for p in structure.pairs],
+          _("on the frame") if FRAME in (p.i, p.j) else _("between moving links"),
+          str(p.freedoms), str(p.pair_class), p.code) for p in structure.pairs],
     )  # fmt: skip
     yield table_of_words(
         "groups", _("Assur groups, in solving order"),
-        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility")),
+        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"),
+         _("type number"), _("letters")),
         [(", ".join(map("+".join, g.bodies)), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
-          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer), counted_mobility(g.count)) for g in structure.groups],
+          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer), counted_mobility(g.count),
+          str(g.type_number or ""), g.letters) for g in structure.groups],
     )  # fmt: skip
 
 
@@ -128,6 +144,44 @@ def counted_mobility(count: tuple[int, int, int]) -> str:
     return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
 
 
+def counted_by_classes(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 - 0 = 1: 3n - 2 p5 - p4 with its numbers, from n, lower and higher pairs."""
+    n, lower, higher = count
+    return f"3*{n} - 2*{lower} - {higher} = {3 * n - 2 * lower - higher}"
+
+
+def counted_generally(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 - 1*0 = 1: the generalised formula with H = 3 motions of a free link, so H - 1 = 2 and H - 2 = 1."""
+    n, lower, higher = count
+    return f"3*{n} - 2*{lower} - 1*{higher} = {3 * n - 2 * lower - higher}"
+
+
+def counted_with_replacements(count: tuple[int, int, int]) -> str:
+    """3*5 - 2*7 = 1: the mobility after each higher pair is replaced by a link with two revolute pairs."""
+    n, lower, higher = count
+    return counted_mobility((n + higher, lower + 2 * higher, 0))
+
+
+def motion_in_words(linkage: Linkage, name: str) -> str:
+    """The motion of a link relative to the frame, with its centre or its guide."""
+    motion = link_motion(linkage, name)
+    if motion == "rotation":
+        return _("turns about {point}").format(point=linkage.shared(FRAME, name))
+    guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
+    if guides:
+        return _("slides along guide {guide}").format(guide=guides[0])
+    return _("translation") if motion == "translation" else _("plane motion")
+
+
+def schemes_in_words(structure: Structure) -> str:
+    """The basic schemes of the contours of four links, and of the whole if it is a six-bar; empty without a name."""
+    names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
+    six_bar = six_bar_schemes(structure)
+    if six_bar:
+        names.append(_("six-bar: {names}").format(names=_(" or ").join(six_bar)))
+    return ", ".join(names)
+
+
 def called(label: str) -> str:
     """The file's own name of a link; a usual one in the reader's language."""
     return _(label) if label in COMMON else label
@@ -149,6 +203,15 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
     else:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
+    count = (n, lower, higher)
+    yield _("by classes, W = 3n - 2 p5 - p4"), counted_by_classes(count)
+    yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), counted_generally(count)
+    if higher:
+        text = _("{mobility} (each by a link with two turning pairs)")
+        yield (
+            _("W with links in place of higher pairs"),
+            text.format(mobility=counted_with_replacements(count)),
+        )
     if structure.passive:
         yield _("W in truth, by rank"), str(w + structure.redundant)
     yield _("independent contours K = p - n"), str(structure.contours)
@@ -159,3 +222,6 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("W of the formula of structure"), counted_mobility(structure.count)
     yield _("chain, and kind of structure"), ", ".join(_(CLASSES[word]) for word in classification(structure))
     yield _("class of the mechanism"), structure.roman
+    schemes = schemes_in_words(structure)
+    if schemes:
+        yield _("basic schemes"), schemes
