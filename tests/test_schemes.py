@@ -315,3 +315,14 @@ def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
         results = solve(build(read_text(made.text, "scheme.yaml")))
         assert len(results.linkage.drivers) == results.structure.mobility == mobility
         assert np.max(results.lever.difference[results.motion.moving]) < 1e-9
+
+
+def test_the_list_of_schemes_says_which_groups_it_does_not_enumerate():
+    missing = (
+        "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
+        "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
+    )
+    written = json.loads(tmm("schemes", "-n", "7", "--groups", "III", "--json").stdout)
+    assert (written["count"], written["not_enumerated"]) == (0, [missing])
+    assert "Not enumerated" in tmm("schemes", "-n", "7", "--groups", "III").stdout
+    assert json.loads(tmm("schemes", "-n", "3", "--json").stdout)["not_enumerated"] == []

@@ -40,12 +40,14 @@ def schemes(
     written = None
     with refusing(as_json, str(out or "")):
         if links is not None and chains is None:
-            found = wanted_schemes(links, mobility, named_types(groups))
+            types = named_types(groups)
+            found = wanted_schemes(links, mobility, types)
             written = None if out is None else write_skeletons(found, out, progress(found))
             if as_json:
-                emit_json(schemes_json(found, links, mobility, written))
+                emit_json(schemes_json(found, links, mobility, written, types))
             else:
-                show(schemes_table(found, links, mobility, written), UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
+                table = schemes_table(found, links, mobility, written, types)
+                show(table, UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
         elif chains is not None and links is None:
             if out is not None:
                 raise ProblemError(_("kinematic chains have no files"), path=("--out",), allowed="--links N, --json")

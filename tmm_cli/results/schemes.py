@@ -11,7 +11,7 @@ from tmm_cli.language import N_, _
 from tmm_cli.quantities import NUMBER
 from tmm_cli.results.table import Column, Table
 from tmm_cli.schemes.chains import KinematicChain
-from tmm_cli.schemes.schemes import Scheme
+from tmm_cli.schemes.schemes import TYPES, Scheme
 from tmm_cli.structure.assur import ROMAN
 
 DEGREES = (N_("binary"), N_("ternary"), N_("quaternary"))
@@ -20,8 +20,10 @@ Written = Sequence[tuple[Path, bool] | None]
 """The file of each scheme and whether it was solved with its forces; None where no pose could be assembled."""
 
 
-def schemes_table(found: Sequence[Scheme], links: int, mobility: int, written: Written | None) -> Table:
-    """Number, formula, groups, links and pairs, file."""
+def schemes_table(
+    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+) -> Table:
+    """Number, formula, groups, links and pairs, file. types: the types of groups that were enumerated."""
     columns = [
         Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
         Column(N_("formula of structure"), [s.formula for s in found]),
@@ -34,7 +36,18 @@ def schemes_table(found: Sequence[Scheme], links: int, mobility: int, written: W
         none = _("none: no pose was found that assembles")
         columns.append(Column(N_("file"), [one[0].name if one else none for one in written]))
     title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
-    return Table("schemes", title, tuple(columns), notes=(_("{count} schemes").format(count=len(found)),))
+    return Table(
+        "schemes", title, tuple(columns), notes=(_("{count} schemes").format(count=len(found)), *not_enumerated(types))
+    )
+
+
+def not_enumerated(types: Iterable[str]) -> Iterable[str]:
+    """A sentence about the groups that are missing where a class higher than II was requested."""
+    if any(TYPES[name].grade > 2 for name in types):
+        yield _(
+            "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
+            "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
+        )
 
 
 def _pairs(scheme: Scheme, kind: str) -> str:
@@ -63,7 +76,9 @@ def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple
     return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in found).items()}
 
 
-def schemes_json(found: Sequence[Scheme], links: int, mobility: int, written: Written | None) -> dict[str, Any]:
+def schemes_json(
+    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+) -> dict[str, Any]:
     """Everything about the schemes as plain data."""
     rows = []
     for k, scheme in enumerate(found):
@@ -82,7 +97,13 @@ def schemes_json(found: Sequence[Scheme], links: int, mobility: int, written: Wr
             file, solved = written[k] or (None, False)
             row |= {"file": file and str(file), "solved": solved}
         rows.append(row)
-    return {"links": links, "mobility": mobility, "count": len(found), "schemes": rows}
+    return {
+        "links": links,
+        "mobility": mobility,
+        "count": len(found),
+        "schemes": rows,
+        "not_enumerated": list(not_enumerated(types)),
+    }
 
 
 def chains_json(found: Sequence[KinematicChain], links: int, mobility: int) -> dict[str, Any]:
