@@ -362,7 +362,7 @@ def test_the_table_of_the_structure_says_what_is_redundant_below_the_formula():
     lines = [" ".join(line.split()) for line in shown.splitlines()]
     at = lines.index("formula of structure I(0,1) → II(2,3)")
     assert lines[at + 1 : at + 3] == ["link 4 is redundant, adds q = 1", "W of the formula of structure 3·3 − 2·4 = 1"]
-    assert "2, 3 II 2 RRR B A (1-2), C (0-3) 3·2 − 2·3 = 0" in lines
+    assert "2, 3 II 2 RRR B A (1-2), C (0-3) 3·2 − 2·3 = 0 1 ВВВ" in lines
     assert "Pairs that leave no redundant constraints" not in lines, "q = 1 is left in the plane"
     assert "In the plane: link 4 is redundant, adds q = 1." in lines
 

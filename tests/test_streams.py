@@ -147,7 +147,10 @@ def test_names_of_links_reach_the_table_defused(tmp_path):
     (tmp_path / "x.yaml").write_text(text, encoding="utf-8")
     assert tmm("structure", tmp_path / "x.yaml", "-o", tmp_path).returncode == 0
     lines = (tmp_path / "x" / "links.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[1:] == ['1,crank,"\'=cmd|calc","O, A"', '2,stone,"nan",A', '3,slider,"a;\'-b",E']
+    assert lines[1:] == [
+        '1,crank,"\'=cmd|calc","O, A",turns about O', '2,stone,"nan",A,translation',
+        '3,slider,"a;\'-b",E,slides along guide x',
+    ]  # fmt: skip
 
 
 def test_what_is_no_number_has_an_empty_cell():

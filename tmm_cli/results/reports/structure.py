@@ -62,6 +62,11 @@ CLASSES = {
     "several types": N_("of several types"),
     "combined": N_("combined: some groups alike, others not"),
 }
+SIX_BARS = {
+    name: name for name in (
+        N_("Watt I"), N_("Watt II"), N_("Stephenson I"), N_("Stephenson II"), N_("Stephenson III"),
+    )
+}  # fmt: skip
 SCHEMES = {
     "hinged four-bar": N_("hinged four-bar"),
     "crank-slider": N_("crank-slider"),
@@ -178,7 +183,7 @@ def schemes_in_words(structure: Structure) -> str:
     names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
     six_bar = six_bar_schemes(structure)
     if six_bar:
-        names.append(_("six-bar: {names}").format(names=_(" or ").join(six_bar)))
+        names.append(_("six-bar: {names}").format(names=_(" or ").join(_(SIX_BARS[scheme]) for scheme in six_bar)))
     return ", ".join(names)
 
 
