@@ -63,10 +63,12 @@ CLASSES = {
     "combined": N_("combined: some groups alike, others not"),
 }
 SIX_BARS = {
-    name: name for name in (
-        N_("Watt I"), N_("Watt II"), N_("Stephenson I"), N_("Stephenson II"), N_("Stephenson III"),
-    )
-}  # fmt: skip
+    "Watt I": N_("Watt I"),
+    "Watt II": N_("Watt II"),
+    "Stephenson I": N_("Stephenson I"),
+    "Stephenson II": N_("Stephenson II"),
+    "Stephenson III": N_("Stephenson III"),
+}
 SCHEMES = {
     "hinged four-bar": N_("hinged four-bar"),
     "crank-slider": N_("crank-slider"),
