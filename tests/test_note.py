@@ -19,6 +19,7 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import Results
+from tmm_cli.forces.transmission import find_transmitted_forces
 from tmm_cli.language import spoken
 from tmm_cli.note import note
 from tmm_cli.note.blocks import Heading, Rows
@@ -130,6 +131,8 @@ def known(results: Results) -> np.ndarray:
     for own in results.linkage.loads:
         if own.table is not None:  # a pressure of the file is a force in it
             found += [*own.table.arguments, *own.table.values]
+    for force in find_transmitted_forces(results.motion, results.reactions) if results.reactions else ():
+        found += [*force.useful, *np.arccos(np.clip(force.useful / np.maximum(force.driving, 1e-300), 0, 1))]
     task = results.problem.dynamics
     if task is not None:  # the same of what drives, and a motor's numbers are reduced to the driver
         found += [task.flywheel, *(vars(task.motor).values() if task.motor is not None else ())]
@@ -154,6 +157,7 @@ def printed(text: str) -> list[str]:
     for apart in ("nav", "header", "ol", "h1", "h2", "svg", "caption", "figcaption", 'math display="block"'):
         body = re.sub(rf"<{apart}[ >].*?</{apart.partition(' ')[0]}>", " ", body, flags=re.S)
     body = re.sub(r"·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda power: f"e{power[1].translate(LOWERED)}", body)
+    body = re.sub(r"<p>With arms and segments read off.*?</p>", " ", body)  # as drawn: test_course_notation.py
     return re.findall(FIGURES, re.sub(r"<[^>]+>", " ", body))
 
 

@@ -13,6 +13,7 @@ import string
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -31,7 +32,20 @@ MINUS: Final = re.compile(r"(?<![\w)\]}'°.,–—-])-(?=\d)")  # of a number
 FORMULA: Final = re.compile(r" = |\d\*\d")
 PAIR: Final = re.compile(r"(?<=^\d) - (?=\d$)")  # 0 - 1: the links of a pair
 
-_spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
+INERTIA: Final = {"U": {"U": "U", "M": "M"}, "Φ": {"U": "Φ", "M": "M_Φ"}}  # force and couple, by the force's letter
+
+
+@dataclass(frozen=True)
+class Course:
+    """How a course writes: its language, the number of the frame, the letter of inertia forces ("": the language's)."""
+
+    language: str = ENGLISH
+    frame: str = "0"
+    inertia: str = ""
+
+
+USUAL: Final = Course()
+_course: ContextVar[Course] = ContextVar("course", default=USUAL)
 
 
 class Phrase(str):
@@ -54,7 +68,7 @@ N_ = Phrase  # as gettext's mark is called
 
 def translated(text: str) -> str:
     """A phrase in the language that is spoken, with the phrases in its fields; a name or a title as it is."""
-    if not isinstance(text, Phrase) or _spoken.get() == ENGLISH:
+    if not isinstance(text, Phrase) or language() == ENGLISH:
         return text
     message = _(text.message)
     return message.format(**{key: translated(own) for key, own in text.fields.items()}) if text.fields else message
@@ -62,14 +76,14 @@ def translated(text: str) -> str:
 
 def _(message: str) -> str:
     """The sentence in the language that is spoken; in English where it is not translated."""
-    language = _spoken.get()
-    return message if language == ENGLISH or not message else _catalogue(language).gettext(message)
+    spoken = language()
+    return message if spoken == ENGLISH or not message else _catalogue(spoken).gettext(message)
 
 
 def numeral(value: float, form: str) -> str:
     """A number for people in this format, with a comma where the language has one. What may be typed has points."""
     text = f"{half_up(value):{form}}"
-    return text if _spoken.get() == ENGLISH else text.replace(".", ",")
+    return text if language() == ENGLISH else text.replace(".", ",")
 
 
 def half_up(value: float) -> float:
@@ -107,19 +121,25 @@ def typeset(text: str) -> str:
 
 def spelt(unit: str) -> str:
     """A unit as the language spells it: rad/s is рад/с in Russian, rpm is o/min in Serbian."""
-    if _spoken.get() == ENGLISH:
+    if language() == ENGLISH:
         return unit
     return re.sub(r"[A-Za-zµμ°]+", lambda name: _in_context("unit", name[0]), unit)
 
 
 def symbol(letter: str) -> str:
     """The letter that a course in this language writes: of a force of inertia U in English, Φ in Russian."""
-    return _in_context("symbol", letter)
+    own = INERTIA.get(_course.get().inertia, {})
+    return own[letter] if letter in own else _in_context("symbol", letter)
+
+
+def printed(link: str) -> str:
+    """The number of a link as the course prints it; only that of the frame, link "0", may be another one."""
+    return _course.get().frame if link == "0" else link
 
 
 def _in_context(context: str, message: str) -> str:
-    language = _spoken.get()
-    return message if language == ENGLISH or not message else _catalogue(language).pgettext(context, message)
+    spoken = language()
+    return message if spoken == ENGLISH or not message else _catalogue(spoken).pgettext(context, message)
 
 
 def _catalogue(language: str) -> NullTranslations:
@@ -134,25 +154,42 @@ def _catalogue(language: str) -> NullTranslations:
 
 def language() -> str:
     """The language that is spoken here and now."""
-    return _spoken.get()
+    return _course.get().language
+
+
+def course() -> Course:
+    """How is written here and now."""
+    return _course.get()
 
 
 @contextmanager
 def spoken(language: str) -> Iterator[None]:
     """Speak a language inside; a sentence is said where it is made, so nothing may be left to be made later."""
-    before = _spoken.set(language)
+    with written_as(replace(_course.get(), language=language)):
+        yield
+
+
+@contextmanager
+def written_as(course: Course) -> Iterator[None]:
+    """Write inside as a course does."""
+    before = _course.set(course)
     try:
         yield
     finally:
-        _spoken.reset(before)
+        _course.reset(before)
 
 
 def speak(language: str) -> None:
     """Speak a language from here to the end of the `spoken` around."""
-    _spoken.set(language)
+    _course.set(replace(_course.get(), language=language))
 
 
-def speaking(language: str, work: Callable[[], Found]) -> Found:
-    """What some work gives when it speaks this language; for work that goes to another process."""
-    with spoken(language):
+def write(frame: str, inertia: str) -> None:
+    """Write so from here to the end of the `spoken` around: the number of the frame, the letter of inertia forces."""
+    _course.set(replace(_course.get(), frame=frame, inertia=inertia))
+
+
+def speaking(course: Course, work: Callable[[], Found]) -> Found:
+    """What some work gives when it writes as this course does; for work that goes to another process."""
+    with written_as(course):
         return work()

@@ -13,7 +13,7 @@ from typing import TypeVar
 from tmm_cli.cli.common import bars
 from tmm_cli.draw.formats import here
 from tmm_cli.grading.workers import begin
-from tmm_cli.language import _, language, speaking
+from tmm_cli.language import _, course, speaking
 
 FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
 FEW = 2 if FORKS else 4  # jobs that are done before other processes have started
@@ -32,7 +32,7 @@ def by_all_cores(jobs: Sequence[Callable[[], Found]], *, quiet: bool = False) ->
         return
     with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), begin) as pool:
         futures = [
-            pool.submit(speaking, language(), job) for job in reversed(jobs)
+            pool.submit(speaking, course(), job) for job in reversed(jobs)
         ]  # before the bar has its thread: threads are not copied
         try:
             with bars(quiet) as shown:

@@ -39,6 +39,7 @@ def forces(
         "transmission",
         "balance",
         "lever",
+        "lever-drawn",
         "energy",
         "friction",
     )

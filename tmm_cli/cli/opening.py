@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tmm_cli.cli.talk import say, speak_as, warn
+from tmm_cli.cli.talk import say, speak_as, warn, write_as
 from tmm_cli.language import ENGLISH, _
 from tmm_cli.library import problem_of
 from tmm_cli.problem.budget import refuse_options
@@ -30,6 +30,7 @@ def read_in_its_language(file: str) -> Tree:
     speak_as(language_in(data))
     tree = read_text(decoded(data, file), file)
     speak_as(tree.data.get("lang", ENGLISH))
+    write_as(tree.data)
     return tree
 
 

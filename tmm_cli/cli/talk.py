@@ -15,7 +15,8 @@ from typing import Annotated, Any, Literal, get_args
 import typer
 
 import tmm_cli
-from tmm_cli.language import ENGLISH, _, speak, spoken
+from tmm_cli.language import ENGLISH, _, speak, spoken, write
+from tmm_cli.linkage import FRAME
 from tmm_cli.problem.errors import clean, visible
 
 OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
@@ -114,3 +115,10 @@ def speak_as(language: object) -> None:
     """Speak the language of a file from here on, unless the command was asked for another."""
     if _asked_for.get() is None and language in get_args(Language):
         speak(str(language))
+
+
+def write_as(file: Mapping[str, object]) -> None:
+    """Print from here on the number of the frame and the letter of inertia forces that a file wants, unchecked."""
+    note = file.get("note")
+    letter = note.get("inertia") if isinstance(note, dict) else ""
+    write(str(file.get("frame", FRAME)), str(letter))

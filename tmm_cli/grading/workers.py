@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import tmm_cli
-from tmm_cli.language import _, language, speaking
+from tmm_cli.language import Course, _, course, speaking
 from tmm_cli.problem.errors import ProblemError, quote
 
 RETRIES = 3  # of what a cluster failed at
@@ -53,7 +53,7 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         yield from here(jobs, stopped)
         return
     with ProcessPoolExecutor(count, get_context("spawn"), begin) as pool:
-        futures = {pool.submit(speaking, language(), job): number for number, job in enumerate(jobs)}
+        futures = {pool.submit(speaking, course(), job): number for number, job in enumerate(jobs)}
         for future in as_completed(futures):
             if not future.cancelled():
                 try:
@@ -92,7 +92,7 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     with client:
         _refuse_other_programs(client, address)
         futures = {
-            client.submit(_of_program, program_digest(), language(), job, retries=RETRIES, pure=False): number
+            client.submit(_of_program, program_digest(), course(), job, retries=RETRIES, pure=False): number
             for number, job in enumerate(jobs)
         }
         for future in _finished(client, distributed.as_completed(futures, loop=client.loop), len(futures), address):
@@ -168,7 +168,7 @@ def _no_workers(address: str) -> ProblemError:
     return ProblemError(_("the scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
 
 
-def _of_program(program: str, spoken: str, job: Job) -> Any:
+def _of_program(program: str, spoken: Course, job: Job) -> Any:
     """What a job gives on a worker that has the same program; workers may join later. Raises ProblemError."""
     if program_digest() != program:
         raise ProblemError(_("a worker has another version of tmm than this one"))

@@ -33,7 +33,7 @@ from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import _, language, numeral, signed, typeset
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
-from tmm_cli.plans.record import subscript
+from tmm_cli.plans.record import extent, round_scale, subscript
 from tmm_cli.problem.units import on_paper
 from tmm_cli.quantities import Dimension
 
@@ -150,6 +150,16 @@ class Subject:
                 self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
         several = draw is motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
+
+    def scale(self, name: str, k: int, stem: str) -> float:
+        """How many metres a millimetre of this drawing is; of one that is not drawn, what would suit the mechanism."""
+        picture = self.drawings(name, k).get(stem)
+        mu = getattr(picture, "mu", None)
+        if mu is not None:
+            return float(mu)
+        points = {point for link in self.results.linkage.links.values() for point in link.points}
+        __, across, up, ___ = extent(complex(self.motion.named(point).x[k]) for point in points)
+        return round_scale(across, up, OF_POSITION[name][1], OF_POSITION[name][1])
 
     def figures(
         self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from tmm_cli.language import symbol
+from tmm_cli.language import printed, symbol
 from tmm_cli.tolerances import NO_VECTOR
 
 ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
@@ -150,6 +150,7 @@ def in_letters(segment: str) -> str:
 
 def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
     """R₃₄: from link 3 on link 4; part: τ tangential, n normal; letter: M of the couple that a guide or a cam bears."""
+    by, on = printed(by), printed(on)
     return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
 
 

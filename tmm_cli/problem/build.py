@@ -89,6 +89,11 @@ def parameters(
 def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     """The problem, its parts built in the order in which they need each other. Raises ProblemError, not yet located."""
     members = build_links(shape, values)
+    if shape.frame != FRAME and shape.frame in members.links:
+        raise ProblemError(
+            _("a link has this number already"), found=shape.frame, path=("frame",),
+            allowed=_("a number of no link, such as {number}").format(number=len(members.links)),
+        )  # fmt: skip
     refuse_unused(shape, tree.data, members)
     links = members.links
     first, *others = build_drivers(shape, members, values)
@@ -119,7 +124,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     return Problem(
         name, shape.title or name, linkage, request, values.units, limit, shape.description,
         tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
-        shape.sheet, _task("dynamics", shape, linkage, values),
+        shape.sheet, shape.note, _task("dynamics", shape, linkage, values),
         _task("balancing", shape, linkage, values), shape.reference, shape.shows, values, tree,
         wheels=_wheels(shape, tree, linkage, values),
     )  # fmt: skip

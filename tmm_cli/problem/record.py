@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from tmm_cli.linkage import Linkage, Request
-from tmm_cli.problem.schema_sheet import SheetTexts
+from tmm_cli.problem.schema_sheet import NoteStyle, SheetTexts
 from tmm_cli.problem.schema_shown import Shown
 from tmm_cli.problem.tree import Tree
 from tmm_cli.problem.units import UnitSystem
@@ -41,7 +41,7 @@ class Problem:
     pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
     them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
     reference: of the mechanism in a list; shows: properties by their words, whose values are read by `values`. wheels:
-    what is asked of intermittent motion.
+    what is asked of intermittent motion. note_style: how the course writes its notes.
     """
 
     name: str
@@ -56,6 +56,7 @@ class Problem:
     limits_set: tuple[bool, bool] = (False, False)
     bare_speed: bool = False
     title_texts: SheetTexts = field(default_factory=SheetTexts)
+    note_style: NoteStyle = field(default_factory=NoteStyle)
     dynamics: SteadyTask | RunTask | None = None
     balancing: BalancingTask | None = None
     reference: str = ""

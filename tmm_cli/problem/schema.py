@@ -28,7 +28,7 @@ from tmm_cli.problem.schema_parts import (
     checked_name,
     checked_value,
 )  # fmt: skip
-from tmm_cli.problem.schema_sheet import SheetTexts
+from tmm_cli.problem.schema_sheet import NoteStyle, SheetTexts
 from tmm_cli.problem.schema_shown import Shows
 from tmm_cli.problem.schema_springs import Friction, Spring
 
@@ -213,3 +213,5 @@ class File(FileHead):
     dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
     balancing: Balancing | None = Field(default=None, description="what shakes the frame, and counterweights")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
+    frame: Name = Field(default="0", description="the number of the frame that is printed: R_65 for R_05 where it is 6")
+    note: NoteStyle = Field(default_factory=NoteStyle, description="how the note and its drawings are written")

@@ -1,4 +1,4 @@
-"""The shape of the block `sheet`: what the title block of a drawn sheet says, and what it looks like."""
+"""The shapes of the blocks `sheet` and `note`: texts of the title block, and how the course writes its notes."""
 
 from __future__ import annotations
 
@@ -34,3 +34,18 @@ class SheetTexts(Strict):
     department: Words = Field(default="", description="the university and its department")
     code: Words = Field(default="", description="designation of the project; the number of the sheet is added to it")
     block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")
+
+
+class NoteStyle(Strict):
+    """How the course writes: of the choices each is the usual one where the file leaves it out."""
+
+    inertia: Literal["U", "Φ"] | None = Field(
+        default=None, description="letter of inertia forces; left out: that of the language, U in English and Φ in Russian"
+    )
+    arms: Literal["m", "paper"] = Field(
+        default="m",
+        description="arms in equations of moments: in metres, or in millimetres of the drawing with its scale mu_l",
+    )
+    sections: Literal["usual", "MATI"] = Field(
+        default="usual", description="MATI: the force analysis in the steps 1 to 4 of the guidelines, before the lever"
+    )

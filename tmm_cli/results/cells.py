@@ -15,7 +15,7 @@ from tmm_cli.results.table import Table
 from tmm_cli.vectors import Real
 
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
-APART = ("synthesis", "checks")  # a search has its own digits, and of checks the words count
+APART = ("synthesis", "checks", "drawn")  # a search has its own digits, checks count by their words, drawings by 0.5 mm
 COMPUTED = tuple(name for name, part, __ in REPORTS if part in MOVING and name not in APART)
 SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from tmm_cli.language import printed
 from tmm_cli.linkage import FRAME, Driver, Hinge, Linkage, Mesh, Slide
 from tmm_cli.structure.graph import Count, Tie, components, count, rigid_sets
 from tmm_cli.structure.group_class import group_class
@@ -249,7 +250,7 @@ class Structure:
     def driver_title(self, driver: Driver) -> str:
         """I(0,1): a driver, as the structural formula writes it."""
         base, link = ("+".join(self.rigid_with(n)) if n != FRAME else n for n in (driver.base, driver.link))
-        return f"I({base},{link})"
+        return f"I({printed(base)},{link})"
 
     @property
     def count(self) -> tuple[int, int, int]:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from tmm_cli.language import printed
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Structure
 
@@ -36,7 +37,7 @@ class Contour:
     @property
     def title(self) -> str:
         """0-1-2-3-0."""
-        return "-".join((*self.links, self.links[0]))
+        return "-".join(map(printed, (*self.links, self.links[0])))
 
 
 def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...]:

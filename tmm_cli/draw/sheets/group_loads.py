@@ -29,13 +29,13 @@ def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     for part in loaded_parts(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
         stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
-        few, *others = _sheetfuls(part.equations)
+        few, *others = sheetfuls(part.equations)
         sheets = [*_sheets(here, part, few, part.sums), *(s for more in others for s in _sheets(here, part, more, ()))]
         for number, sheet in enumerate(sheets if part.acting else ()):
             yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
 
-def _sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
+def sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
     """Equations in their order, on as many sheets as their arms need."""
     found: list[list[MomentEquation]] = [[]]
     for equation in equations:

@@ -20,7 +20,7 @@ from tmm_cli.draw.symbols.parts import FREE, STRUCTURAL, Look, box, numbers, qui
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import BEYOND, Scene, fitted
 from tmm_cli.draw.symbols.wheel_symbols import draw
-from tmm_cli.language import _
+from tmm_cli.language import _, printed
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE
 from tmm_cli.results.reports.structure import ROLES
@@ -109,7 +109,7 @@ def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: 
             words.append(_("inner pairs: {pairs}").format(pairs=_listed(group.inner)))
         words.append(_("outer pairs: {pairs}").format(pairs=_listed(group.outer)))
         if group.drivers:
-            drivers = ", ".join(f"I({d.base},{d.link})" for d in group.drivers)
+            drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in group.drivers)
             words.append(_("with drivers: {drivers}").format(drivers=drivers))
     fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ", max_lines=4) for text in words]
     return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
@@ -124,7 +124,7 @@ def pairs_outside(part: Part, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
 
 
 def _listed(pairs: Iterable[Pair]) -> str:
-    return ", ".join(f"{p.name} ({p.i}-{p.j})" for p in pairs)
+    return ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in pairs)
 
 
 def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
@@ -156,7 +156,7 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
 
 def lead_name(pair: Pair, part: Part) -> str:
     """A (to 1): a lead and the link that it is joined to."""
-    return _("{pair} (to {link})").format(pair=pair.name, link=pair.i if pair.j in part.links else pair.j)
+    return _("{pair} (to {link})").format(pair=pair.name, link=printed(pair.i if pair.j in part.links else pair.j))
 
 
 def sliding_lead(sheet: Sheet, scene: Scene, pair: Pair, part: Part, look: Look) -> None:

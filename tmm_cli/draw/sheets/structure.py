@@ -20,7 +20,7 @@ from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.draw.symbols.parts import FREE, PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
-from tmm_cli.language import _, typeset
+from tmm_cli.language import _, printed, typeset
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
 from tmm_cli.results.reports.structure import counted_mobility, left_out
@@ -167,7 +167,7 @@ class Legend:
         points = [p.point for p in structure.pairs if p.kind == "R"]
         inner = [d for d in structure.drivers if d.base != FRAME]
         if inner:
-            drivers = ", ".join(f"I({d.base},{d.link})" for d in inner)
+            drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in inner)
             self.facts.append(_("Drivers between links of groups: {drivers}").format(drivers=drivers))
         compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
         if compound:

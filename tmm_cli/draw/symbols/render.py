@@ -21,7 +21,7 @@ from tmm_cli.draw.symbols.scene import BEYOND, ON_LINE, Scene, spread
 from tmm_cli.draw.symbols.wheel_symbols import CHAIN
 from tmm_cli.draw.symbols.wheel_symbols import draw as draw_wheels
 from tmm_cli.draw.symbols.wheels import CamShape, contact
-from tmm_cli.language import _
+from tmm_cli.language import _, printed
 from tmm_cli.linkage import FRAME
 from tmm_cli.structure.assur import Pair
 
@@ -93,7 +93,7 @@ def _render(
         with sheet.part(FRAME):
             end = support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
         if not look.measured:
-            sheet.label(FRAME, end, 9, DARK, "italic")
+            sheet.label(printed(FRAME), end, 9, DARK, "italic")
     return drawn
 
 
@@ -120,7 +120,7 @@ def _guide(sheet: Sheet, scene: Scene, pair: Pair, look: Look, rods: Sequence[Li
         return
     low_side = -1j * along if (1j * along).imag > 0 else 1j * along
     reach = (look.box[0] / 2 + BEYOND) * along
-    sheet.label(FRAME, at + low_side * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
+    sheet.label(printed(FRAME), at + low_side * (look.box[1] / 2 + 2) + reach, 9, DARK, "italic")
 
 
 def _higher(sheet: Sheet, scene: Scene, pair: Pair, look: Look, hue: Mapping[str, str], rods: Sequence[Line]) -> None:
@@ -150,7 +150,7 @@ def slider(sheet: Sheet, scene: Scene, pair: Pair, look: Look, colour: str, rods
         for side in (1j * along, -1j * along) if slide.runner == FRAME else ():
             wall(sheet, at + side * size[1] / 2, along, side, size[0] / 2, rods)
     if slide.runner == FRAME and not look.measured:
-        sheet.label(FRAME, at + along * size[0] / 2, 9, DARK, "italic")
+        sheet.label(printed(FRAME), at + along * size[0] / 2, 9, DARK, "italic")
 
 
 def _hinge(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.draw.sheets.structure import counted, parts
-from tmm_cli.language import _, typeset
+from tmm_cli.language import _, printed, typeset
 from tmm_cli.note.blocks import (
     Block,
     Equation,
@@ -166,7 +166,7 @@ def _group(group: Group) -> tuple[Line, ...]:
     n, lower, higher = group.count
     own = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
-    outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=link)) for pair, link in known)
+    outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known)
     inner = ", ".join(pair.name for pair in group.inner) or NONE
     roman, order = group.roman, str(group.order)
     kind = counted(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")

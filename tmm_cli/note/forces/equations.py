@@ -13,32 +13,38 @@ from tmm_cli.plans.moments import MomentEquation, Term
 from tmm_cli.plans.projections import ForceSum, Part
 from tmm_cli.plans.record import Symbol
 
+MU = Symbol("μ", "l")
 ALONG = 1e-12  # one less the cosine: a force with less is along the guide
 
 
-def moments(equation: MomentEquation) -> Node:
-    """ΣM_E = −R·h₃ + G·h₁ − ... = 0, what is sought first."""
+def moments(equation: MomentEquation, mu: float | None = None) -> Node:
+    """ΣM_E = −R·h₃ + G·h₁ − ... = 0, what is sought first; mu (m/mm): with arms on paper, couples as M/μ_l."""
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
-    return chain((Letter(Symbol("ΣM", equation.about)), letters(added(map(_moment, terms))), Number("0")))
+    return chain((Letter(Symbol("ΣM", equation.about)), letters(added(_moment(t, mu) for t in terms)), Number("0")))
 
 
-def by_moments(equation: MomentEquation, unit: str = "") -> Found | None:
+def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None) -> Found | None:
     """What an equation gives; of one that gives nothing, the sum itself, which is zero. None: nothing has a moment.
 
-    unit: of moments, where it is not N·m.
+    unit: of moments, where it is not N·m. mu (m/mm): with arms in millimetres of the drawing, so that a couple is put
+    in as M/μ_l and a sum of F·h is a moment when multiplied by μ_l (guidelines, equation 7).
     """
     found, sought = equation.found, equation.sought
-    others: Expression = added(_moment(t) for t in equation.terms if t is not found)
+    others: Expression = added(_moment(t, mu) for t in equation.terms if t is not found)
     unit = unit or _("N·m")
     if found is None or sought is None:
+        unit = unit if mu is None else _("N·mm")
         return Found(Symbol("ΣM", equation.about), others, 0.0, unit) if equation.terms and not sought else None
     others = signed(-found.moment, others)
-    size, arm = Leaf(found.acting.symbol, found.acting.size), Leaf(found.letter, found.arm)
+    size, arm = Leaf(found.acting.symbol, found.acting.size), _arm(found, mu)
     if found.acting.couple:
-        return Found(size.symbol, others, size.value, unit)
+        if mu is None or not any(term.number for term in equation.terms):
+            couples = signed(-found.moment, added(_moment(t) for t in equation.terms if t is not found))
+            return Found(size.symbol, couples, size.value, unit)
+        return Found(size.symbol, others * Leaf(MU, mu), size.value, unit)
     if sought.arm:
-        return Found(arm.symbol, others / size, arm.value, _("m"))
+        return Found(arm.symbol, others / size, arm.value, _("m") if mu is None else _("mm"))
     return Found(size.symbol, others / arm, size.value, _("N"))
 
 
@@ -61,9 +67,16 @@ def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     return chain((row(*parts[1:]), Number("0")))
 
 
-def _moment(term: Term) -> Expression:
+def _moment(term: Term, mu: float | None = None) -> Expression:
     force = Leaf(term.acting.symbol, term.acting.size)
-    return signed(term.moment, force * Leaf(term.letter, term.arm) if term.number else force)
+    if term.number:
+        return signed(term.moment, force * _arm(term, mu))
+    return signed(term.moment, force if mu is None else force / Leaf(MU, mu))
+
+
+def _arm(term: Term, mu: float | None) -> Leaf:
+    """Of a force: in metres, or in millimetres of a drawing of this scale."""
+    return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 
 def _projection(part: Part, number: int) -> Expression:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from tmm_cli.draw.paper.sheet import safe
 from tmm_cli.forces.applied import Applied
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Equation, Heading, said
@@ -13,6 +14,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
 from tmm_cli.plans.bodies import load_symbols
+from tmm_cli.plans.drawn import Scales, drawn_check, sheets
 from tmm_cli.plans.lever import LeverPlan, lever_plan
 from tmm_cli.plans.record import Symbol, balance_symbol
 from tmm_cli.tolerances import NO_DIFFERENCE
@@ -42,6 +44,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     else:
         yield from (Equation(moments(plan.equation)), found)
         yield from _compared(subject, k)
+        yield from _on_paper(subject, k)
 
 
 def _explained(*, turns: bool) -> Block:
@@ -137,3 +140,25 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     whole = gap / Leaf(Symbol(name.letter, "max"), largest) * 100.0
     percent = 100 * float(lever.difference[k])
     yield Found(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%")
+
+
+def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
+    """What both ways give with arms and segments that are read off the drawings of the note."""
+    drawn = sheets(subject.motion, subject.reactions, subject.lever, k)
+    if drawn is None:
+        return
+    here, link = subject.position(k), f"link-{drawn.link.links[0]}"
+    names = ("group-loads", "forces", "lever")
+    stems = [safe(here.stem(name) if name == "lever" else f"{here.stem(name)}-{link}") for name in names]
+    scales = drawn.scales()
+    if subject.drawn:
+        scales = Scales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))
+    check = drawn_check(subject.motion, subject.reactions, drawn, scales)
+    moment = subject.reactions.balance.kind == "moment"
+    yield said(
+        _("With arms and segments read off the drawings to 0.5 mm, the force plan gives {plan} {unit} and the lever "
+          "{lever} {unit}. Their difference, {share} % of the largest magnitude, is one of drawing; the difference "
+          "above is one of calculation."),
+        plan=subject.shown(abs(check.plan)), lever=subject.shown(abs(check.lever)),
+        unit=_("N·m") if moment else _("N"), share=subject.text(100 * check.difference, 2),
+    )  # fmt: skip

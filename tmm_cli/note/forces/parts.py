@@ -6,11 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tmm_cli.draw.paper.sheet import safe
+from tmm_cli.draw.sheets.group_loads import sheetfuls
 from tmm_cli.forces.plan import GroupForces, Reaction
 from tmm_cli.note.context import Subject
 from tmm_cli.plans.bodies import DRIVE, Acting, Loaded
 from tmm_cli.plans.forces import ForcePlan, force_plans
-from tmm_cli.plans.moments import LoadedPart, loaded_parts
+from tmm_cli.plans.moments import LoadedPart, MomentEquation, loaded_parts
 from tmm_cli.plans.projections import ForceSum
 from tmm_cli.plans.record import NamedVector, Symbol, reaction_symbol
 from tmm_cli.tolerances import NO_FORCE
@@ -104,6 +105,14 @@ class Part:
     def size(self, reaction: Reaction) -> float:
         """Of a reaction in this position, N."""
         return abs(complex(reaction.force[self.here.k]))
+
+    def on_paper(self, equation: MomentEquation) -> float | None:
+        """The scale of the drawing on which the arms of an equation are, m/mm; None where arms are told in metres."""
+        if self.subject.results.problem.note_style.arms != "paper":
+            return None
+        number = next(n for n, few in enumerate(sheetfuls(self.loaded.equations)) if equation in few)
+        stem = self.stem("group-loads") + (f"-sheet-{number + 1}" if number else "")
+        return self.subject.scale("group-loads", self.here.k, stem)
 
     def stem(self, name: str) -> str:
         """Of its drawing."""

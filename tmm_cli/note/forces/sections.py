@@ -9,7 +9,7 @@ from tmm_cli.forces.plan import Reaction
 from tmm_cli.language import _, filled
 from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
 from tmm_cli.note.expression import Found, Function, Leaf, read
-from tmm_cli.note.forces.equations import along_guide, by_moments, moments, vector_sum
+from tmm_cli.note.forces.equations import MU, along_guide, by_moments, moments, vector_sum
 from tmm_cli.note.forces.parts import Part
 from tmm_cli.note.kinematics.words import sense
 from tmm_cli.plans.bodies import DRIVE
@@ -22,9 +22,9 @@ from tmm_cli.tolerances import NO_FORCE
 SIZES = 2  # that a closed polygon gives
 
 
-def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
+def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
     """All of a section. first: of the note, which says how to read the sum of vectors."""
-    yield Heading(heading, 2)
+    yield heading
     if not part.loaded.acting:
         yield said(_("Nothing acts here ({links}): all reactions are zero."), links=_links(part.links))
         return
@@ -36,17 +36,17 @@ def written(part: Part, heading: str, *, first: bool) -> Iterable[Block]:
         )  # fmt: skip
     ready, later = part.sums
     equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
-    yield from chain.from_iterable(map(_moments, (e for e in equations if not e.special)))
+    yield from chain.from_iterable(_moments(part, e) for e in equations if not e.special)
     yield from chain.from_iterable(map(_projections, ready))
     # what the sums give has moments there
-    yield from chain.from_iterable(map(_moments, (e for e in equations if e.special)))
+    yield from chain.from_iterable(_moments(part, e) for e in equations if e.special)
     if part.inner_first:
         yield from _guide_between(part)
     yield from _force_plan(part, explained=first)
     if not part.inner_first:
         yield from _inner(part)
     yield from chain.from_iterable(map(_projections, later))
-    yield from chain.from_iterable(map(_moments, (e for e in part.loaded.equations if e.sought and e.sought.arm)))
+    yield from chain.from_iterable(_moments(part, e) for e in part.loaded.equations if e.sought and e.sought.arm)
     yield from _balance(part)
 
 
@@ -82,6 +82,13 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     balances = [one for one in part.loaded.acting if one.pair == DRIVE]
     drives = [filled(moment if one.couple else force, symbol=one.symbol) for one in balances]
     yield listed_below((*unknown, *drives))
+    if part.subject.results.problem.note_style.arms == "paper" and part.loaded.equations:
+        mu = part.on_paper(part.loaded.equations[0])
+        yield said(
+            _("The arms are in millimetres of the drawing, whose scale is {mu} = {value} m/mm; a couple is divided by "
+              "this scale."),
+            mu=MU, value=part.subject.text(mu or 1.0),
+        )  # fmt: skip
     yield from part.subject.figures(
         "group-loads", _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to "
                          "scale."),
@@ -112,9 +119,10 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     return filled(text, **places, R=whole, n=n, t=t)
 
 
-def _moments(equation: MomentEquation) -> Iterable[Block]:
+def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
     """A sum of moments, and what it gives: a force, a couple, or where the reaction of a guide acts."""
-    found, sought = by_moments(equation), equation.sought
+    mu = part.on_paper(equation)
+    found, sought = by_moments(equation, mu=mu), equation.sought
     if sought is None:
         yield from () if found is None else (found,)
         return
@@ -135,10 +143,10 @@ def _moments(equation: MomentEquation) -> Iterable[Block]:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=equation.about, links=_links(equation.links), symbol=sought.symbol)
     if found is not None:
-        yield from (Equation(moments(equation)), found)
+        yield from (Equation(moments(equation, mu)), found)
     elif not sought.arm:
         if equation.terms:  # they cancel
-            yield Equation(moments(equation))
+            yield Equation(moments(equation, mu))
         yield read(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
 
 

@@ -6,14 +6,15 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from tmm_cli.forces.transmission import find_transmitted_forces
 from tmm_cli.language import _, filled
-from tmm_cli.note.blocks import Block, Line, Rows, said, several, tabled
+from tmm_cli.note.blocks import Block, Line, Rows, cells, said, several, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE, over_positions
 from tmm_cli.plans.record import Lettered, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.results.reports.cycle import has_flywheel
-from tmm_cli.tolerances import NO_DIFFERENCE
+from tmm_cli.tolerances import NO_DIFFERENCE, NO_FORCE
 from tmm_cli.vectors import Real, Vector, largest, without_rounding
 
 PAIRS = 4  # reactions in one table
@@ -45,6 +46,40 @@ def reactions(subject: Subject) -> Iterable[Block]:
             [table.key for table in tables],
         )  # fmt: skip
         yield from tables
+
+
+def transmission(subject: Subject) -> Iterable[Block]:
+    """Of each driven link in the positions in detail: the force that drives it, and the part of it that moves it."""
+    given = find_transmitted_forces(subject.motion, subject.reactions)
+    if not given or not subject.reactions.loaded:
+        return
+    moving = [
+        (force, k)
+        for force in given
+        for k in subject.detail
+        if force.driving[k] > NO_FORCE * np.nanmax(force.driving) and np.isfinite(force.useful[k])
+    ]
+    rows = [
+        cells(
+            force.link,
+            force.pair,
+            subject.called(k),
+            subject.shown(float(force.driving[k])),
+            subject.angle(float(np.arccos(min(1.0, float(force.useful[k] / force.driving[k]))))),
+            subject.shown(float(force.useful[k])),
+        )
+        for force, k in moving
+    ]
+    if not rows:
+        return
+    P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
+    head = cells(_("driven link"), _("driven in pair"), _("position"), (P, ", ", _("N")), (angle, ", °"),
+                 (Q, ", ", _("N")))  # fmt: skip
+    yield from tabled(
+        _("The force {P} that drives a link moves it by its component along the velocity of its point alone, {Q} = "
+          "{P} cos {angle}, where {angle} is the angle between them with all loads acting; table {table} gives both."),
+        Rows(_("Transmission of force"), head, tuple(rows), "transmission"), P=P, Q=Q, angle=angle,
+    )  # fmt: skip
 
 
 def _sized(

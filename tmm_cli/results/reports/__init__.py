@@ -27,6 +27,7 @@ REPORTS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("kinematics", "motion", ("points", "link-motion", "slides")),
     ("forces", "reactions", ("reactions", "pins", "loads", "transmission", "balance")),
     ("lever", "lever", ("lever",)),
+    ("drawn", "lever", ("lever-drawn",)),
     ("energy", "energy", ("energy", "friction")),
     ("dynamics", "running", ("dynamics", "law-of-motion")),
     ("balancing", "balancing", ("balancing", "shaking")),

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
 from tmm_cli.forces.transmission import find_transmitted_forces
-from tmm_cli.language import N_, Phrase, _
+from tmm_cli.language import N_, Phrase, _, printed, symbol
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.bodies import load_names
 from tmm_cli.quantities import ANGLE, FORCE, LOAD, MOMENT, REACTION, TRANSMITTED, columns
@@ -18,6 +18,7 @@ from tmm_cli.results.table import Column, Table
 
 def label(by: str, on: str) -> str:
     """R_12 acts from link 1 on link 2."""
+    by, on = printed(by), printed(on)
     return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
 
 
@@ -49,7 +50,9 @@ def tables(results: Results) -> Iterable[Table]:
     loads = reactions.applied
     if loads:
         words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
-        title = _("Loads: weights G, inertia forces U and couples M, and those of the task")
+        title = _("Loads: weights {G}, inertia forces {U} and couples {M}, and those of the task").format(
+            G=symbol("G"), U=symbol("U"), M=symbol("M")
+        )
         yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
     yield from _transmitted(results)
     yield _balances(results)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import _, printed
 from tmm_cli.results.reports.structure import left_out
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Structure
@@ -47,7 +47,7 @@ def tables(results: Results) -> Iterable[Table]:
         yield table_of_words(
             "replacements", title,
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
-            [(r.pair.name, f"{r.pair.i} - {r.pair.j}", _(r.was), _(r.kind), str(r.freedoms))
+            [(r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
              for r in found.replacements],
             tuple(notes),
         )  # fmt: skip

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import N_, _
+from tmm_cli.language import N_, _, printed
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Structure
@@ -95,7 +95,7 @@ def tables(results: Results) -> Iterable[Table]:
     yield table_of_words(
         "pairs", _("Kinematic pairs"),
         (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
-        [(p.name, f"{p.i} - {p.j}", _(PAIRS[p.kind]),
+        [(p.name, f"{printed(p.i)} - {printed(p.j)}", _(PAIRS[p.kind]),
           _("on the frame") if FRAME in (p.i, p.j) else _("between moving links"),
           str(p.freedoms), str(p.pair_class), p.code) for p in structure.pairs],
     )  # fmt: skip
@@ -104,7 +104,7 @@ def tables(results: Results) -> Iterable[Table]:
         (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"),
          _("type number"), _("letters")),
         [(", ".join(map("+".join, g.bodies)), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
-          ", ".join(f"{p.name} ({p.i}-{p.j})" for p in g.outer), counted_mobility(g.count),
+          ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in g.outer), counted_mobility(g.count),
           str(g.type_number or ""), g.letters) for g in structure.groups],
     )  # fmt: skip
 
