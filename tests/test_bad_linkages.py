@@ -157,7 +157,7 @@ CASES = {
         "  allowed: tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, "
         "points, guides, links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, "
         "loads, gravity, output, "
-        "cycle, intermittent, positions, checks, dynamics, balancing, sheet\n"
+        "cycle, intermittent, positions, checks, dynamics, balancing, sheet, frame, note\n"
         "  did you mean 'gears'?",
     ),
     "rack and wheel are one link": (

@@ -177,8 +177,8 @@ def test_on_finer_and_finer_paper_both_ways_come_to_the_exact_value(name, monkey
 
 def test_forces_show_the_drawn_difference_beside_the_exact_one():
     text = tmm("forces", "problems/course-1.yaml", "--position", "3").stdout
-    assert "The force plan and the lever on paper" in text
-    row = next(line for line in text.partition("on paper")[2].splitlines() if line.startswith(" 3 "))
+    assert "The force plan and the lever as drawn" in text
+    row = next(line for line in text.partition("as drawn")[2].splitlines() if line.startswith(" 3 "))
     *__, plan, lever, drawn, exact = (float(number) for number in row.split())
     assert [plan, lever] == pytest.approx([186.437, 186.437], rel=0.01)
     assert drawn == pytest.approx(100 * abs(plan - lever) / 192.3, abs=0.03)

@@ -158,3 +158,73 @@ def test_crank_rocker_of_the_swing_doubler_obeys_grashof():
                      (("1", "O", "A"), ("2", "A", "B"), ("3", "D", "B"), ("0", "O", "D")))  # fmt: skip
     assert lengths[0] == pytest.approx(0.075) and lengths[0] + lengths[3] < lengths[1] + lengths[2]
     assert solved("four-bars/swing-crank-rocker").roles["3"] == "crank"
+
+
+RISE = {"up": lambda x: 10 * x**3 - 15 * x**4 + 6 * x**5, "down": lambda x: 1 - x + np.sin(2 * np.pi * x) / (2 * np.pi)}
+
+
+def coupler(relative, rise=18.0):
+    """Length AB (mm) at an angle of the cam from the carrier (rad)."""
+    turn = np.degrees(relative) % 360 - 20
+    turn += 360 if turn < 0 else 0
+    if turn < 100:
+        return 150 + rise * RISE["up"](turn / 100)
+    return 150 + rise * (1.0 if turn < 180 else RISE["down"]((turn - 180) / 100) if turn < 280 else 0.0)
+
+
+def rocker_with_cam(phi, near, rise=18.0):
+    """Angle of the rocker and of the carrier (rad): the coupler is as long as the cam makes it."""
+    a, d = 50 * np.exp(1j * phi), 170 - 20j
+
+    def b(theta):
+        return a + coupler(phi - theta, rise) * np.exp(1j * theta)
+
+    theta = root(lambda t: abs(b(t) - d) - 120, near - 0.2, near + 0.2)
+    return np.angle(b(theta) - d), theta
+
+
+def test_a_cam_on_the_crank_changes_the_length_of_the_coupler():
+    phi, theta, psi = np.radians(40 + np.linspace(0, 360, 1441)), 0.4, []
+    for q in phi:
+        angle, theta = rocker_with_cam(q, theta)
+        psi.append(angle)
+    assert shown("cam-coupler")[0] == pytest.approx(np.ptp(psi), abs=2e-6)
+    results = solved("cam-coupler")
+    there = np.interp(np.radians([60, 90]), phi, np.unwrap(psi))
+    assert results.motion.angle("4")[[2, 3]] == pytest.approx(there, abs=2e-5)
+    assert float(np.max(results.lever.difference)) < 1e-12  # velocities alone know nothing of where the cam pushes
+
+
+def test_without_a_rise_it_is_the_four_bar():
+    text = (PROBLEMS / "cam-coupler.yaml").read_text(encoding="utf-8").partition("shows:")[0]
+    still = solve(build(read_text(text.replace("rise: 18", "rise: 0").replace("rise: -18", "rise: 0"), "x")))
+    a = 50 * np.exp(1j * still.motion.q)
+    b = np.array([meet(z, 170 - 20j, 150, 120, 187 + 98j) for z in a])
+    assert still.motion.angle("4") == pytest.approx(np.angle(b - (170 - 20j)), abs=1e-12)
+
+
+def test_a_cam_on_the_frame_moves_the_follower_on_a_turning_crank():
+    text = """tmm: 1
+units: {length: mm, angle: deg}
+points: {O: [0, 0]}
+links:
+  1: {points: {O: [0, 0], T: [200, 0]}}
+  2: {points: [P], slides: {on: 1, along: OT}}
+cams:
+  c: {cam: 0, follower: 2, carrier: 1, law: [{over: 180, rise: 30, law: cosine}, {over: 180, rise: -30, law: cosine}],
+      offset: 100}
+driver: {link: 1, speed: 60 rpm}
+sketch: {at: 0, P: [100, 0]}
+masses: {2: {mass: 1 kg, inertia: 0.001}}
+gravity: 0
+positions: {count: 8}
+"""
+    results = solve(build(read_text(text, "x")))
+    q = results.motion.q
+    run = 115 - 15 * np.cos(np.mod(-q, 2 * np.pi))  # 30 mm along the cosine law, there and back
+    assert np.abs(results.motion.named("P").x) * 1e3 == pytest.approx(run, abs=1e-9)
+    # force of inertia along and across the crank, with the transfer functions of the law
+    s, ds, dds, omega = run / 1e3, 15e-3 * np.sin(q), 15e-3 * np.cos(q), 2 * np.pi
+    balance = results.reactions.balance.moment
+    power = omega * (dds * omega**2 - s * omega**2) * ds + 2 * ds * omega * omega * s * omega
+    assert balance * omega == pytest.approx(power, abs=1e-9)

@@ -383,6 +383,40 @@ def coriolis():
     return abs(2 * turning * running)
 
 
+def cam_coupler():
+    """Swing of the rocker whose coupler a cam makes 150 to 168 mm long: Newton on a grid, then in 40 digits."""
+
+    def length(turn):
+        x = turn / DEG - 20 - 360 * mp.floor((turn / DEG - 20) / 360)
+        if x < 100:
+            x /= 100
+            return 150 + 18 * (10 * x**3 - 15 * x**4 + 6 * x**5)
+        x = (x - 180) / 100
+        return mpf(168) if x < 0 else 168 - 18 * (x - mp.sin(2 * pi * x) / (2 * pi)) if x < 1 else mpf(150)
+
+    near = {"theta": mpf(0.4)}
+
+    def psi(phi):
+        def b(theta):
+            return polar(50, phi) + polar(length(phi - theta), theta) - mp.mpc(170, -20)
+
+        theta = mp.findroot(lambda t: abs(b(t)) ** 2 - 120**2, near["theta"], tol=1e-30)
+        near["theta"] = theta
+        return mp.arg(b(theta))
+
+    phi = np.linspace(0, 2 * np.pi, 241)
+    angles = [psi(mpf(float(q))) for q in phi]
+    found = []
+    for pick in (np.argmax, np.argmin):
+        k = int(pick(np.array(angles, dtype=float)))
+        near["theta"] = mpf(0.4)
+        psi(mpf(float(phi[k])))
+        q = mp.findroot(lambda q: slope(psi, q), (mpf(float(phi[k - 1])), mpf(float(phi[(k + 1) % 240]))),
+                        solver="secant", tol=1e-18)  # fmt: skip
+        found.append(psi(q))
+    return found[0] - found[1]
+
+
 def summing_lever():
     """Extremes of the slider's run over three turns of crank 1: Newton on a grid, then in 40 digits."""
 
@@ -552,6 +586,7 @@ def v_compressor():
 
 
 NUMBERS = {
+    "cam-coupler": lambda: [cam_coupler()],
     "clamp": lambda: [clamp(-200), clamp(-185)],
     "course-1": lambda: course(1),
     "course-2": lambda: course(2),

@@ -32,7 +32,7 @@ ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
     "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
     "links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, "
-    "output, cycle, intermittent, positions, checks, dynamics, balancing, sheet"
+    "output, cycle, intermittent, positions, checks, dynamics, balancing, sheet, frame, note"
 )
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -315,3 +317,16 @@ def test_explain_gives_the_structure_in_the_words_of_a_note():
     assert "slotted-lever 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
     assert "type RPR (ВПВ, 3)" in text
     assert "1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides along guide x." in text
+
+
+def test_a_roller_is_a_link_with_a_local_freedom(tmp_path):
+    """By hand: 4 links and the roller, 5 hinges and the guide, cam and roller: 3*5 - 2*6 - 1 = 2, of which Wm = 1."""
+    wanted = "3·5 − 2·6 − 1 = 2, of which Wm = 1 is local: the turning of rollers (5) moves nothing else"
+    for command in ("structure", "explain"):
+        assert wanted in re.sub(r"\s+", " ", tmm(command, "problems/cam-lever.yaml").stdout)
+    text = Path("problems/cam-lever.yaml").read_text(encoding="utf-8").replace("roller: 5", "roller: 4")
+    file = tmp_path / "cam.yaml"
+    file.write_text(text, encoding="utf-8")
+    done = tmm("structure", str(file))
+    assert done.returncode == 2
+    assert "cams.cam.roller: a link has this number already" in done.stderr

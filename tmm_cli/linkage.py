@@ -111,7 +111,8 @@ class Mesh:
     a is the angle of link i from the carrier's axes (rad); b that of link j, or its run in the sliding pair `slide` on
     the carrier (m). Then b = offset + ratio a, or for a cam b = offset + law(a). Angles are followed through full turns
     from the sketch on, where those of links that are not driven lie within -pi..pi. pressure: angle between the force
-    of the teeth and the common tangent of the pitch circles (rad).
+    of the teeth and the common tangent of the pitch circles (rad). roller: the link between cam and follower whose turn
+    about its own axis moves nothing else (a local freedom); it is counted in the structure, and has no motion here.
     """
 
     name: str
@@ -124,6 +125,7 @@ class Mesh:
     slide: str = ""
     law: CamLaw | None = None
     pressure: float = 0.0
+    roller: str = ""
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ from typing import Annotated, Any, Literal, get_args
 import typer
 
 import tmm_cli
-from tmm_cli.language import ENGLISH, _, speak, spoken, write
-from tmm_cli.linkage import FRAME
+from tmm_cli.language import ENGLISH, USUAL, _, speak, spoken, write
 from tmm_cli.problem.errors import clean, visible
 
 OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
@@ -121,4 +120,4 @@ def write_as(file: Mapping[str, object]) -> None:
     """Print from here on the number of the frame and the letter of inertia forces that a file wants, unchecked."""
     note = file.get("note")
     letter = note.get("inertia") if isinstance(note, dict) else ""
-    write(str(file.get("frame", FRAME)), str(letter))
+    write(str(file.get("frame", USUAL.frame)), str(letter))

@@ -171,10 +171,18 @@ def _rack(name: str, part: Part, members: Members) -> Mesh:
 
 def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
     given: schema_meshes.Cam = part.given
-    cam, follower = given.cam, given.follower
-    _different((cam, follower, FRAME), part, part.path, members)
-    _axis(cam, FRAME, members, (*part.path, "cam"))
-    slide = members.slide(follower, FRAME)
+    cam, follower, carrier = given.cam, given.follower, given.carrier
+    _different((cam, follower, carrier), part, part.path, members)
+    _axis(cam, carrier, members, (*part.path, "cam"))
+    slide = members.slide(follower, carrier)
+    if slide is None and carrier != FRAME:
+        text = _("on a moving carrier a follower slides: link {follower} has no guide on link {carrier}")
+        allowed = _("slides: {{on: {carrier}, along: ...}} of link {follower}")
+        names = {"follower": follower, "carrier": carrier}
+        raise part.refusal("follower", text.format(**names), allowed=allowed.format(**names))
+    if given.roller is not None and given.roller in (FRAME, *members.links):
+        wanted = _("a number of no link, such as {number}").format(number=len(members.links))
+        raise part.refusal("roller", _("a link has this number already"), given.roller, wanted)
     if slide is None:
         _axis(follower, FRAME, members, (*part.path, "follower"))
     want = ANGLE if slide is None else LENGTH
@@ -187,6 +195,16 @@ def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
         allowed = _("rises that add up to 0")
         raise part.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
-    law = CamLaw(pieces, part.number("start", ANGLE), sense)
+    law = CamLaw(pieces, part.number("start", ANGLE), -sense if cam == FRAME else sense)
     offset = part.number("offset", want)
-    return Mesh(name, "cam", cam, follower, FRAME, offset=offset, slide=slide.name if slide else "", law=law)
+    return Mesh(
+        name,
+        "cam",
+        cam,
+        follower,
+        carrier,
+        offset=offset,
+        slide=slide.name if slide else "",
+        law=law,
+        roller=given.roller or "",
+    )

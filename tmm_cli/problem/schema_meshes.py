@@ -50,10 +50,17 @@ class CamPiece(Strict):
 
 
 class Cam(Strict):
-    """A cam on the frame and its follower, by the follower's law of motion."""
+    """A cam and its follower on a common carrier, by the follower's law of motion."""
 
-    cam: Name
-    follower: Name = Field(description="it slides on the frame, or swings about a hinge on it")
+    cam: Name = Field(description="it is hinged to the carrier; the frame may be one (a fixed cam)")
+    follower: Name = Field(description="it slides on the carrier, or swings about a hinge on the frame")
+    carrier: Name = Field(
+        default="0", description="the link that carries both; a moving one: its cam changes a length of it"
+    )
     law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
-    start: Value = Field(default=0, description="angle of the cam where the first piece starts")
+    start: Value = Field(default=0, description="angle of the cam from the carrier where the first piece starts")
     offset: Value = Field(default=0, description="run (or angle) of the follower there")
+    roller: Name | None = Field(
+        default=None,
+        description="number of a roller on the follower, a link that the structure counts; it moves nothing",
+    )

@@ -40,7 +40,8 @@ class NoteStyle(Strict):
     """How the course writes: of the choices each is the usual one where the file leaves it out."""
 
     inertia: Literal["U", "Φ"] | None = Field(
-        default=None, description="letter of inertia forces; left out: that of the language, U in English and Φ in Russian"
+        default=None,
+        description="letter of inertia forces; left out: that of the language (in Russian Φ)",
     )
     arms: Literal["m", "paper"] = Field(
         default="m",

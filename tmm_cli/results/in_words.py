@@ -12,6 +12,7 @@ from tmm_cli.results.reports.structure import (
     counted_by_classes,
     counted_mobility,
     left_out,
+    mobility_with_rollers,
     motion_in_words,
     schemes_in_words,
 )
@@ -25,6 +26,8 @@ def in_words(results: Results) -> Iterable[str]:
     yield _mobility(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
     yield _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
+    if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
+        yield _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
         yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
             count=structure.redundant, w=structure.mobility + structure.redundant

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Mesh
+from tmm_cli.linkage import Mesh
 from tmm_cli.pairs.base import axis
 from tmm_cli.vectors import Vector, dot, unit
 
@@ -81,8 +81,12 @@ def outline(scene: Scene, mesh: Mesh) -> Outline:
 
 def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
     """Where the axis of a wheel or cam is, m."""
-    base = FRAME if mesh.kind == "cam" else mesh.carrier
-    return scene.place(base, axis(scene.linkage, link, base))
+    return scene.place(mesh.carrier, axis(scene.linkage, link, mesh.carrier))
+
+
+def _turned(scene: Scene, mesh: Mesh) -> float:
+    """The angle of a cam from its carrier, rad."""
+    return scene.turn(mesh.i) - scene.turn(mesh.carrier)
 
 
 def contact(found: Outline) -> complex:
@@ -143,7 +147,7 @@ def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
     """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
     assert mesh.law is not None
     forward, runs = _guided(scene, mesh)
-    centre, angle = _axis(scene, mesh, mesh.i), scene.turn(mesh.i)
+    centre, angle = _axis(scene, mesh, mesh.i), _turned(scene, mesh)
     turn = np.linspace(0, 2 * np.pi, STEPS)
     rise, slope, bend = mesh.law(turn)
     now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
@@ -168,7 +172,7 @@ def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
     assert mesh.law is not None
     centre, pivot = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
     turn = np.linspace(0, 2 * np.pi, STEPS)
-    rise, angle = mesh.law(turn)[0], scene.turn(mesh.i)
+    rise, angle = mesh.law(turn)[0], _turned(scene, mesh)
     middle = (float(np.max(rise)) + float(np.min(rise))) / 2
     outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
     arm = ARM * (centre - pivot) * complex(unit(outward * math.acos(ARM)))

@@ -32,6 +32,7 @@ from tmm_cli.results.reports.structure import (
     counted_by_classes,
     counted_with_replacements,
     left_out,
+    mobility_with_rollers,
     motion_in_words,
     schemes_in_words,
 )
@@ -104,6 +105,9 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     if higher:
         text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
         yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))
+    if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
+        text = _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
+        yield paragraph(typeset(text))
     if structure.passive:
         yield said(
             _("The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "

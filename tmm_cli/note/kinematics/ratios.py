@@ -151,9 +151,10 @@ def _derivative(mesh: Mesh, order: int) -> Symbol:
 def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
     mesh = ratio.mesh
     assert mesh.law is not None
-    __, first, second = (float(value[here.k]) for value in mesh.law(here.motion.poses[mesh.i].turned))
-    omega, epsilon = _turning(here, mesh.i, "ω"), _turning(here, mesh.i, "ε")
-    omega = Leaf(Symbol("ω", mesh.i), 0.0) if omega is None else omega  # of a driver at rest
+    poses, cam, carrier = here.motion.poses, mesh.i, mesh.carrier
+    __, first, second = (float(value[here.k]) for value in mesh.law(poses[cam].turned - poses[carrier].turned))
+    omega, epsilon = (_less(_turning(here, cam, letter), _turning(here, carrier, letter)) for letter in "ωε")
+    omega = Leaf(Symbol("ω", cam), 0.0) if omega is None else omega  # of a driver at rest
     by_law = Leaf(_derivative(mesh, 1), first)
     expression: Expression = by_law * omega
     if letter == "ε":

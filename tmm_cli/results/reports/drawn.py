@@ -40,4 +40,4 @@ def tables(results: Results) -> Iterable[Table]:
         "As drawn: arms and segments are read off drawings on A4 to 0.5 mm, so this difference is one of drawing; the "
         "limit `checks: lever` is for the exact difference, of what is calculated by both ways."
     )
-    yield Table("lever-drawn", _("The force plan and the lever on paper"), (*head, *columns), notes=(note,))
+    yield Table("lever-drawn", _("The force plan and the lever as drawn"), (*head, *columns), notes=(note,))

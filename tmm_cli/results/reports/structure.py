@@ -109,6 +109,15 @@ def tables(results: Results) -> Iterable[Table]:
     )  # fmt: skip
 
 
+def mobility_with_rollers(structure: Structure) -> str:
+    """3*5 - 2*6 - 1 = 2: rollers counted as links, each hinged to its follower, and the local freedoms they add."""
+    rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
+    n, higher = len(structure.links) + len(rollers), structure.higher
+    mobility = counted_mobility((n, len(structure.pairs) - higher + len(rollers), higher))
+    text = _("{mobility}, of which Wm = {local} is local: the turning of rollers ({rollers}) moves nothing else")
+    return text.format(mobility=mobility, local=len(rollers), rollers=", ".join(rollers))
+
+
 def left_out(structure: Structure) -> Iterable[str]:
     """What the structural report leaves out or counts as one, with the redundant constraints q that it adds."""
     for rigid in structure.reduction.rigid:
@@ -219,6 +228,8 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
             _("W with links in place of higher pairs"),
             text.format(mobility=counted_with_replacements(count)),
         )
+    if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
+        yield _("W with rollers as links"), mobility_with_rollers(structure)
     if structure.passive:
         yield _("W in truth, by rank"), str(w + structure.redundant)
     yield _("independent contours K = p - n"), str(structure.contours)
