@@ -17,10 +17,11 @@ from tmm_cli.draw.paper.drawing import Circle, Line, Text
 from tmm_cli.draw.paper.fonts import corners
 from tmm_cli.draw.paper.sheet import Sheet
 from tmm_cli.draw.sheets.groups import groups, side_by_side
-from tmm_cli.draw.sheets.structure import Legend, at_sketch, parts, scheme
+from tmm_cli.draw.sheets.structure import Legend, at_sketch, parts, scheme, whole_scheme
 from tmm_cli.draw.symbols.forms import by_pairs
 from tmm_cli.draw.symbols.parts import STRUCTURAL
 from tmm_cli.draw.symbols.scene import Scene
+from tmm_cli.draw.symbols.wheels import outline, replacement
 from tmm_cli.groups.state import Pose
 from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.problem.build import build
@@ -296,3 +297,35 @@ def test_a_run_draws_them_too_and_the_same_each_time():
     assert [stem for stem, _ in islice(sheets(results), 2)] == ["structure", "groups"]
     here = at_sketch(results)
     assert texts(scheme("", *here).finish()) == texts(scheme("", *here).finish())
+
+
+@pytest.mark.parametrize("name", ["gear-doubling", "gear-lever/ratchet-feed", "planetary-dwell-press", "cam-lever",
+                                  "cam-coupler", "rack-doubling", "summing-lever"])  # fmt: skip
+def test_the_link_in_place_of_a_higher_pair_leaves_the_velocities_as_they_are(name):
+    """Its ends, on both links, have one velocity along it, as the ends of any rigid link."""
+    results = solved(name)
+    motion, linkage = results.motion, results.linkage
+    for k in (1, 4):
+        scene = Scene(linkage, results.structure, motion.poses, k)
+        for mesh in linkage.meshes:
+            link = replacement(outline(scene, mesh))
+            along = (link.end - link.start) / abs(link.end - link.start)
+            speeds = []
+            for body, place in ((mesh.i, link.start), (mesh.j, link.end)):
+                if body == FRAME:
+                    speeds.append(0j)
+                    continue
+                origin, start = complex(motion.poses[body].x[k]), complex(motion.point(body, 0j).v[k])
+                speeds.append(start + 1j * float(motion.link(body).omega[k]) * (place - origin))
+            run = [(np.conj(along) * speed).real for speed in speeds]
+            assert run[0] == pytest.approx(run[1], abs=2e-3 * max(map(abs, speeds)))  # a cam's outline has corners
+
+
+def test_the_scheme_shows_the_links_that_replace_higher_pairs():
+    with_gears, without = (
+        dict(whole_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper")
+    )
+        dict(whole_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper")
+    )
+    assert "Dashed: the links that replace higher pairs" in with_gears
+    assert "Dashed: the links that replace higher pairs" not in without

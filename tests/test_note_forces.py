@@ -28,7 +28,7 @@ def chapter(name: str) -> list[Block]:
 
 
 def section(found: list[Block], title: str) -> list[Block]:
-    at = found.index(Heading(title, 2))
+    at = next(number for number, block in enumerate(found) if isinstance(block, Heading) and block.text == title)
     return list(takewhile(lambda block: not isinstance(block, Heading), found[at + 1 :]))
 
 

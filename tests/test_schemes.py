@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from functools import cache
 from itertools import combinations, permutations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from test_commands import tmm
 from tmm_cli import solve
 from tmm_cli.cli import scheme_files
 from tmm_cli.cli.scheme_files import named_types, skeleton
+from tmm_cli.draw.sheets.group_table import EXAMPLES
 from tmm_cli.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
@@ -30,7 +32,8 @@ from tmm_cli.schemes.chains import chains as every_chain
 from tmm_cli.schemes.isomorphism import canonical
 from tmm_cli.schemes.schemes import MOST_SCHEMES
 from tmm_cli.schemes.schemes import schemes as every_scheme
-from tmm_cli.structure.assur import analyse
+from tmm_cli.structure.assur import ROMAN, analyse
+from tmm_cli.structure.group_class import group_class
 
 chains, schemes = cache(every_chain), cache(every_scheme)
 
@@ -286,8 +289,8 @@ def test_the_command_counts_chains_by_assortment():
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        ((), "--links N for schemes, or --chains N"),
-        (("--links", 5, "--chains", 6), "--links N for schemes, or --chains N"),
+        ((), "--links N for schemes, --chains N"),
+        (("--links", 5, "--chains", 6), "--links N for schemes, --chains N"),
         (("--links", 4), "for W = 1: 3, 5, 7, 9"),
         (("--links", 10**9), "for W = 1: 3, 5, 7, 9"),
         (("--links", 9), "more than 2000"),
@@ -326,3 +329,24 @@ def test_the_list_of_schemes_says_which_groups_it_does_not_enumerate():
     assert (written["count"], written["not_enumerated"]) == (0, [missing])
     assert "Not enumerated" in tmm("schemes", "-n", "7", "--groups", "III").stdout
     assert json.loads(tmm("schemes", "-n", "3", "--json").stdout)["not_enumerated"] == []
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda e: f"{ROMAN[e.group_class]}-{e.order}-{e.name}")
+def test_a_group_of_the_table_is_of_the_class_and_order_under_which_it_stands(example):
+    """3n - 2p = 0 with its leads; the class by the count of the report, the order by its leads."""
+    joined = example.pairs
+    assert 3 * len(example.links) == 2 * len(joined)
+    assert {point for point, links in joined if len(links) == 1} == set(example.leads)
+    pairs = [SimpleNamespace(i=links[0], j=(*links, "0")[1], lower=True, name=point) for point, links in joined]
+    inner, outer = [p for p in pairs if p.j != "0"], [p for p in pairs if p.j == "0"]
+    assert group_class([(link,) for link in example.links], inner, outer, ()) == example.group_class
+    assert len(outer) == example.order
+
+
+def test_the_table_of_groups_is_drawn_with_its_classes(tmp_path):
+    done = tmm("schemes", "--table", "-o", str(tmp_path / "table"))
+    assert done.returncode == 0, done.stderr
+    assert sorted(file.name for file in (tmp_path / "table").iterdir()) == ["assur-groups.png", "assur-groups.svg"]
+    text = (tmp_path / "table" / "assur-groups.svg").read_text(encoding="utf-8")
+    for words in ("II, order 2: RPR", "III, order 4", "IV, order 2", "V, order 3", "VI, order 3"):
+        assert f"class {words}" in text

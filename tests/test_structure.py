@@ -307,8 +307,8 @@ def test_a_contour_closed_by_a_redundant_link_is_dependent(name, dependent):
 
 
 def test_motion_of_a_link_names_its_axis_or_its_guide():
-    linkage = moved("sine").linkage
-    words = [motion_in_words(linkage, link) for link in linkage.moving]
+    results = moved("sine")
+    words = [motion_in_words(results, link) for link in results.linkage.moving]
     assert words == ["turns about O", "translation", "slides along guide x"]
 
 
@@ -330,3 +330,26 @@ def test_a_roller_is_a_link_with_a_local_freedom(tmp_path):
     done = tmm("structure", str(file))
     assert done.returncode == 2
     assert "cams.cam.roller: a link has this number already" in done.stderr
+
+
+@pytest.mark.parametrize(("c", "motion"), [([300, 100], "translation"), ([252, -88], "plane motion")])
+def test_the_coupler_of_a_parallelogram_translates_and_that_of_an_antiparallelogram_does_not(c, motion):
+    text = f"""tmm: 1
+units: {{length: mm, angle: deg}}
+points: {{O: [0, 0], D: [300, 0]}}
+links:
+  1: {{points: [O, A], length: 100}}
+  2: {{points: [A, B], length: 300}}
+  3: {{points: [D, B], length: 100}}
+driver: {{link: 1, speed: 60 rpm}}
+sketch: {{at: 90, B: {c}}}
+positions: {{at: [60, 90, 120]}}
+"""
+    results = solve(build(read_text(text, "x")), "structure")
+    assert motion_in_words(results, "2") == motion
+
+
+def test_several_primary_mechanisms_have_as_many_freedoms_together():
+    text = re.sub(r"\s+", " ", tmm("structure", "problems/five-bar.yaml").stdout)
+    assert "primary mechanisms I(0,1), I(0,4); together W = 2" in text
+    assert "primary mechanisms" not in tmm("structure", "problems/shaper.yaml").stdout

@@ -95,7 +95,8 @@ def turned(it: Linkage, by: float) -> Linkage:
 
     def mesh(m: Mesh) -> Mesh:
         if m.kind == "cam":
-            law = replace(m.law, start=m.law.start + by)
+            on_frame = {m.i: -by, m.carrier: by}.get(FRAME, 0.0)  # the law is of the angle of the cam from the carrier
+            law = replace(m.law, start=m.law.start + on_frame)
             return replace(m, law=law, offset=m.offset if m.slide else m.offset + by)
 
         def row(at):

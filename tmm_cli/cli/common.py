@@ -61,7 +61,9 @@ Tables = Annotated[
 Pictures = Iterable[tuple[str, bytes]]
 
 
-def drawn(what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis"], *of: Any, **how: Any) -> Pictures:
+def drawn(
+    what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis", "group-table"], *of: Any, **how: Any
+) -> Pictures:
     """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
     found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
     return found

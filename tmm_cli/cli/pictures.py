@@ -12,7 +12,7 @@ from tmm_cli.cli.common import Pictures
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import say
 from tmm_cli.draw.formats import Drawn, files
-from tmm_cli.draw.sheets import assemblies, centres, hodographs, synthesis
+from tmm_cli.draw.sheets import assemblies, centres, group_table, hodographs, synthesis
 
 
 def _whole(results: Results, *, quiet: bool = False) -> Pictures:
@@ -29,4 +29,5 @@ PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files,
     "centres": partial(_sheets, centres.sheets),
     "assemblies": partial(_sheets, assemblies.sheets),
     "synthesis": partial(_sheets, synthesis.sheets),
+    "group-table": partial(_sheets, group_table.sheets),
 }

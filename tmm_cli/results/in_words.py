@@ -10,6 +10,7 @@ from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.reports.structure import (
     ROLES,
     counted_by_classes,
+    counted_generally,
     counted_mobility,
     left_out,
     mobility_with_rollers,
@@ -26,6 +27,9 @@ def in_words(results: Results) -> Iterable[str]:
     yield _mobility(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
     yield _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
+    yield _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.").format(
+        count=counted_generally(count)
+    )
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         yield _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
@@ -42,7 +46,7 @@ def in_words(results: Results) -> Iterable[str]:
     schemes = schemes_in_words(structure)
     if schemes:
         yield _("Basic schemes in it: {schemes}.").format(schemes=schemes)
-    motions = (f"{link}: {motion_in_words(results.linkage, link)}" for link in structure.links)
+    motions = (f"{link}: {motion_in_words(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in left_out(structure):
         yield _("For the formula: {what}.").format(what=sentence)

@@ -7,11 +7,14 @@ Machines, ch. 2.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import product
+from itertools import combinations, product
+
+import numpy as np
 
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.structure.assur import Group, Pair, Structure
 from tmm_cli.structure.contours import Contour, contours
+from tmm_cli.tolerances import SAME_PLACES
 
 
 def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
@@ -92,6 +95,27 @@ def link_motion(linkage: Linkage, name: str) -> str:
     for _repeat in linkage.slides:
         parallel |= {end for s in linkage.slides for end in (s.carrier, s.runner) if parallel & {s.carrier, s.runner}}
     return "translation" if name in parallel else "plane motion"
+
+
+def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
+    """Whether a link may be the coupler of a parallelogram: by lengths alone, so also that of an antiparallelogram.
+
+    Two of its points are hinged to links that turn about the frame, on equal arms and as far apart as their pivots.
+    """
+    arms = []
+    for hinge in linkage.hinges:
+        others = [link for link in hinge.links if link not in (FRAME, name) and linkage.hinged_to_frame(link)]
+        if name in hinge.links and others:
+            pivot = linkage.shared(FRAME, others[0])
+            assert pivot is not None
+            arm = linkage.local(others[0], hinge.point) - linkage.local(others[0], pivot)
+            arms.append((linkage.local(name, hinge.point), linkage.local(FRAME, pivot), abs(arm)))
+    size = max((float(np.max(arm)) for __, __, arm in arms), default=0.0)
+    return any(
+        bool(np.all(np.abs(arm - other_arm) <= SAME_PLACES * size))
+        and bool(np.all(np.abs(np.abs(end - other_end) - np.abs(pivot - other_pivot)) <= SAME_PLACES * size))
+        for (end, pivot, arm), (other_end, other_pivot, other_arm) in combinations(arms, 2)
+    )
 
 
 def four_link_scheme(kinds: str) -> str | None:

@@ -20,6 +20,7 @@ from tmm_cli.draw.sheets.mechanism import place_of_driver
 from tmm_cli.draw.symbols.parts import FREE, PALETTE, STRUCTURAL, numbers, symbol_size
 from tmm_cli.draw.symbols.render import arrows, names, render, spot
 from tmm_cli.draw.symbols.scene import Scene, fitted, scale_to
+from tmm_cli.draw.symbols.wheels import outline, replacement
 from tmm_cli.language import _, printed, typeset
 from tmm_cli.linkage import FRAME
 from tmm_cli.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
@@ -32,6 +33,7 @@ PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
 LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link
 WIDEST = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
 ROW = 5.4  # mm of a line of the legend
+JOINT = 0.9  # mm: pairs of a link in place of a higher pair
 PLACES, MANY = 47, 40  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
 HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
 
@@ -137,11 +139,28 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
     drawn = render(sheet, scene, links, pairs, look, hue)
     arrows(sheet, scene, drawn, look, hue)
+    _replacements(sheet, scene)
     numbers(sheet, drawn.forms, hue)
     names(sheet, [(spot(sheet, scene, p, look), p.name, DARK) for p in pairs])
     sheet.settle()
     legend.draw(sheet)
     return sheet
+
+
+def _replacements(sheet: Sheet, scene: Scene) -> None:
+    """The links in place of higher pairs, dashed: with a turning pair at an end, or a stone on a straight profile."""
+    with sheet.on_layer("links"):
+        for mesh in scene.linkage.meshes:
+            link = replacement(outline(scene, mesh))
+            start, end = sheet.on(link.start), sheet.on(link.end)
+            sheet.line([start, end], DARK, 0.9, "--", 6)
+            sheet.circle(start, JOINT, "white", DARK, 0.7)
+            if link.slides:
+                along = (end - start) / (abs(end - start) or 1.0)
+                corners = [end + JOINT * along * way for way in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)]
+                sheet.area(corners, "white", DARK, 0.7, 7)
+            else:
+                sheet.circle(end, JOINT, "white", DARK, 0.7)
 
 
 class Legend:
@@ -169,6 +188,8 @@ class Legend:
         if inner:
             drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in inner)
             self.facts.append(_("Drivers between links of groups: {drivers}").format(drivers=drivers))
+        if higher:
+            self.facts.append(_("Dashed: the links that replace higher pairs"))
         compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
         if compound:
             self.facts.append(_("Compound hinge {points}: a circle for every pair").format(points=", ".join(compound)))

@@ -186,3 +186,41 @@ def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
     disk = path + roller * normal
     touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
     return CamShape(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """The link in place of a higher pair, m: from the centre of curvature of i's profile to that of j's.
+
+    slides: the profile of j is straight, so the link slides along it at `end` instead of turning about a centre.
+    """
+
+    start: complex
+    end: complex
+    slides: bool
+
+
+def replacement(found: Outline) -> Replacement:
+    """The replacing link at a pose (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
+
+    Involute teeth touch along a common tangent of their base circles, where the centres of curvature lie.
+    """
+    if isinstance(found, Teeth):
+        mesh = found.mesh
+        line = found.along * complex(unit(mesh.pressure))
+        centres = [found.pitch + line * float(dot(line, disc.centre - found.pitch)) for disc in found.discs]
+        return Replacement(centres[0], centres[1] if len(centres) > 1 else found.pitch, len(centres) == 1)
+    centre = _curved_about(found.disk, found.touch)
+    if found.roller:
+        return Replacement(centre, found.stem[1], False)
+    return Replacement(centre, found.touch, True)
+
+
+def _curved_about(disk: Vector, touch: complex) -> complex:
+    """The centre of curvature of a closed outline near a place: that of the circle through three points about it."""
+    size = len(disk)
+    at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)
+    a, b, c = (complex(disk[(at + k * step) % size]) for k in (-1, 0, 1))
+    u, v = b - a, c - a
+    turn = 2 * (u.conjugate() * v).imag
+    return a + 1j * (abs(u) ** 2 * v - abs(v) ** 2 * u) / turn * -1 if turn else b

@@ -30,6 +30,7 @@ from tmm_cli.results.reports.structure import (
     PAIRS,
     ROLES,
     counted_by_classes,
+    counted_generally,
     counted_with_replacements,
     left_out,
     mobility_with_rollers,
@@ -62,7 +63,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        cells(name, _(ROLES[roles[name]]), motion_in_words(linkage, name), ", ".join(linkage.links[name].points))
+        cells(
+            name, _(ROLES[roles[name]]), motion_in_words(subject.results, name), ", ".join(linkage.links[name].points)
+        )
         for name in subject.results.structure.links
     )
     return Rows(_("Moving links"), cells(_("link"), _("kind"), _("motion"), _("points")), rows, "links")
@@ -102,6 +105,8 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
     classes = _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.")
     yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
+    general = _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.")
+    yield paragraph(typeset(general.format(count=counted_generally((n, lower, higher)))))
     if higher:
         text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
         yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))

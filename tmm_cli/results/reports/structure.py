@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from tmm_cli.analysis.pipeline import Results
+import numpy as np
+
+from tmm_cli.analysis.pipeline import Results, at_positions
 from tmm_cli.language import N_, _, printed
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.linkage import FRAME
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Structure
 from tmm_cli.structure.contours import classification
-from tmm_cli.structure.naming import basic_schemes, link_motion, six_bar_schemes
+from tmm_cli.structure.naming import basic_schemes, is_parallelogram_coupler, link_motion, six_bar_schemes
 
+PLACES, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad
 ROLES = {
     "crank": N_("crank"),
     "rocker": N_("rocker"),
@@ -88,7 +91,7 @@ def tables(results: Results) -> Iterable[Table]:
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
         "links", _("Links"), (_("link"), _("is a"), _("called"), _("points"), _("motion")),
-        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(linkage, x.name))
+        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(results, x.name))
          for x in links],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )  # fmt: skip
@@ -178,15 +181,28 @@ def counted_with_replacements(count: tuple[int, int, int]) -> str:
     return counted_mobility((n + higher, lower + 2 * higher, 0))
 
 
-def motion_in_words(linkage: Linkage, name: str) -> str:
+def motion_in_words(results: Results, name: str) -> str:
     """The motion of a link relative to the frame, with its centre or its guide."""
+    linkage = results.linkage
     motion = link_motion(linkage, name)
+    if motion == "plane motion" and is_parallelogram_coupler(linkage, name) and _keeps_direction(results, name):
+        motion = "translation"
     if motion == "rotation":
         return _("turns about {point}").format(point=linkage.shared(FRAME, name))
     guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
     if guides:
         return _("slides along guide {guide}").format(guide=guides[0])
     return _("translation") if motion == "translation" else _("plane motion")
+
+
+def _keeps_direction(results: Results, name: str) -> bool:
+    """Whether a link has one direction at places over the driver's range, as the coupler of a parallelogram has."""
+    reach = results.driver_range
+    if reach is None:
+        return False
+    motion = at_positions(results, np.linspace(reach.start, reach.end, PLACES), 0)
+    turned = np.angle(motion.poses[name].z / motion.poses[name].z[motion.placed][:1])[motion.placed]
+    return bool(turned.size) and bool(np.all(np.abs(turned) < SAME_DIRECTION))
 
 
 def schemes_in_words(structure: Structure) -> str:
@@ -234,6 +250,9 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("W in truth, by rank"), str(w + structure.redundant)
     yield _("independent contours K = p - n"), str(structure.contours)
     yield _("formula of structure"), structure.formula
+    if len(structure.drivers) > 1:
+        names = ", ".join(map(structure.driver_title, structure.drivers))
+        yield _("primary mechanisms"), _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
     for sentence in left_out(structure):
         yield "", sentence
     if structure.reduction:
