@@ -325,7 +325,5 @@ def test_the_scheme_shows_the_links_that_replace_higher_pairs():
     with_gears, without = (
         dict(whole_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper")
     )
-        dict(whole_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper")
-    )
     assert "Dashed: the links that replace higher pairs" in with_gears
     assert "Dashed: the links that replace higher pairs" not in without
