@@ -310,7 +310,7 @@ def unsound(results: Any) -> str | None:
     motion = results.motion
     if motion is None:
         return None
-    sound = np.asarray(motion.moving)
+    sound = np.asarray(motion.moving) & ~np.asarray(results.locked)
     found: dict[str, Any] = {}
     for link in results.linkage.links:
         turning = motion.link(link)

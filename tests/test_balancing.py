@@ -254,3 +254,13 @@ balancing: {counterweights: {1: {}, 4: {}}}
     found = solve(build(read_text(text, "lanchester.yaml"))).balancing.cycle
     before, after = (np.abs(np.fft.fft(shaking.force)) / 720 for shaking in (found.before, found.after))
     assert max(after[1], after[-1]) < 1e-12 * before[1] and after[2] == pytest.approx(before[2], rel=1e-9)
+
+
+def test_a_counterweight_on_a_link_that_only_translates_does_nothing():
+    """The coupler of a parallelogram: no mass on it changes where its own centre of mass goes but by its weight."""
+    text = (PROBLEMS / "parallel-couplers.yaml").read_text(encoding="utf-8").partition("shows:")[0]
+    with np.errstate(over="raise", invalid="raise"):
+        results = solve(build(read_text(text + "balancing: {counterweights: {2: {radius: 20}}}\n", "x")))
+    (weight,) = results.balancing.cycle.weights
+    assert weight.size == 0
+    assert results.balancing.cycle.left == pytest.approx(1.0)

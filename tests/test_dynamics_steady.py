@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from multibody import compared
 from scipy.integrate import quad, solve_ivp
+from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.analysis.pipeline import at_positions
@@ -323,3 +324,34 @@ def test_a_fluctuation_that_is_kept_already_is_told_with_what_keeps_it(flywheel,
     )
     with pytest.raises(ProblemError, match=f"the fluctuation is smaller than this {how}"):
         solve(problem_of(read_text(text, "engine.yaml")))
+
+
+LIGHT_ENGINE = """tmm: 1
+units: {length: mm, angle: deg}
+points: {O: [0, 0]}
+guides: {y: {through: [0, 0], angle: 90}}
+links:
+  1: {points: [O, A], length: 40}
+  2: {points: [A, C], length: 140}
+  3: {points: [C], slides: {on: y}}
+driver: {link: 1, speed: 1400 rpm}
+sketch: {at: 90, C: [0, 180]}
+masses: {3: {mass: 1 kg, inertia: 0}}
+loads:
+  gas: {on: 3, at: C, force: {angle: -90, against: crank angle,
+                              table: [[0, 0], [90, 0], [100, 900], [180, 50], [270, 0], [360, 0]]}}
+dynamics: {motor: {kind: linear, stall: 30, free: 1500 rpm}}
+positions: {count: 12}
+"""
+
+
+def test_a_machine_all_of_whose_masses_rest_at_once_has_no_law_of_motion_without_a_flywheel(tmp_path):
+    """At both dead positions the piston, the only mass, stands: the moment there has nothing to accelerate."""
+    file = tmp_path / "light.yaml"
+    file.write_text(LIGHT_ENGINE, encoding="utf-8")
+    done = tmm("dynamics", str(file))
+    assert done.returncode == 2
+    told = "dynamics: there is no law of motion: nothing that moves with the driver there has mass or inertia"
+    assert told in done.stderr
+    file.write_text(LIGHT_ENGINE.replace("1500 rpm}", "1500 rpm}, delta: 1/25"), encoding="utf-8")
+    assert tmm("dynamics", str(file)).returncode == 0

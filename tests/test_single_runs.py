@@ -176,7 +176,7 @@ def test_a_run_of_links_without_masses_is_refused():
     with pytest.raises(ProblemError) as refused:
         solve(problem_of(read_text(text + tail, "press.yaml")))
     assert str(refused.value).partition(": ")[2] == (
-        "dynamics.run: the run has no law of motion: nothing that moves with the driver has mass or inertia\n"
+        "dynamics.run: there is no law of motion: nothing that moves with the driver there has mass or inertia\n"
         "  found:   at 0 deg of the driver's way\n  allowed: masses of the links, or flywheel: {inertia: 0.5}"
     )
 

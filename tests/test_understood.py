@@ -157,10 +157,11 @@ def test_a_short_h_asks_for_help(command):
 
 def test_explain_says_the_structure_in_sentences_for_a_note():
     told = tmm("explain", SHAPER).stdout
-    assert told.splitlines()[1:12] == [
+    assert told.splitlines()[1:13] == [
         "The mechanism has n = 5 moving links and p1 = 7 lower pairs (turning: 5, sliding: 2); by Chebyshev's formula "
         "its mobility is W = 3n − 2 p1 = 3·5 − 2·7 = 1.",
         "By classes of pairs the same is W = 3n − 2 p5 − p4 = 3·5 − 2·7 − 0 = 1.",
+        "By the generalised formula W = Hn − sum((H − i) p_i) with H = 3 it is 3·5 − 2·7 − 1·0 = 1.",
         "Link 1 (crank) is a driving link: 8.587 rad/s = 82 rpm, counterclockwise.",
         "The formula of structure is I(0,1) → II(2,3) → II(4,5); the mechanism is of class II.",
         "Basic schemes in it: slotted-lever 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II.",

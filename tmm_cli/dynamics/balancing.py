@@ -16,6 +16,7 @@ import numpy as np
 from tmm_cli.dynamics.balancing_task import BalancingTask, Place
 from tmm_cli.errors import UnsettledError
 from tmm_cli.kinematics.motion import Motion
+from tmm_cli.tolerances import AT_REST
 from tmm_cli.vectors import Real, Vector, cross
 
 NO_HELP = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
@@ -103,9 +104,14 @@ def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanc
     places = task.counterweights
     # force of a counterweight: -c times the second derivative of the link's direction
     columns = np.stack([-_turning(motion, place.link) for place in places], axis=1)
+    fastest = float(np.max(np.square(motion.rate))) if motion.linkage.driver.kind == "turn" else 0.0
+    columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # a link that translates balances nothing
     pivots = np.stack([-motion.point(place.link, place.about).a for place in places], axis=1)
     per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in places])
-    found, live = np.zeros(len(places), complex), motion.moving
+    found, live = (
+        np.zeros(len(places), complex),
+        motion.moving & np.isfinite(np.column_stack([columns, pivots, before.force])).all(axis=1),
+    )
     for _ in range(ROUNDS):
         last = found
         found, rank = _least(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)

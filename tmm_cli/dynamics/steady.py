@@ -24,8 +24,9 @@ from tmm_cli.dynamics.motion import Law, under_constant_moment
 from tmm_cli.dynamics.motors import Motor
 from tmm_cli.dynamics.reduced import Reduced
 from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError
+from tmm_cli.errors import NoFlywheelError, NoInertiaError, RunawayError, StandstillError
 from tmm_cli.roots import least, roots
+from tmm_cli.tolerances import ROUNDOFF
 from tmm_cli.vectors import Real
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
@@ -145,7 +146,7 @@ def fluctuation(law: Law) -> float:
 
 
 def steady(machine: Reduced, task: SteadyTask) -> Steady:
-    """Steady running of a machine. Raises StandstillError, NoFlywheelError."""
+    """Steady running of a machine. Raises StandstillError, NoFlywheelError, NoInertiaError."""
     if task.motor is not None:
         return _driven(machine, task, task.motor)
     moment = -machine.work_of_cycle / machine.length
@@ -167,9 +168,15 @@ def steady(machine: Reduced, task: SteadyTask) -> Steady:
 def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
 
-    cycle = Cycle.of(machine, motor)
+    cycle, places = Cycle.of(machine, motor), machine.inertia.places()
+    inertia = machine.inertia(places)
+    heaviest, lightest = float(np.max(inertia)), float(np.min(inertia))
+    if task.delta is None and not task.flywheel + lightest > ROUNDOFF * heaviest:
+        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
 
     def delta_of(flywheel: float) -> float:
+        if not flywheel + lightest > ROUNDOFF * heaviest:  # all masses rest somewhere on the driver's way
+            return STANDS
         try:
             return fluctuation(cycle.law(flywheel))
         except (StandstillError, RunawayError):
@@ -180,7 +187,6 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
     if task.delta is not None:
         if own <= task.delta:
             raise NoFlywheelError(task.delta, own)
-        heaviest = float(np.max(machine.inertia(machine.inertia.places())))
         flywheel = _searched(task.delta, delta_of, task.flywheel, heaviest)
     law = cycle.law(flywheel)
     gained = law.energy.coefficients.copy()

@@ -65,8 +65,8 @@ def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
 @worded.register
 def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the run has no law of motion: nothing that moves with the driver has mass or inertia"),
-        path=("dynamics", "run"), key=True,
+        _("there is no law of motion: nothing that moves with the driver there has mass or inertia"),
+        path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",), key=True,
         found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
         allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
     )  # fmt: skip
