@@ -261,6 +261,6 @@ def test_a_counterweight_on_a_link_that_only_translates_does_nothing():
     text = (PROBLEMS / "parallel-couplers.yaml").read_text(encoding="utf-8").partition("shows:")[0]
     with np.errstate(over="raise", invalid="raise"):
         results = solve(build(read_text(text + "balancing: {counterweights: {2: {radius: 20}}}\n", "x")))
-    (weight,) = results.balancing.cycle.weights
+    (weight,) = results.balancing.cycle.counterweights
     assert weight.size == 0
     assert results.balancing.cycle.left == pytest.approx(1.0)
