@@ -222,7 +222,11 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
         mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes), motion=moved,
         numbers=numbers,
     )  # fmt: skip
-    return found if results.reactions is None else with_forces(found, cycle=False)
+    if results.reactions is None:
+        return found
+    found = with_forces(found, cycle=False)
+    assert found.lever is not None and results.lever is not None
+    return replace(found, lever=found.lever.with_rows_of(results.lever))
 
 
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:

@@ -7,7 +7,7 @@ unit speed of the driver, so it exists at rest too. N. E. Zhukovsky 1909; I. I. 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,6 +31,11 @@ class Item:
     end: Vector | None = None  # of its point's velocity on the plan, per unit of the driver's motion
     force: Vector | None = None
 
+    @property
+    def key(self) -> tuple[str, str, bool]:
+        """By which it is known: a force and a couple may have one name."""
+        return self.name, self.link, self.end is not None
+
 
 @dataclass(frozen=True)
 class Lever:
@@ -42,6 +47,15 @@ class Lever:
     items: tuple[Item, ...]
     balancing: Real
     difference: Real
+
+    def with_rows_of(self, other: Lever) -> Lever:
+        """The same lever with the items of another one, each in its place; what has no moment here is zero.
+
+        With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more.
+        """
+        own, zero = {item.key: item for item in self.items}, 0 * self.balancing
+        items = [own.get(item.key, Item(item.name, item.link, zero, zero, zero)) for item in other.items]
+        return replace(self, items=tuple(items))
 
 
 def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping
 from typing import Any
 
@@ -66,21 +65,10 @@ def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> It
 
 
 def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
-    """For each column the keys of its rows at one position; None when the rows are no positions.
-
-    A row is known by its words, such as the name of a load, not by its number: with other numbers of the file another
-    load may be zero everywhere, and has no row.
-    """
+    """For each column the keys of its rows at one position; None when the rows are no positions."""
     if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
         return None
-    listed = [column.values for column in table.columns if column.dimension is None and isinstance(column.values, list)]
-    words = [values for values in listed if values and isinstance(values[0], str)]
-    seen: Counter[tuple[str, ...]] = Counter()
-    rows: list[tuple[Hashable, ...]] = []
-    for row in range(table.rows // count):
-        name = tuple(str(values[row]) for values in words)
-        rows.append((*name, seen[name]))
-        seen[name] += 1
+    rows = range(table.rows // count)
     return [[(c.dimension == ANGLE, table.name, k, row) for row in rows] for k, c in enumerate(table.columns)]
 
 
