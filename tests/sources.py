@@ -13,7 +13,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator
-from contextlib import chdir, redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
@@ -82,10 +82,8 @@ def said_by(words: list[str]) -> list[str]:
     """What a command prints and says, called in this process."""
     printed, said = StringIO(), StringIO()
     with chdir(ROOT), mock.patch.dict(os.environ, COLUMNS="400"), redirect_stdout(printed), redirect_stderr(said):
-        try:
+        with suppress(SystemExit):
             application(words)(words)
-        except SystemExit:
-            pass
     return [*printed.getvalue().splitlines(), *said.getvalue().splitlines()]
 
 
