@@ -81,9 +81,9 @@ def printed(command: str) -> list[str]:
 def said_by(words: list[str]) -> list[str]:
     """What a command prints and says, called in this process."""
     printed, said = StringIO(), StringIO()
-    with chdir(ROOT), mock.patch.dict(os.environ, COLUMNS="400"), redirect_stdout(printed), redirect_stderr(said):
-        with suppress(SystemExit):
-            application(words)(words)
+    wide = mock.patch.dict(os.environ, COLUMNS="400")
+    with chdir(ROOT), wide, redirect_stdout(printed), redirect_stderr(said), suppress(SystemExit):
+        application(words)(words)
     return [*printed.getvalue().splitlines(), *said.getvalue().splitlines()]
 
 
