@@ -34,7 +34,19 @@ def build_meshes(shape: schema.File, members: Members, sense: int, values: Value
             found.append(build(name, Part(given, (block, name), values), members))
         if block == "gears":
             _no_contradiction(found)
+    _refuse_shared_rollers(found)
     return tuple(found)
+
+
+def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
+    """Refuse a number that two rollers share: the structure counts each roller as a link."""
+    rollers = [mesh.roller for mesh in meshes]
+    for index, mesh in enumerate(meshes):
+        if mesh.roller and mesh.roller in rollers[:index]:
+            raise ProblemError(
+                _("a link has this number already"), path=("cams", mesh.name, "roller"), found=quote(mesh.roller),
+                allowed=_("a number of its own for each roller"),
+            )  # fmt: skip
 
 
 def _no_contradiction(gears: list[Mesh]) -> None:
