@@ -24,8 +24,8 @@ ROWS = 33
 LACKING: dict[int, str] = {
     14: "structure only: its links move in space",
     18: "what holds the flange while it stands, the other slide in its slot, is in no contact in the calculation",
-    19: "the shafts of Fig. 22 cross at 45 degrees, so its links move in space; the file has parallel shafts, "
-    "whose ratio is the same",
+    19: "the shafts of Fig. 22 cross at 45 degrees, so its links move in space; crossed-slots has parallel "
+    "shafts; crossed-slots-45 counts pairs only, and does not show that the mechanism moves or what its ratio is",
     20: "Fig. 26 sets by wedges what Fig. 25 sets by a sleeve",
     21: "Fig. 30 also tilts the guide out of the plane of the mechanism, which a planar calculation does not see; the "
     "text of Fig. 31b names no stop, its file takes one; of Fig. 34 the control cylinder is left out",

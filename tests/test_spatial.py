@@ -454,6 +454,8 @@ def test_words_of_the_classification():
         ("manipulator-open", {"mobility": 7, "manoeuvrability": 1, "form": "open", "redundant": None}),
         ("manipulator-closed", {"mobility": 3, "manoeuvrability": 1, "form": "closed"}),
         ("swashplate", {"mobility": 9, "local_mobility": 5, "redundant": 0, "form": "closed"}),
+        # by hand 6*4 - 5*2 - 3*4 = 2; both stones turn about the normal of their slot: q = 1 + 2 - 2
+        ("crossed-slots-45", {"mobility": 2, "local_mobility": 2, "redundant": 1, "form": "closed"}),
     ],
 )
 def test_problems_given_by_pairs_alone(name, expected):
