@@ -78,6 +78,8 @@ def test_every_key_and_value_has_its_place() -> None:
 
 INDENT = "\n  allowed: keys and items of one level start in one column, indented by spaces"
 ALIAS = "\n  allowed: the value written out, or a parameter; text that starts with * or & in quotes"
+BRACKETS = "\n  allowed: [2 kN, 0] or {a: 1, b: 2}"
+AFTER_BRACKET = "\n  allowed: [2 kN, 0]: units inside; a comment begins with #"
 COMMA = "\n  allowed: a decimal point; a list is written [1, 5]"
 EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
 
@@ -137,6 +139,17 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
          "\n  allowed: '[1, 2]', items separated by commas"),
         ("a: {b: 3", "f:1:4: '{' is not closed\n  found:   '{b: 3'"
          "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
+        ("a: [1, {b: 2]", "f:1:8: '{' is not closed\n  found:   '{b: 2]'"
+         "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
+        ("a: {b: 1; c: 2}", "f:1:9: ',' or the closing bracket is expected here\n  found:   '; c: 2}'" + BRACKETS),
+        ("a: {F: [2, 0] kN, b: 1}\nc: 2", "f:1:15: ',' or the closing bracket is expected here"
+         "\n  found:   'kN, b: 1}'" + BRACKETS),
+        ("a: {\n  b: 1\n  c: 2 }", "f:3:3: ',' or the closing bracket is expected here"
+         "\n  found:   'c: 2 }'" + BRACKETS),
+        ("a: {b: 'x}'\nc: 2", "f:1:4: '{' is not closed\n  found:   '{b: 'x}''"
+         "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
+        ("a: [2, 0] kN", "f:1:11: text after a closing bracket\n  found:   'kN'" + AFTER_BRACKET),
+        ("a: {b: 2} // speed\nc: 1", "f:1:11: text after a closing bracket\n  found:   '// speed'" + AFTER_BRACKET),
         ("a: 'x\nb: 3", "f:1:4: a quote is not closed\n  found:   ''x'"
          "\n  allowed: text between two equal quotes"),
         ("a: 1\nb\nc: 2", "f:2:1: a line without ':'\n  found:   'b'"

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import yaml
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.tree import MAX_DEPTH, Mark
+
+# In a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
+_IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
 
 
 def tab_error(file: str, mark: Mark) -> ProblemError:
@@ -46,6 +51,13 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
     problem = f"{error.problem} {error.context}"
     plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
     message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
+    if place is opened and "expected ',' or" in problem and _is_closed(text, opened.index):
+        start = _start_of_stray_text(text, opened.index, shown.index)
+        message, allowed = _("',' or the closing bracket is expected here"), _("[2 kN, 0] or {a: 1, b: 2}")
+        return _refusal_at(start, text, file, message, allowed)
+    if place is shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
+        message, allowed = _("text after a closing bracket"), _("[2 kN, 0]: units inside; a comment begins with #")
+        return _refusal_at(shown.index, text, file, message, allowed)
     if place is None:
         return ProblemError(message, allowed=allowed, file=file)
     mark = Mark(place.line + 1, place.column + 1)
@@ -54,3 +66,37 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
         return tab_error(file, mark)
     line = rest.split("\n")[0].strip()
     return ProblemError(message, found=quote(line) if line else None, allowed=allowed, file=file, mark=mark)
+
+
+def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) -> ProblemError:
+    mark = Mark(text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index))
+    found = quote(text[index:].split("\n")[0].strip())
+    return ProblemError(message, found=found, allowed=allowed, file=file, mark=mark)
+
+
+def _is_closed(text: str, start: int) -> bool:
+    """Return True if the bracket at `start` is closed before a line that is indented no more than its own line."""
+    line = text[text.rfind("\n", 0, start) + 1 : start]
+    indent, closing = len(line) - len(line.lstrip(" ")), ""
+    for item in _IN_BRACKETS.finditer(text, start):
+        if item["indent"] is not None:
+            if len(item["indent"]) <= indent and text[item.end()] not in "]}":
+                return False
+        elif item[0] in ("[", "{"):
+            closing = {"[": "]", "{": "}"}[item[0]] + closing
+        elif item[0] in ("]", "}"):
+            if closing[0] != item[0]:
+                return False
+            closing = closing[1:]
+            if not closing:
+                return True
+    return False
+
+
+def _start_of_stray_text(text: str, start: int, stop: int) -> int:
+    """Where an item in brackets that the parser gives up at `stop` goes wrong: a semicolon, a new line, or `stop`."""
+    item = max(text.rfind(mark, start, stop) for mark in ",[{")
+    semicolon, line = text.rfind(";", item, stop), text.rfind("\n", item, stop)
+    if semicolon > line:
+        return semicolon
+    return stop - len(text[line + 1 : stop].lstrip(" ")) if line > item else stop
