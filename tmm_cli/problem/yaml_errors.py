@@ -51,11 +51,11 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
     problem = f"{error.problem} {error.context}"
     plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
     message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
-    if place is opened and "expected ',' or" in problem and _is_closed(text, opened.index):
+    if opened and shown and "expected ',' or" in problem and _is_closed(text, opened.index):
         start = _start_of_stray_text(text, opened.index, shown.index)
         message, allowed = _("',' or the closing bracket is expected here"), _("[2 kN, 0] or {a: 1, b: 2}")
         return _refusal_at(start, text, file, message, allowed)
-    if place is shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
+    if shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
         message, allowed = _("text after a closing bracket"), _("[2 kN, 0]: units inside; a comment begins with #")
         return _refusal_at(shown.index, text, file, message, allowed)
     if place is None:
