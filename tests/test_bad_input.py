@@ -67,7 +67,7 @@ CASES = {
     "point named nowhere else": (
         "points: [D, E], length: DE", "points: [D, EE], length: DE", "EE]",
         "links.4.points[1]: this point is named nowhere else\n  found:   'EE'\n"
-        "  allowed: a point of another link; a point that is only watched has coordinates (see also:)\n"
+        "  allowed: a point of another link or the frame; one that is only watched has coordinates (see also:)\n"
         "  did you mean 'E'?",
     ),
     "guide that does not exist": (
@@ -136,6 +136,21 @@ def test_mobility_above_one_names_the_loose_links():
     assert refusal(FIVE_BAR) == (
         "x.yaml:5:3: links.2: mobility is not 1: these links are loose: 2, 3, 4\n  found:   W = 3*4 - 2*5 = 2\n"
         "  allowed: W = 1, as many as there are drivers"
+    )
+
+
+def test_a_hinge_that_the_frame_lacks_is_named():
+    """O is on the crank alone, or C on the slotted link alone: their places on the frame were forgotten."""
+    text = changed("points: {O: [0, 0], C: [0, -OC]}", "points: {C: [0, -OC]}")
+    assert refusal(text) == (
+        f"x.yaml:{place(text, '1, speed')}: driver.link: link 1 is not joined to link 0 as is needed here\n"
+        "  found:   '1'\n  allowed: 3, 5, a hinge on the frame: points: {O: [x, y]}"
+    )
+    text = changed("points: {O: [0, 0], C: [0, -OC]}", "points: {O: [0, 0]}")
+    assert refusal(text) == (
+        f"x.yaml:{place(text, '2: {name: stone')}: links.2: mobility is not 1: these links are loose: 2, 3, 4, 5\n"
+        "  found:   W = 3*5 - 2*6 = 3\n  allowed: W = 1, as many as there are drivers; "
+        "point C is on link 3 alone; a hinge on the frame: points: {C: [x, y]}"
     )
 
 

@@ -40,6 +40,10 @@ class Members:
         pairs = [h.links for h in self.hinges if "R" in kinds]
         pairs += [(s.carrier, s.runner) for s in self.slides if "P" in kinds]
         joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
+        hinges = {h.point for h in self.hinges}
+        free = next((p for p in self.links[link].points if p not in hinges), None)
+        if base == FRAME and free is not None and "R" in kinds:
+            joined[_("a hinge on the frame: points: {{{point}: [x, y]}}").format(point=free)] = None
         return ProblemError(
             _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
             found=quote(link), allowed=", ".join(joined) or None,
@@ -262,7 +266,7 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
             raise ProblemError(
                 _("this point is named nowhere else"), path=path, found=quote(point),
-                allowed=_("a point of another link; a point that is only watched has coordinates (see also:)"),
+                allowed=_("a point of another link or the frame; one that is only watched has coordinates (see also:)"),
                 near=nearest(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,
             )  # fmt: skip

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+
 from tmm_cli.errors import (
     AmbiguousSketchError,
     AssemblyError,
@@ -10,6 +12,7 @@ from tmm_cli.errors import (
     SketchMismatchError,
 )
 from tmm_cli.language import _
+from tmm_cli.linkage import Linkage
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.refusals.wording import shown, worded
@@ -77,11 +80,28 @@ def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
 
 @worded.register
 def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
-    return mobility(error.structure)
+    lone = _lone_ends(problem.linkage, error.structure.under_constrained)
+    hint = _("point {point} is on link {link} alone; a hinge on the frame: points: {{{point}: [x, y]}}")
+    return mobility(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
 
 
-def mobility(structure: Structure) -> ProblemError:
-    """What a wrong mobility comes from: links that are loose, or pairs that hold what is held already."""
+def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
+    """Loose links whose origin, or with fewer than two pairs any point, makes no pair; each with that point."""
+    runners = {s.runner for s in linkage.slides}
+    pairs = [h.links for h in linkage.hinges] + [(s.carrier, s.runner) for s in linkage.slides]
+    hinges = {h.point for h in linkage.hinges}
+    lone = []
+    for name in loose:
+        link = linkage.links[name]
+        few = sum(name in links for links in pairs) < 2
+        free = [p for k, p in enumerate(link.points) if p not in hinges and (few or k == 0)]
+        if free and name not in runners:
+            lone.append((name, free[0]))
+    return lone
+
+
+def mobility(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
+    """The refusal of a wrong mobility: links that are loose (with hints what holds them), or over-held ones."""
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
@@ -103,7 +123,8 @@ def mobility(structure: Structure) -> ProblemError:
         return ProblemError(
             _("mobility is not {wanted}: these links are loose: {links}").format(wanted=wanted, links=", ".join(loose)),
             path=("links", loose[0]), found=count,
-            allowed=_("W = {wanted}, as many as there are drivers").format(wanted=wanted), key=True,
+            allowed="; ".join([_("W = {wanted}, as many as there are drivers").format(wanted=wanted), *hints]),
+            key=True,
         )  # fmt: skip
     name, bodies = redundant[0]
     links = tuple(b for b in bodies if b in structure.links)
