@@ -60,6 +60,34 @@ def test_rows_of_a_second_turn_are_refused_with_what_to_do(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("against", "crank", "table", "place", "found"),
+    [("crank turn", 50, "[[0, 5], [360, 0], [720, 5]]", "13:97: loads.gas.pressure.table[2][0]", "720 deg"),
+     ("share of stroke", 250, "[[0, 5], [1, 0]]", "13:36: loads.gas.pressure",
+      "the driver moves from 36.8699 deg to 143.13 deg")],
+)  # fmt: skip
+def test_a_table_of_pressures_is_refused_under_its_own_key(tmp_path, against, crank, table, place, found):
+    """A gas force by pressures has no key `force`: the refusal names the key and the row of the file."""
+    (tmp_path / "x.yaml").write_text(f"""tmm: 1
+units: {{length: mm, angle: deg}}
+points: {{O: [0, 0]}}
+guides: {{y: {{through: O, angle: 90}}}}
+links:
+  1: {{points: [O, A], length: {crank}}}
+  2: {{points: [A, B], length: 200}}
+  3: {{points: [B], slides: y}}
+driver: {{link: 1, speed: 60 rpm}}
+sketch: {{at: 90 deg, B: [0, {crank + 200}]}}
+output: 3
+loads:
+  gas: {{on: 3, bore: 80, pressure: {{angle: -90, against: {against}, table: {table}}}}}
+""")
+    ended = tmm("forces", "x.yaml", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert f"error: x.yaml:{place}: " in ended.stderr
+    assert f"\n  found:   {found}\n" in ended.stderr
+
+
 @pytest.mark.parametrize("against", ["crank turn", "crank angle"])
 def test_rows_below_zero_are_refused(tmp_path, against):
     ended = forces(tmp_path, against=against, table="[[-90, 0], [0, 5 kN]]")

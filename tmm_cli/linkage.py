@@ -163,12 +163,13 @@ class LoadTable(Table):
     """A load's size, tabulated.
 
     shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles. stroke_link: the link whose
-    stroke it is; the main output if empty.
+    stroke it is; the main output if empty. key: the key of the load under which the file gives the table.
     """
 
     against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
     shares: bool = False
     stroke_link: str = ""
+    key: str = "force"
 
     @property
     def first_column(self) -> str:

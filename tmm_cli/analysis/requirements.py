@@ -35,8 +35,8 @@ def _need_strokes(mechanism: Mechanism) -> None:
             own = strokes.of_link(load.table.stroke_link) if strokes else None
             if own is None or not own.strokes:
                 limits = None if driver_range.full else (driver_range.start, driver_range.end)
-                key = "force" if load.force else "moment"
-                raise MissingStrokesError(own.link if own else None, ("loads", load.name, key), limits)
+                path = ("loads", load.name, load.table.key)
+                raise MissingStrokesError(own.link if own else None, path, limits)
 
 
 def _need_rows(mechanism: Mechanism) -> None:
@@ -51,8 +51,8 @@ def _need_rows(mechanism: Mechanism) -> None:
         cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
         for row, argument in enumerate(load.table.arguments):
             if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
-                key = "force" if load.force else "moment"
-                raise TableBeyondCycleError(("loads", load.name, key, "table", row, 0), float(argument), cycle)
+                path = ("loads", load.name, load.table.key, "table", row, 0)
+                raise TableBeyondCycleError(path, float(argument), cycle)
 
 
 def _need_speeds(mechanism: Mechanism) -> None:

@@ -252,7 +252,9 @@ def _table(part: Part, want: Dimension, linkage: Linkage, loaded: str) -> LoadTa
     if shares:
         _refuse_beyond_stroke(part, arguments)
     round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
-    return LoadTable(arguments, sizes, given.between, round_and_round, cast("Any", against), shares, stroke_link)
+    return LoadTable(
+        arguments, sizes, given.between, round_and_round, cast("Any", against), shares, stroke_link, str(part.path[-1])
+    )
 
 
 def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
