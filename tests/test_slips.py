@@ -98,6 +98,17 @@ def test_what_to_write_instead(old: str, new: str, message: str) -> None:
     assert told(old, new) == message
 
 
+@pytest.mark.parametrize(
+    ("lever", "found", "allowed"),
+    [("5", "5", "5 %"), ("7.5", "7.5", "7.5 %"), ("120 %", "'120 %'", "0 to 1, or 0 to 100 %")],
+)
+def test_a_bare_per_cent_is_no_allowed_difference(lever: str, found: str, allowed: str) -> None:
+    """`lever: 5` would allow the lever to differ from the force plan by 500 %."""
+    assert told("tmm: 1\n", f"tmm: 1\nchecks: {{lever: {lever}}}\n") == (
+        f"x.yaml:2:17: checks.lever: a share is not above one\n  found:   {found}\n  allowed: {allowed}"
+    )
+
+
 def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
     assert read_text("a: [2*cos(30), f(1)]\nb: {c: (1), d: (2)}", "f").data == {
         "a": ["2*cos(30)", "f(1)"], "b": {"c": "(1)", "d": "(2)"},

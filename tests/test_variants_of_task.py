@@ -120,6 +120,17 @@ def test_answers_are_judged_against_the_largest_value_of_the_cycle():
     assert marks.points == 2 and none.problems == ("there is no variant of this student",)
 
 
+def test_a_tolerance_in_bare_per_cent_is_refused():
+    """`tolerance: 3` would take every answer of the group for right: 300 % of the largest value."""
+    rules = "grading: {answers: [{of: H, tolerance: 3}]}"
+    own = read_task(read_text(SHAPER.read_text(encoding="utf-8") + rules, "t.yaml"))
+    with pytest.raises(ProblemError) as caught:
+        assert own.asked
+    assert str(caught.value) == (
+        "t.yaml:38:40: grading.answers[0].tolerance: a share is not above one\n  found:   3\n  allowed: 3 %"
+    )
+
+
 def test_a_quantity_that_is_none_is_refused_with_one_name_of_each_kind():
     own = read_task(read_text(SHAPER.read_text(encoding="utf-8") + "grading: {answers: [{of: Mb, at: 3}]}", "t.yaml"))
     with pytest.raises(ProblemError) as caught:

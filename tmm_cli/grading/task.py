@@ -133,9 +133,9 @@ class Task:
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
         usual = FORCES if quantity.order >= 4 else KINEMATICS
-        tolerance = (usual if drawn else COMPUTED) if rule.tolerance is None else values.positive(
-            rule.tolerance, NUMBER, (*path, "tolerance")
-        )  # fmt: skip
+        tolerance = usual if drawn else COMPUTED
+        if rule.tolerance is not None:
+            tolerance = values.fraction(rule.tolerance, (*path, "tolerance"))
         points = float(values.positive(rule.points, NUMBER, (*path, "points"), zero=True))
         if quantity.whole == bool(rule.at):
             why = _("{quantity} has no position") if quantity.whole else _("{quantity} is asked at a position")

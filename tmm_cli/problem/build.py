@@ -27,7 +27,7 @@ from tmm_cli.problem.shape_errors import shape_error
 from tmm_cli.problem.tree import Path, Tree
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
-from tmm_cli.quantities import ANGLE, NUMBER
+from tmm_cli.quantities import ANGLE
 
 if TYPE_CHECKING:
     from tmm_cli.kinematics.intermittent_task import WheelTask
@@ -112,7 +112,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     linkage = with_springs(linkage, shape, values)
     checks = Part(shape.checks, ("checks",), values)
     refuse_tables(shape)
-    limit = checks.positive("lever", NUMBER, zero=True)
+    limit = values.fraction(shape.checks.lever, checks.at("lever"), zero=True)
     angles, said = list(Problem.pressure_limits), [False, False]
     for number, key in enumerate(("pressure_sliding", "pressure_turning")):
         if getattr(shape.checks, key) is not None:

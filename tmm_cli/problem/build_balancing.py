@@ -11,7 +11,7 @@ from tmm_cli.problem import schema
 from tmm_cli.problem import schema_balancing as shapes
 from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.values import Part, ValueReader, direction
-from tmm_cli.quantities import ANGLE, LENGTH, MASS, NUMBER
+from tmm_cli.quantities import ANGLE, LENGTH, MASS
 
 
 def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
@@ -26,9 +26,7 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
     places = tuple(_place(name, own, linkage, values) for name, own in given.counterweights.items())
     share, along = 0.5, 1 + 0j
     if given.share is not None:
-        share = part.positive("share", NUMBER, zero=True)
-        if share > 1:
-            raise part.refusal("share", _("a share is not above one"), str(given.share), _("0 to 1"))
+        share = values.fraction(given.share, part.at("share"), zero=True)
         guides = [slide for slide in linkage.slides if slide.carrier == FRAME]
         output = linkage.output_guide(linkage.output.link) if linkage.output is not None else None
         if not guides:

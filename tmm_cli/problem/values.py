@@ -92,6 +92,14 @@ class ValueReader:
             raise self.too_small(value, SMALLEST, want, path)
         return number
 
+    def fraction(self, value: Any, path: Path, *, zero: bool = False) -> float:
+        """A share of a whole, above zero (or not below), at most one. Raises ProblemError, also for a bare per cent."""
+        number = self.positive(value, NUMBER, path, zero=zero)
+        if number > 1:
+            percent = f"{value} %" if isinstance(value, int | float) and value <= 100 else _("0 to 1, or 0 to 100 %")
+            raise ProblemError(_("a share is not above one"), path=path, found=quote(value), allowed=percent)
+        return number
+
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
         """Of a value below the least (SI) that a mechanism can have."""
         shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
