@@ -79,6 +79,17 @@ def plain(found):
         ("Ana.csv", LONG),
         ("Ana.csv", LONG.replace(";", "\t").encode("utf-16")),
         ("Ana.csv", ("\ufeff" + LONG)),
+        ("Ana.csv", LONG.replace("quantity;position;value;unit", "Величина;№ положения;Ответ;Ед. изм.")),
+        (
+            "Ana.csv",
+            LONG.replace(
+                "quantity;position;value;unit;x;y;size;angle", "Veličina;Položaj;Vrednost;Jedinica;x;y;intenzitet;ugao"
+            ),
+        ),
+        (
+            "Ana.csv",
+            LONG.replace("quantity;position;value", "величина;положение;значение").replace("−", "-").encode("cp1251"),
+        ),
         ("Ana.csv", WIDE),
         ("ana.CSV", "student," + WIDE.replace('"414,5"', 'Ana,"414,5"')),
         ("Ana.yaml", YAML),
@@ -201,6 +212,9 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
          "Ana.yaml: this is no answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}"),
         ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is no text; allowed: a table as CSV or XLSX"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
+        ("Ana.csv", "what;where;number\nH;;414\nv of E;7;1,3\n",
+         "Ana.csv: no heading of this table is understood; found: 'what; where; number'; "
+         "allowed: quantity; position; unit; value, or names of answers such as v of E at 7"),
         ("Ana.csv", "\n".join("1" * 2001), "Ana.csv: there are too many rows; allowed: at most 2000"),
         ("Ana.csv", b"1" * 1_000_001, "Ana.csv: the file is too large; found: 1000001; allowed: at most 1000000"),
         ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001; allowed: at most 1000000"),
@@ -226,7 +240,8 @@ def test_a_broken_file_stops_nothing(tmp_path):
     (folder / "D.csv").write_text("quantity,value\nH,1\n")
     (folder / "D.yaml").write_text("H: 2")
     (folder / "E.csv").write_text("quantity,value\nH,1\n")
-    (folder / ".DS_Store").write_text("")
+    for of_the_system in (".DS_Store", "Thumbs.db", "desktop.ini"):
+        (folder / of_the_system).write_text("")
     found = read(folder, ["A", "E", "F"])
     none = "this is no file of its own but a link, a folder or a device"
     assert {name: one.problems for name, one in found.items()} == {

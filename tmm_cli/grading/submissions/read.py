@@ -21,6 +21,7 @@ LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
 LONGER = N_("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
 NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder
+OF_WINDOWS = ("thumbs.db", "desktop.ini")  # files that Windows leaves in folders
 TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
 
 
@@ -62,7 +63,7 @@ class _Reader:
         """Of all files, in the order of their names. Two files of one student are none."""
         files: dict[str, list[str]] = {}
         for name in sorted(os.listdir(folder)):
-            if not name.startswith((".", "~$")):  # of the system, and of an editor that is open
+            if not name.startswith((".", "~$")) and name.casefold() not in OF_WINDOWS:  # ~$: of an editor that is open
                 files.setdefault(self.student(Path(name).stem), []).append(name)
         for student, names in files.items():
             if len(names) == 1:
@@ -123,7 +124,7 @@ class _Reader:
         """Raises ProblemError."""
         if not rows:
             raise ProblemError(_("the table is empty"), file=file)
-        return shape_of(rows[0], self.answers)
+        return shape_of(rows[0], self.answers, filled=len(rows) > 1)
 
 
 def _unread(student: str, why: str) -> Submission:

@@ -9,10 +9,22 @@ from dataclasses import dataclass
 from tmm_cli.grading.submissions.answers import Answers, Entry
 from tmm_cli.grading.submissions.headings import PARTS, Part
 from tmm_cli.grading.submissions.numbers import checked_unit
+from tmm_cli.grading.tables import WHO
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
 
 Row = Sequence[str]
+
+_COLUMNS = {  # of a table with an answer in every row: how students call them
+    "quantity": ("величина", "что найти", "veličina", "velicina"),
+    "position": ("положение", "№ положения", "номер положения", "položaj", "polozaj", "положај"),
+    "unit": ("единица", "единицы", "ед", "ед изм", "единица измерения", "единицы измерения", "jedinica", "јединица"),
+    "value": ("answer", "значение", "ответ", "vrednost", "vrijednost", "odgovor", "вредност", "одговор"),
+    "size": ("модуль", "intenzitet", "интензитет"),
+    "angle": ("угол", "ugao", "угао"),
+    "student": WHO,
+}
+_WORDS = {word: column for column, words in _COLUMNS.items() for word in words}
 
 
 @dataclass(frozen=True)
@@ -32,15 +44,21 @@ class Shape:
         return any(row[self.width :])
 
 
-def shape_of(header: Row, answers: Answers) -> Shape:
-    """Long where a column is called `quantity`, and wide otherwise. Raises ProblemError."""
+def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
+    """Long where a column is called `quantity`, and wide otherwise; filled: rows follow. Raises ProblemError."""
     columns: dict[str, tuple[int, str]] = {}  # places and units: `angle, deg`
     for n, text in enumerate(header):
         word, _comma, unit = re.sub(r"\[(.*)\]$", r",\1", text).partition(",")
-        columns.setdefault(word.strip().casefold(), (n, unit.strip()))
+        name = " ".join(word.casefold().replace(".", " ").split())
+        columns.setdefault(_WORDS.get(name, name), (n, unit.strip()))
     if "quantity" in columns:
         return _long(columns, len(header))
     first = 0 if _known(header[0], answers) else 1
+    if filled and "student" not in columns and not any(_known(text, answers) for text in header):
+        raise ProblemError(
+            _("no heading of this table is understood"), found=quote("; ".join(header)),
+            allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
+        )  # fmt: skip
     for text in header[first:]:
         if _is_unit(text) and not _known(text, answers):
             raise ProblemError(
