@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import json
 import math
 import re
 from pathlib import Path
@@ -356,7 +358,47 @@ positions: {{at: [60, 90, 120]}}
     assert motion_in_words(results, "2") == motion
 
 
+def test_the_result_names_the_motion_that_the_table_names():
+    """Both couplers of the parallelogram, which are equal and parallel to its frame, translate."""
+    done = tmm("structure", "problems/parallel-couplers.yaml", "--json")
+    links = json.loads(done.stdout)["structure"]["links"]
+    assert [link["motion"] for link in links] == ["rotation", "translation", "rotation", "translation"]
+
+
 def test_several_primary_mechanisms_have_as_many_freedoms_together():
     text = re.sub(r"\s+", " ", tmm("structure", "problems/five-bar.yaml").stdout)
     assert "primary mechanisms I(0,1), I(0,4); together W = 2" in text
     assert "primary mechanisms" not in tmm("structure", "problems/shaper.yaml").stdout
+
+
+@pytest.mark.parametrize(
+    "name, sentences",
+    [
+        # K = p - n: 7 - 5; all pairs are lower
+        ("shaper", ("Chain, and kind of structure: closed, complex: the driver and several groups, of several types.",
+                    "Independent contours K = p − n: 2.")),
+        # p = 6 hinges on n = 4 links; the contour through the second coupler repeats the first
+        ("parallel-couplers", ("Independent contours K = p − n: 2, of which dependent: 1.",)),
+        # five hinges on four links, 3*4 - 2*5 = 2
+        ("five-bar", ("Primary mechanisms: I(0,1), I(0,4); together W = 2.",
+                      "Chain, and kind of structure: closed, simple: the driver and one group.")),
+        # p = 5 + 1 on n = 4 links
+        ("cam-lever", ("Independent contours K = p − n: 2.",
+                       "With each higher pair replaced by a link with two turning pairs: W = 3·5 − 2·7 = 1.")),
+    ],
+)  # fmt: skip
+def test_explain_and_the_note_have_the_words_of_the_structure(name, sentences, tmp_path):
+    explained = re.sub(r"\s+", " ", tmm("explain", f"problems/{name}.yaml").stdout)
+    done = tmm("note", f"problems/{name}.yaml", "-o", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    page = next(tmp_path.rglob("note.html")).read_text(encoding="utf-8")
+    note = re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]+>", "", page)))
+    for sentence in sentences:
+        assert sentence in explained
+        assert sentence in note
+
+
+def test_explain_gives_each_pair_its_class_and_code():
+    told = re.sub(r"\s+", " ", tmm("explain", "problems/cam-lever.yaml").stdout)
+    for pair in ("O 0-1 (5, 1в)", "x 0-4 (5, 1п)", "cam 1-2 (4)"):
+        assert pair in told

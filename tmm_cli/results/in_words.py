@@ -5,20 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.analysis.pipeline import Results
-from tmm_cli.language import _
+from tmm_cli.language import _, printed
 from tmm_cli.linkage import FRAME, Linkage
 from tmm_cli.results.reports.structure import (
     ROLES,
+    contours_in_words,
     counted_by_classes,
     counted_generally,
     counted_mobility,
+    counted_with_replacements,
+    kind_in_words,
     left_out,
     mobility_with_rollers,
     motion_in_words,
+    primary_mechanisms_in_words,
     schemes_in_words,
 )
 from tmm_cli.results.understood import motion
-from tmm_cli.structure.assur import Group, Structure
+from tmm_cli.structure.assur import Group, Pair, Structure
 
 
 def in_words(results: Results) -> Iterable[str]:
@@ -30,12 +34,16 @@ def in_words(results: Results) -> Iterable[str]:
     yield _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.").format(
         count=counted_generally(count)
     )
+    if structure.higher:
+        text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
+        yield text.format(count=counted_with_replacements(count))
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         yield _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
         yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
             count=structure.redundant, w=structure.mobility + structure.redundant
         )
+    yield _("Pairs, with their classes and codes: {pairs}.").format(pairs=", ".join(map(_pair, structure.pairs)))
     for driver in results.linkage.drivers:
         yield _("Link {link} ({role}) is a driving link: {motion}.").format(
             link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=motion(driver)
@@ -43,6 +51,10 @@ def in_words(results: Results) -> Iterable[str]:
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=structure.roman
     )
+    if len(structure.drivers) > 1:
+        yield _("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure))
+    yield _("Chain, and kind of structure: {words}.").format(words=kind_in_words(structure))
+    yield _("Independent contours K = p - n: {count}.").format(count=contours_in_words(structure))
     schemes = schemes_in_words(structure)
     if schemes:
         yield _("Basic schemes in it: {schemes}.").format(schemes=schemes)
@@ -82,6 +94,12 @@ def _mobility(structure: Structure) -> str:
             "W = 3n - 2 p1 - p2 = 3*{n} - 2*{lower} - {higher} = {w}."
         )
     return text.format(n=n, lower=lower, turning=turning, sliding=lower - turning, higher=higher, w=w)
+
+
+def _pair(pair: Pair) -> str:
+    """O 0-1 (5, 1в): a pair, its links, its class and its code; a higher pair has no code."""
+    words = ", ".join(filter(None, (str(pair.pair_class), pair.code)))
+    return f"{pair.name} {printed(pair.i)}-{printed(pair.j)} ({words})"
 
 
 def _outer(group: Group) -> str:

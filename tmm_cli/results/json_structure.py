@@ -6,6 +6,7 @@ from operator import methodcaller
 from typing import NamedTuple
 
 from tmm_cli.linkage import Link
+from tmm_cli.results.reports.structure import motion_of_link
 from tmm_cli.results.shapes import (
     FLAG,
     INTEGER,
@@ -20,7 +21,7 @@ from tmm_cli.results.shapes import (
     record,
 )  # fmt: skip
 from tmm_cli.structure.contours import classification, contours, is_dependent
-from tmm_cli.structure.naming import basic_schemes, link_motion, six_bar_schemes
+from tmm_cli.structure.naming import basic_schemes, six_bar_schemes
 
 PROBLEM = record(
     "what was computed", Field("name", TEXT, "of the file"), Field("title", TEXT, "title"),
@@ -102,7 +103,7 @@ STRUCTURE = record(
     "links, pairs and Assur groups",
     Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
     Field("links", list_of(LINK), "moving links",
-          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], link_motion(r.linkage, n)) for n in r.structure.links]),
+          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], motion_of_link(r, n)) for n in r.structure.links]),
     Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
     Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
           lambda results: results.structure.mobility + results.structure.redundant),

@@ -29,12 +29,15 @@ from tmm_cli.plans.record import Symbol
 from tmm_cli.results.reports.structure import (
     PAIRS,
     ROLES,
+    contours_in_words,
     counted_by_classes,
     counted_generally,
     counted_with_replacements,
+    kind_in_words,
     left_out,
     mobility_with_rollers,
     motion_in_words,
+    primary_mechanisms_in_words,
     schemes_in_words,
 )
 from tmm_cli.results.stages import link_name
@@ -147,6 +150,10 @@ def _groups(subject: Subject) -> Iterable[Block]:
         )  # fmt: skip
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
+    if len(structure.drivers) > 1:
+        yield paragraph(_("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure)))
+    yield paragraph(_("Chain, and kind of structure: {words}.").format(words=kind_in_words(structure)))
+    yield paragraph(typeset(_("Independent contours K = p - n: {count}.").format(count=contours_in_words(structure))))
     text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
     yield said(text, source=Link("frolov"), number=structure.roman)
     schemes = schemes_in_words(structure)

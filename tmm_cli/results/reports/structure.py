@@ -12,7 +12,7 @@ from tmm_cli.language import N_, _, printed
 from tmm_cli.linkage import FRAME
 from tmm_cli.results.table import Table, table_of_words
 from tmm_cli.structure.assur import Structure
-from tmm_cli.structure.contours import classification
+from tmm_cli.structure.contours import classification, contours, is_dependent
 from tmm_cli.structure.naming import basic_schemes, is_parallelogram_coupler, link_motion, six_bar_schemes
 
 PLACES, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad
@@ -181,12 +181,21 @@ def counted_with_replacements(count: tuple[int, int, int]) -> str:
     return counted_mobility((n + higher, lower + 2 * higher, 0))
 
 
+def motion_of_link(results: Results, name: str) -> str:
+    """Return the motion of a link relative to the frame: rotation, translation or plane motion.
+
+    Lengths alone do not distinguish a parallelogram from an antiparallelogram, so its coupler is moved as well.
+    """
+    motion = link_motion(results.linkage, name)
+    if motion == "plane motion" and is_parallelogram_coupler(results.linkage, name) and _keeps_direction(results, name):
+        return "translation"
+    return motion
+
+
 def motion_in_words(results: Results, name: str) -> str:
     """The motion of a link relative to the frame, with its centre or its guide."""
     linkage = results.linkage
-    motion = link_motion(linkage, name)
-    if motion == "plane motion" and is_parallelogram_coupler(linkage, name) and _keeps_direction(results, name):
-        motion = "translation"
+    motion = motion_of_link(results, name)
     if motion == "rotation":
         return _("turns about {point}").format(point=linkage.shared(FRAME, name))
     guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
@@ -212,6 +221,25 @@ def schemes_in_words(structure: Structure) -> str:
     if six_bar:
         names.append(_("six-bar: {names}").format(names=_(" or ").join(_(SIX_BARS[scheme]) for scheme in six_bar)))
     return ", ".join(names)
+
+
+def kind_in_words(structure: Structure) -> str:
+    """Return the kind of the chain and of the structure: closed, complex: the driver and several groups."""
+    return ", ".join(_(CLASSES[word]) for word in classification(structure))
+
+
+def contours_in_words(structure: Structure) -> str:
+    """Return K = p - n and how many of these contours only repeat another one."""
+    dependent = sum(is_dependent(contour, structure) for contour in contours(structure.pairs, structure.links))
+    if not dependent:
+        return str(structure.contours)
+    return _("{count}, of which dependent: {dependent}").format(count=structure.contours, dependent=dependent)
+
+
+def primary_mechanisms_in_words(structure: Structure) -> str:
+    """Return the primary mechanisms, and their freedoms together: each driver has one."""
+    names = ", ".join(map(structure.driver_title, structure.drivers))
+    return _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
 
 
 def called(label: str) -> str:
@@ -248,16 +276,15 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
         yield _("W with rollers as links"), mobility_with_rollers(structure)
     if structure.passive:
         yield _("W in truth, by rank"), str(w + structure.redundant)
-    yield _("independent contours K = p - n"), str(structure.contours)
+    yield _("independent contours K = p - n"), contours_in_words(structure)
     yield _("formula of structure"), structure.formula
     if len(structure.drivers) > 1:
-        names = ", ".join(map(structure.driver_title, structure.drivers))
-        yield _("primary mechanisms"), _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
+        yield _("primary mechanisms"), primary_mechanisms_in_words(structure)
     for sentence in left_out(structure):
         yield "", sentence
     if structure.reduction:
         yield _("W of the formula of structure"), counted_mobility(structure.count)
-    yield _("chain, and kind of structure"), ", ".join(_(CLASSES[word]) for word in classification(structure))
+    yield _("chain, and kind of structure"), kind_in_words(structure)
     yield _("class of the mechanism"), structure.roman
     schemes = schemes_in_words(structure)
     if schemes:
