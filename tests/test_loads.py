@@ -1,5 +1,7 @@
 """What acts on a mechanism beside constant forces: windows, pressures, friction that resists, pairs, point masses."""
 
+import math
+
 import numpy as np
 import pytest
 from models import PARALLELOGRAM, solved_text
@@ -277,6 +279,42 @@ def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
 def work_warnings(tail, output="3"):
     text = f"{MACHINE}output: {output}\n{tail}"
     return [w for w in warnings(solve(problem_of(read_text(text, "x.yaml")))) if w.startswith("load F ")]
+
+
+@pytest.mark.parametrize(("turns", "window"), [("ccw", (84.401, 259.985)), ("cw", (-100.016, 84.402))])
+def test_gas_that_drives_a_piston_is_told_its_window(turns, window):
+    """An engine works between the dead positions of its offset crank-slider: r = 45, l = 160, e = 20.
+
+    With the window instead of the working stroke the load is the same in every position, and nothing is warned of.
+    """
+    text = """tmm: 1
+points: {{O: [0, 0]}}
+guides: {{y: {{through: [20, 0], angle: 90}}}}
+links:
+  1: {{points: [O, A], length: 45}}
+  2: {{points: [A, B], length: 160}}
+  3: {{points: [B], slides: y}}
+driver: {{link: 1, speed: 3000 rpm, turns: {turns}}}
+sketch: {{at: 60 deg, B: [20, 190]}}
+loads:
+  gas: {{on: 3, bore: 80, when: {when}, pressure: {{angle: -90, against: share of stroke, table: [[0, 4], [1, 1]]}}}}
+output: {{link: 3, working: backward}}
+positions: {{from: working stroke}}
+"""
+    top = math.degrees(math.acos(20 / (160 + 45)))
+    bottom = 180 + math.degrees(math.acos(20 / (160 - 45)))  # the crank points away from B
+    expected = (top, bottom) if turns == "ccw" else (bottom - 360, top)
+    assert window == pytest.approx(expected, abs=1e-3) and window[0] <= expected[0] and window[1] >= expected[1]
+    driving = solve(problem_of(read_text(text.format(turns=turns, when="working stroke"), "x.yaml")))
+    when = f"when: [{window[0]:.10g} deg, {window[1]:.10g} deg]"
+    assert [w for w in warnings(driving) if w.startswith("load gas")] == [
+        "load gas acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
+        f"other stroke: output: {{link: 3, working: forward}}. In an engine, where the gas drives the piston: {when}"
+    ]
+    windowed = solve(problem_of(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))
+    assert not [w for w in warnings(windowed) if w.startswith("load gas")]
+    rod, same_rod = (solved.reactions.of("A").force for solved in (driving, windowed))
+    assert np.all(np.abs(same_rod - rod) <= 1e-9 * np.max(np.abs(rod))) and np.max(np.abs(rod)) > 20_000
 
 
 def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():

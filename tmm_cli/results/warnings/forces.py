@@ -124,10 +124,19 @@ def _driving(results: Results, load: Load) -> str:
         ).format(load=load.name)
     other = "backward" if strokes.working[0].run > 0 else "forward"
     link = results.linkage.output_point(strokes.link) or strokes.link
-    return _(
+    text = _(
         "load {load} acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
         "other stroke: {output}"
     ).format(load=load.name, output=f"output: {{link: {link}, working: {other}}}")
+    working = strokes.of_link(load.stroke_link).working
+    if load.table is None or load.table.key != "pressure" or len(working) != 1:
+        return text
+    start = working[0].start
+    low, high = np.degrees(sorted((start, start + results.linkage.driver.sense * working[0].length)))
+    turns = np.floor(high / 360) * 360  # a window that begins before the zero begins at a negative angle
+    low, high = np.floor((low - turns) * 1000) / 1000, np.ceil((high - turns) * 1000) / 1000  # holds both ends
+    window = f"when: [{low:.10g} deg, {high:.10g} deg]"
+    return _("{text}. In an engine, where the gas drives the piston: {window}").format(text=text, window=window)
 
 
 def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str:
