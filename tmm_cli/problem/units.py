@@ -109,6 +109,7 @@ _ROWS: Final = (  # names, what the unit measures, and how much it is in SI and 
     ("kPa кПа", PRESSURE, "1000"),
     ("MPa МПа", PRESSURE, "1000000"),
     ("bar бар", PRESSURE, "100000"),
+    ("at ат", PRESSURE, "980665/10"),
     ("%", NUMBER, "1/100"),
 )
 SYMBOLS: Final[Mapping[str, Unit]] = {
