@@ -56,6 +56,38 @@ def test_the_number_of_the_frame_is_no_other_links(tmp_path):
     assert told[1:] == ["found:   5", "allowed: a number of no link, such as 6"]
 
 
+def test_the_number_of_the_frame_is_no_rollers(tmp_path):
+    file = tmp_path / "cam.yaml"
+    cam = Path("problems/cam-lever.yaml").read_text(encoding="utf-8")  # its roller is link 5
+    file.write_text(f"{cam}\nframe: 5\n", encoding="utf-8")
+    done = tmm("structure", str(file))
+    assert done.returncode == 2
+    assert "frame: a link has this number already" in done.stderr
+    assert "allowed: a number of no link, such as 6" in done.stderr
+
+
+def test_the_number_that_a_message_offers_for_the_frame_is_free(tmp_path):
+    """Links 1, 2, 4 and the frame are four links, but 4 is taken: 3 is free."""
+    file = tmp_path / "gap.yaml"
+    file.write_text(
+        "tmm: 1\ntitle: Gap\nunits: {length: mm, angle: deg}\npoints: {O: [0, 0], D: [300, 0]}\n"
+        "links:\n  1: {points: [O, A], length: 80}\n  4: {points: [A, B], length: 250}\n"
+        "  2: {points: [D, B], length: 200}\ndriver: {link: 1, speed: 10}\n"
+        "sketch: {at: 60, A: [40, 69], B: [260, 190]}\nframe: 4\n",
+        encoding="utf-8",
+    )
+    done = tmm("structure", str(file))
+    assert done.returncode == 2
+    assert "allowed: a number of no link, such as 3" in done.stderr
+    file.write_text(file.read_text(encoding="utf-8").replace("frame: 4", "frame: 3"), encoding="utf-8")
+    assert "I(3,1) → II(4,2)" in tmm("structure", str(file)).stdout
+
+
+def test_explain_prints_the_frame_by_its_number_in_every_formula(tmp_path):
+    told = tmm("explain", written(tmp_path, "frame: 6")).stdout
+    assert re.findall(r"I\(\w,1\)", told) == ["I(6,1)", "I(6,1)"], "in the formula and in the order of work"
+
+
 @pytest.mark.parametrize(("tongue", "more", "letter"), [
     ("ru", "", "Φ5"), ("ru", "note: {inertia: U}", "U5"), ("en", "", "U5"), ("en", "note: {inertia: Φ}", "Φ5"),
 ])  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
+from itertools import count
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
@@ -86,14 +87,21 @@ def parameters(
         return resolve_parameters(raw, units, given)
 
 
+def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> None:
+    """Refuse a printed number of the frame that a link or a roller has."""
+    taken = {*links, *(cam.roller for cam in shape.cams.values() if cam.roller)}
+    if shape.frame != FRAME and shape.frame in taken:
+        free = next(number for number in count(1) if str(number) not in taken)
+        raise ProblemError(
+            _("a link has this number already"), found=shape.frame, path=("frame",),
+            allowed=_("a number of no link, such as {number}").format(number=free),
+        )  # fmt: skip
+
+
 def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     """The problem, its parts built in the order in which they need each other. Raises ProblemError, not yet located."""
     members = build_links(shape, values)
-    if shape.frame != FRAME and shape.frame in members.links:
-        raise ProblemError(
-            _("a link has this number already"), found=shape.frame, path=("frame",),
-            allowed=_("a number of no link, such as {number}").format(number=len(members.links)),
-        )  # fmt: skip
+    _refuse_frame_of_a_link(shape, members.links)
     refuse_unused(shape, tree.data, members)
     links = members.links
     first, *others = build_drivers(shape, members, values)

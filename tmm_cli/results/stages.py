@@ -28,7 +28,7 @@ Row = tuple[str, str, str, str, str]
 def steps(results: Results) -> Table:
     """The drivers and the groups, with the assembly that each of them has."""
     linkage = results.linkage
-    drivers = " + ".join(f"I({driver.base},{driver.link})" for driver in linkage.drivers)
+    drivers = " + ".join(map(results.structure.driver_title, linkage.drivers))
     given = _("the drivers: their places are given") if linkage.others else _("the driver: its place is given")
     rows = [("1", drivers, given, "", _("in closed form"))]
     solved = {link: kernel for kernel in results.kernels for link in kernel.group.links}
