@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.draw.paper.drawing import Area, Circle, Drawing, Line, Text
-from tmm_cli.draw.paper.fonts import HALF, UNITS, drawable, font
-from tmm_cli.draw.paper.fonts import corners as box_of
+from tmm_cli.drawing.paper.fonts import HALF, UNITS, drawable, font
+from tmm_cli.drawing.paper.fonts import corners as box_of
+from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
 
 TOUCH = 0.05  # mm: less than a thin line is wide
 

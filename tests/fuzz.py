@@ -42,27 +42,24 @@ from fuzz_blocks import with_blocks
 from pydantic import BaseModel
 
 from tmm_cli import solve
-from tmm_cli.accuracy.digits import at, exact
 from tmm_cli.cli.app import application
-from tmm_cli.double_double import array, exactly, rounded
-from tmm_cli.draw.formats import here
-from tmm_cli.library import problem_of
-from tmm_cli.problem.build import is_chain
-from tmm_cli.problem.build_chain import build_chain
+from tmm_cli.drawing.formats import here
+from tmm_cli.mechanics.accuracy.digits import at, exact
+from tmm_cli.mechanics.numerics.double_double import array, exactly, rounded
+from tmm_cli.mechanics.quantities import ANGLE
+from tmm_cli.problem.blocks.chain import build_chain
+from tmm_cli.problem.build import is_chain, problem_of
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.foreign_keys import FOREIGN
 from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.schema import File
-from tmm_cli.problem.schema_chain import SpatialFile
+from tmm_cli.problem.schema import File, SpatialFile
+from tmm_cli.problem.shape_errors import FOREIGN
 from tmm_cli.problem.units import SYMBOLS
-from tmm_cli.quantities import ANGLE
-from tmm_cli.results.as_json import sections
-from tmm_cli.results.cells import cells, computed_tables, keys_of
-from tmm_cli.results.digits import accuracy
-from tmm_cli.results.reports import walk
-from tmm_cli.results.text import json_text
-from tmm_cli.synthesis import TASKS, block
+from tmm_cli.reports.digits import accuracy, cells, computed_tables, keys_of
+from tmm_cli.reports.register import walk
+from tmm_cli.reports.result_json import sections
+from tmm_cli.reports.table import json_text
 from tmm_cli.synthesis.reading import task_of
+from tmm_cli.synthesis.tasks import TASKS, block
 
 ROOT = Path(__file__).parents[1]
 LONGEST = {"load": 10, "solve": 30, "run": 60, "grade": 60}  # seconds of the processor, of each command

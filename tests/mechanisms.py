@@ -16,8 +16,8 @@ from typing import Any
 import yaml
 
 from tmm_cli import load, solve
-from tmm_cli.draw import sheets
-from tmm_cli.draw.formats.svg import svg
+from tmm_cli.drawing.formats.svg import svg
+from tmm_cli.drawing.run import sheets
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 ROWS = 33

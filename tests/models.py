@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from tmm_cli import load, solve
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.linkage import Linkage
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

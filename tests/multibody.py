@@ -12,9 +12,9 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import move
-from tmm_cli.linkage import FRAME
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.linkage import FRAME
 
 DIGITS = 60
 STEP, BEND = mp.mpf(10) ** -25, mp.mpf(10) ** -15  # of first and second differences

@@ -12,9 +12,9 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.animate.content import FRAMES, frames, picture_of
-from tmm_cli.animate.page import FEWEST, MOST, page
+from tmm_cli.animation.content import FRAMES, frames, picture_of
+from tmm_cli.animation.page import FEWEST, MOST, page
+from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -44,7 +44,7 @@ def test_a_page_is_small_and_asks_for_nothing(name):
 
 def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
     whole = page_of("shaper")
-    monkeypatch.setattr("tmm_cli.animate.page.MOST", len(whole.encode()) * 3 // 4)
+    monkeypatch.setattr("tmm_cli.animation.page.MOST", len(whole.encode()) * 3 // 4)
     fewer = page(solved("shaper"))
     assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
     assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])

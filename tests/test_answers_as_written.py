@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tmm_cli.grading.record import Given
-from tmm_cli.grading.submissions.headings import Heading, Headings
-from tmm_cli.grading.submissions.numbers import read_answer
+from tmm_cli.grading.submissions.numbers import Heading, Headings, read_answer
 from tmm_cli.problem.errors import ProblemError
 
 

@@ -19,12 +19,13 @@ from tmm_cli.bench.chart_accuracy import chart
 from tmm_cli.bench.methods import board
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, errors
 from tmm_cli.bench.methods.loops import Loops
-from tmm_cli.bench.methods.precision import recast
+from tmm_cli.bench.methods.product import recast
 from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS
 from tmm_cli.bench.references import NAMES, reference
-from tmm_cli.library import load, problem_of
-from tmm_cli.plans.record import sheet_scale
+from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
+from tmm_cli.synthesis.solving import load
 
 BY_NAME = {method.name: method for method in METHODS}
 UNIT = np.finfo(float).eps

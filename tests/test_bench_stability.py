@@ -16,12 +16,12 @@ from write_stability_references import Closely, circles, closed, starts, written
 
 from tmm_cli.bench import stability
 from tmm_cli.bench.chart_stability import charts
-from tmm_cli.bench.families import BY_NAME, FAMILIES
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, Unable
-from tmm_cli.bench.methods.following import close
+from tmm_cli.bench.methods.loops import close
+from tmm_cli.bench.references import KEYS, known, seeds
+from tmm_cli.bench.scenes import BY_NAME, FAMILIES
 from tmm_cli.bench.stability import OURS, RIVALS, WRONG, limit, measure, ours
-from tmm_cli.bench.truths import KEYS, known, seeds
-from tmm_cli.linkage import FRAME
+from tmm_cli.mechanics.linkage import FRAME
 
 METHODS = {method.name: method for method in RIVALS}
 

@@ -25,7 +25,7 @@ from tmm_cli.bench.searches import (
     prepared,
     text,
 )
-from tmm_cli.synthesis.optimal.exact import exactly
+from tmm_cli.synthesis.optimal.polish import exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND[SEARCHED])
 FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))

@@ -4,7 +4,7 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli import load
-from tmm_cli.problem.budget import refuse_options
+from tmm_cli.problem.build import refuse_options
 from tmm_cli.problem.errors import ProblemError
 
 SHAPER = (ROOT / "problems" / "shaper.yaml").read_text(encoding="utf-8")
@@ -57,7 +57,7 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
     file = tmp_path / "much.yaml"
     file.write_text(SHAPER.replace("points: [C, D], length: CD", points(500)), encoding="utf-8")
     assert tmm("run", file, "--no-drawings", cwd=tmp_path).returncode == 0
-    monkeypatch.setattr("tmm_cli.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
+    monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for command, told in {
         ("run",): "positions.detail: these are too many drawings for so many links, points and positions "
         "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
@@ -92,7 +92,7 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     assert "count: 48" in text
     file = tmp_path / "much.yaml"
     file.write_text(text, encoding="utf-8")
-    monkeypatch.setattr("tmm_cli.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
+    monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for options, told in {
         ("--positions", "all"): "error: plans of so many positions fill no sheet that is read found: 48 allowed: 24 at "
         "most; with --positions detail: those of positions.detail",

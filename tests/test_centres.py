@@ -9,13 +9,13 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.analysis.centres import with_centres
-from tmm_cli.kinematics.centres import centres
-from tmm_cli.linkage import FRAME
+from tmm_cli.mechanics.analysis.in_detail import with_centres
+from tmm_cli.mechanics.kinematics.centres import centres
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import cross
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.reports import walk
-from tmm_cli.vectors import cross
+from tmm_cli.reports.register import walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 LINKAGES = ("crank-rocker", "crank-slider", "six-bar", "shaper", "whitworth", "press-class-iii", "gear-doubling")

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from models import SI, results_of
 
-from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.results.warnings import warnings
+from tmm_cli.mechanics.analysis.pipeline import at_positions
+from tmm_cli.reports.warnings import warnings
 
 DIGITS = 1e-12  # rad
 

@@ -13,14 +13,28 @@ from models import DATA
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
-from tmm_cli.draw.paper.axes import across, decades, equal, round_up, upwards
-from tmm_cli.draw.paper.chart import LOWEST, SAMPLE, Across, Curve, Jump, Panel, Plot, chart, room
-from tmm_cli.draw.paper.drawing import POINT, Circle, Line, Text
-from tmm_cli.draw.paper.fonts import corners
-from tmm_cli.draw.paper.picture import Space, within
-from tmm_cli.draw.paper.sheet import Sheet
-from tmm_cli.draw.sheets.diagrams import LINES, diagrams
-from tmm_cli.plans.record import LANDSCAPE
+from tmm_cli.drawing.paper.chart import (
+    LOWEST,
+    SAMPLE,
+    Across,
+    Curve,
+    Jump,
+    Panel,
+    Plot,
+    across,
+    chart,
+    decades,
+    equal,
+    room,
+    round_up,
+    upwards,
+)
+from tmm_cli.drawing.paper.fonts import corners
+from tmm_cli.drawing.paper.picture import Space, within
+from tmm_cli.drawing.paper.record import POINT, Circle, Line, Text
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.sheets.diagrams import LINES, diagrams
+from tmm_cli.mechanics.plans.record import LANDSCAPE
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

@@ -26,9 +26,9 @@ from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
 from tmm_cli.problem.templates import template_text, templates, translations
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.compare import Difference, difference_table, differences
-from tmm_cli.results.reports import tables
-from tmm_cli.results.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
+from tmm_cli.reports.compare import Difference, difference_table, differences
+from tmm_cli.reports.register import tables
+from tmm_cli.reports.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
 
 ROOT = Path(__file__).parent.parent
 SHAPER = ROOT / "problems" / "shaper.yaml"

@@ -27,20 +27,16 @@ from random_linkages import any_linkage, linkage
 from test_commands import ROOT, SHAPER, described, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.accuracy.data import changed, lengths
-from tmm_cli.accuracy.digits import Digits, at, bare, bounds, exact, quantities
-from tmm_cli.accuracy.margins import relative, sizes
-from tmm_cli.accuracy.searches import searched
-from tmm_cli.accuracy.wide import Wide
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.double_double import exactly
-from tmm_cli.kinematics.driver_range import find_range
-from tmm_cli.library import problem_of
-from tmm_cli.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
-from tmm_cli.pairs.cam_law import SHAPES
-from tmm_cli.problem.build import build
-from tmm_cli.problem.reader import read_text
-from tmm_cli.quantities import (
+from tmm_cli.mechanics.accuracy.digits import Digits, at, bare, bounds, exact, quantities, relative, sizes
+from tmm_cli.mechanics.accuracy.lengths import changed, lengths
+from tmm_cli.mechanics.accuracy.searches import Wide, searched
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.groups.pairs.higher import SHAPES
+from tmm_cli.mechanics.kinematics.driver_range import find_range
+from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
+from tmm_cli.mechanics.numerics.double_double import exactly
+from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
+from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -50,13 +46,13 @@ from tmm_cli.quantities import (
     MOMENT,
     SPEED,
 )
-from tmm_cli.results.cells import cells, computed_tables
-from tmm_cli.results.digits import accuracy
-from tmm_cli.results.reports import tables_of
-from tmm_cli.results.table import true_digits
-from tmm_cli.results.terminal import cells as shown
-from tmm_cli.structure.assur import analyse
-from tmm_cli.tolerances import ROUNDOFF
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.problem.build import build, problem_of
+from tmm_cli.problem.reader import read_text
+from tmm_cli.reports.digits import accuracy, cells, computed_tables
+from tmm_cli.reports.register import tables_of
+from tmm_cli.reports.table import true_digits
+from tmm_cli.reports.terminal import cells as shown
 
 BARRED = """tmm: 1
 units: {length: m, angle: rad}

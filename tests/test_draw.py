@@ -8,14 +8,14 @@ from models import PARALLELOGRAM
 from test_commands import SHAPER
 
 from tmm_cli import solve
-from tmm_cli.draw import files, remarks, sheets
-from tmm_cli.draw.formats import FORMATS
-from tmm_cli.draw.paper.ground import Ground
-from tmm_cli.draw.paper.labels import Label, extent, place
-from tmm_cli.draw.paper.sheet import Sheet
-from tmm_cli.draw.sheets.mechanism import detailed, position
-from tmm_cli.draw.sheets.motion_plans import motion_plans
-from tmm_cli.draw.sheets.positions import all_positions
+from tmm_cli.drawing.formats import FORMATS
+from tmm_cli.drawing.paper.ground import Ground
+from tmm_cli.drawing.paper.labels import Label, extent, place
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.run import files, remarks, sheets
+from tmm_cli.drawing.sheets.mechanism import detailed, position
+from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.positions import all_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

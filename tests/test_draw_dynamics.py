@@ -18,20 +18,19 @@ from scipy.integrate import cumulative_trapezoid
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.draw.layout.contents import CONTENTS, chosen
-from tmm_cli.draw.paper.drawing import Circle, Line, Text
-from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION
-from tmm_cli.draw.sheets.law_of_motion import law_of_motion, stretches_on_paper
-from tmm_cli.draw.sheets.single_run import single_run
-from tmm_cli.dynamics.motors import Linear
-from tmm_cli.dynamics.sizes import Rim
-from tmm_cli.dynamics.task import SteadyTask
+from tmm_cli.drawing.layout.contents import CONTENTS, chosen
+from tmm_cli.drawing.paper.record import Circle, Line, Text
+from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION
+from tmm_cli.drawing.sheets.law_of_motion import law_of_motion, stretches_on_paper
+from tmm_cli.drawing.sheets.single_run import single_run
 from tmm_cli.language import spoken
-from tmm_cli.linkage import Load
-from tmm_cli.note import note
-from tmm_cli.note.dynamics import words
+from tmm_cli.mechanics.dynamics.motors import Linear
+from tmm_cli.mechanics.dynamics.task import Rim, SteadyTask
+from tmm_cli.mechanics.linkage import Load
+from tmm_cli.note.dynamics import parts as words
 from tmm_cli.note.formats.html import html
-from tmm_cli.results.given import given
+from tmm_cli.note.register import note
+from tmm_cli.reports.given import given
 
 THIN = 0.05  # mm: less than half of a line
 TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor

@@ -9,21 +9,20 @@ import pytest
 from bank import solved
 from test_draw import plain
 
-from tmm_cli.draw.paper.drawing import Area, Line
-from tmm_cli.draw.paper.script import plain as line
-from tmm_cli.draw.paper.script import wrapped
-from tmm_cli.draw.paper.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
-from tmm_cli.draw.sheets.acting import ARM, Forces
-from tmm_cli.draw.sheets.beneath import Beneath, Table
-from tmm_cli.draw.sheets.equations import figure, table_of_forces, written
-from tmm_cli.draw.sheets.force_plans import forces, lanes, table
-from tmm_cli.draw.sheets.group_loads import group_loads
-from tmm_cli.draw.sheets.mechanism import detailed
+from tmm_cli.drawing.paper.record import Area, Line
+from tmm_cli.drawing.paper.script import plain as line
+from tmm_cli.drawing.paper.script import wrapped
+from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.drawing.sheets.acting import ARM, Forces
+from tmm_cli.drawing.sheets.beneath import Beneath, Table
+from tmm_cli.drawing.sheets.force_plans import forces, lanes, table
+from tmm_cli.drawing.sheets.group_loads import figure, group_loads, table_of_forces, written
+from tmm_cli.drawing.sheets.mechanism import detailed
+from tmm_cli.mechanics.forces.equilibrium import loaded_parts
+from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol
+from tmm_cli.mechanics.plans.forces import force_plans
+from tmm_cli.mechanics.plans.record import NamedVector
 from tmm_cli.note.expression import fixed, rounded
-from tmm_cli.plans.bodies import Acting
-from tmm_cli.plans.forces import force_plans
-from tmm_cli.plans.moments import loaded_parts
-from tmm_cli.plans.record import NamedVector, Symbol
 
 
 def sheets_of(name, kind):

@@ -8,11 +8,11 @@ from functools import cache
 import pytest
 from bank import solved
 
-from tmm_cli.draw.paper.drawing import Circle, Text
-from tmm_cli.draw.paper.fonts import corners
-from tmm_cli.draw.paper.script import plain
-from tmm_cli.draw.sheets.mechanism import detailed
-from tmm_cli.draw.sheets.motion_plans import motion_plans, sorts, table
+from tmm_cli.drawing.paper.fonts import corners
+from tmm_cli.drawing.paper.record import Circle, Text
+from tmm_cli.drawing.paper.script import plain
+from tmm_cli.drawing.sheets.mechanism import detailed
+from tmm_cli.drawing.sheets.motion_plans import motion_plans, sorts, table
 
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 

@@ -10,20 +10,19 @@ import pytest
 from higher import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.draw import sheets
-from tmm_cli.draw.paper.drawing import Line
-from tmm_cli.draw.paper.sheet import Sheet
-from tmm_cli.draw.symbols.actuators import BARREL, Cylinder, springs
-from tmm_cli.draw.symbols.scene import Scene
-from tmm_cli.draw.symbols.wheels import AROUND, contact, extent, outline
-from tmm_cli.plans.acceleration import acceleration_plan
-from tmm_cli.plans.forces import force_plans
-from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.velocity import letters, velocity_plan
+from tmm_cli.drawing.paper.record import Line
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.run import sheets
+from tmm_cli.drawing.symbols.actuators import BARREL, Cylinder, springs
+from tmm_cli.drawing.symbols.scene import Scene
+from tmm_cli.drawing.symbols.wheels import AROUND, contact, extent, outline
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.plans.forces import force_plans
+from tmm_cli.mechanics.plans.lever import lever_plan
+from tmm_cli.mechanics.plans.motion import acceleration_plan, letters, velocity_plan
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.vectors import cross, dot
 
 WHEELS = ["gear", "inner", "planet", "rack"]
 CAMS = ["flat follower", "swinging follower"]

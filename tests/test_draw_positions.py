@@ -13,16 +13,15 @@ from hypothesis import strategies as st
 from test_commands import ROOT
 
 from tmm_cli import solve
-from tmm_cli.draw.paper.drawing import Area, Line, Text
-from tmm_cli.draw.paper.fonts import corners
-from tmm_cli.draw.paper.ruler import TICK, spread
-from tmm_cli.draw.sheets.mechanism import detailed, position
-from tmm_cli.draw.sheets.positions import all_positions, ratio
-from tmm_cli.draw.sheets.tracks import extreme_states, extremes, output_track
-from tmm_cli.plans.record import ground_of
+from tmm_cli.drawing.paper.dimensions import TICK, spread
+from tmm_cli.drawing.paper.fonts import corners
+from tmm_cli.drawing.paper.record import Area, Line, Text
+from tmm_cli.drawing.sheets.mechanism import detailed, position
+from tmm_cli.drawing.sheets.positions import all_positions, extreme_states, extremes, output_track, ratio
+from tmm_cli.mechanics.plans.record import ground_of
+from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.quantities import LENGTH
 
 
 @cache

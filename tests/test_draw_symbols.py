@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 from bank import NAMES, solved
 
-from tmm_cli.draw.paper.drawing import Area, Circle, Line
-from tmm_cli.draw.paper.labels import gathered
-from tmm_cli.draw.paper.sheet import DARK, THIN, Sheet
-from tmm_cli.draw.sheets.structure import at_sketch
-from tmm_cli.draw.symbols.fixed import free_runs, support_side
-from tmm_cli.draw.symbols.parts import MEASURED, PLATE, STRUCTURAL, WELD, mass_centre, tint
-from tmm_cli.draw.symbols.render import render
-from tmm_cli.draw.symbols.scene import fitted, to_scale
-from tmm_cli.linkage import FRAME
-from tmm_cli.vectors import cross, dot
+from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.record import Area, Circle, Line
+from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet
+from tmm_cli.drawing.sheets.structure import at_sketch
+from tmm_cli.drawing.symbols.parts import MEASURED, PLATE, STRUCTURAL, WELD, free_runs, mass_centre, support_side, tint
+from tmm_cli.drawing.symbols.render import render
+from tmm_cli.drawing.symbols.scene import fitted, to_scale
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import cross, dot
 
 LOOKS = (STRUCTURAL, MEASURED)  # the scheme, to scale
 NEAR = 0.35  # mm

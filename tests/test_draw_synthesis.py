@@ -8,24 +8,21 @@ import numpy as np
 import pytest
 from bank import moved
 
-from tmm_cli.draw.paper.drawing import Area, Line, Text
-from tmm_cli.draw.paper.fonts import corners
-from tmm_cli.draw.paper.sheet import LOAD, THIN, border
-from tmm_cli.draw.sheets.construction import PAD, SMALLER, construction, granted, inside
-from tmm_cli.draw.sheets.lettering import rename
-from tmm_cli.draw.sheets.synthesis import sheets
-from tmm_cli.plans.record import sheet_scale
+from tmm_cli.drawing.paper.fonts import corners
+from tmm_cli.drawing.paper.record import Area, Line, Text
+from tmm_cli.drawing.paper.sheet import LOAD, THIN, border
+from tmm_cli.drawing.sheets.construction import PAD, SMALLER, construction, granted, inside, rename
+from tmm_cli.drawing.sheets.synthesis import sheets
+from tmm_cli.mechanics.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis import crank_slider, shaper, slotted_lever
 from tmm_cli.synthesis.coupler_positions import solver as coupler_positions
-from tmm_cli.synthesis.coupler_positions.lines import frame
-from tmm_cli.synthesis.coupler_positions.task import Side
-from tmm_cli.synthesis.crank_slider import solver as crank_slider
+from tmm_cli.synthesis.coupler_positions.burmester import Side
+from tmm_cli.synthesis.coupler_positions.curve import frame
 from tmm_cli.synthesis.four_bar_by_angles import solver as four_bar_by_angles
 from tmm_cli.synthesis.four_bar_by_k import solver as four_bar_by_k
-from tmm_cli.synthesis.optimal.drawings import history
 from tmm_cli.synthesis.optimal.evolution import Evolved
-from tmm_cli.synthesis.shaper import solver as shaper
-from tmm_cli.synthesis.slotted_lever import solver as slotted_lever
+from tmm_cli.synthesis.optimal.outcome import history
 
 ROOT = Path(__file__).parents[1]
 

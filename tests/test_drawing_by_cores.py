@@ -9,8 +9,8 @@ from bank import moved
 
 from tmm_cli.cli import drawing
 from tmm_cli.cli.drawing import FEW, by_all_cores
-from tmm_cli.draw import files, parts
-from tmm_cli.draw.layout.files import files_of_sheets
+from tmm_cli.drawing.layout.files import files_of_sheets
+from tmm_cli.drawing.run import files, parts
 
 
 @pytest.fixture(autouse=True)

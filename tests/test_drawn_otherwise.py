@@ -14,11 +14,11 @@ from bank import EVERY, problem
 from random_linkages import any_linkage
 from transforms import mirrored, moved, renamed, reversed_in_time, turned, with_other_axes
 
-from tmm_cli.analysis.mechanism import Inputs
-from tmm_cli.analysis.pipeline import at_positions, solve, with_forces
-from tmm_cli.forces.plan import react
-from tmm_cli.kinematics.output import output_run
-from tmm_cli.linkage import FRAME, Friction, Load, Output, Request, Sketch
+from tmm_cli.mechanics.analysis.mechanism import Inputs
+from tmm_cli.mechanics.analysis.pipeline import at_positions, solve, with_forces
+from tmm_cli.mechanics.forces.plan import react
+from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.linkage import FRAME, Friction, Load, Output, Request, Sketch
 
 BY, ASIDE = 0.7, 0.3 - 0.2j  # rad, m
 CLOSE = 1e-9  # of the largest there is

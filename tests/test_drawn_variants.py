@@ -9,10 +9,10 @@ import pytest
 from test_commands import SHAPER
 
 from tmm_cli import solve
+from tmm_cli.batch.choices import choices, with_vary
+from tmm_cli.batch.task import read_task
 from tmm_cli.grading import draw_variants
-from tmm_cli.grading.choices import choices, with_vary
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
-from tmm_cli.grading.task import read_task
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 

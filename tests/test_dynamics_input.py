@@ -9,8 +9,8 @@ from tmm_cli import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.understood import doubts
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.understood import doubts
+from tmm_cli.reports.warnings import warnings
 
 MACHINE = """tmm: 1
 points: {O: [0, 0]}

@@ -13,20 +13,18 @@ from scipy.integrate import quad, solve_ivp
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.analysis.running import reduced_machine, running
-from tmm_cli.dynamics.by_motor import Cycle
-from tmm_cli.dynamics.curves import fitted
-from tmm_cli.dynamics.motors import Kloss, Linear
-from tmm_cli.dynamics.reduced import reduced
-from tmm_cli.dynamics.steady import fluctuation, steady
-from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
-from tmm_cli.forces.loads import applied
-from tmm_cli.forces.plan import react
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import move
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.analysis.pipeline import at_positions
+from tmm_cli.mechanics.dynamics.laws import Cycle
+from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
+from tmm_cli.mechanics.dynamics.reduced import fitted, reduced
+from tmm_cli.mechanics.dynamics.steady import fluctuation, reduced_machine, running, steady
+from tmm_cli.mechanics.dynamics.task import SteadyTask
+from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
+from tmm_cli.mechanics.forces.loads import applied
+from tmm_cli.mechanics.forces.plan import react
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 

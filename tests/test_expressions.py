@@ -8,10 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.expressions import evaluate, evaluate_quantity, resolve_parameters
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
-from tmm_cli.quantities import (
+from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
     ANGULAR_SPEED,
@@ -27,6 +24,9 @@ from tmm_cli.quantities import (
     TIME,
     Dimension,
 )
+from tmm_cli.problem.arithmetic import evaluate, evaluate_quantity, resolve_parameters
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import PhysicalValue, UnitSystem
 
 UNITS = UnitSystem()
 GIVEN = {

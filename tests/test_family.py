@@ -8,20 +8,18 @@ import numpy as np
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.linkage import Request
+from tmm_cli.batch.prepare import everything, prepare
+from tmm_cli.batch.tape import record
+from tmm_cli.batch.tape.traced import TracedNumber
+from tmm_cli.batch.taped import OneByOne, Taped
+from tmm_cli.batch.variant import NoTapeError, Places, Variant
+from tmm_cli.mechanics.linkage import Request
 from tmm_cli.problem import schema
+from tmm_cli.problem.arithmetic import evaluate_quantity, resolve_parameters
 from tmm_cli.problem.build import build_shape
-from tmm_cli.problem.expressions import evaluate_quantity, resolve_parameters
-from tmm_cli.problem.extended import VariedUnits
 from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.tape import record
-from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.variants.batch import everything, prepare
-from tmm_cli.variants.one_by_one import OneByOne
-from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.variant import NoTapeError, Places, Variant
 
 
 def maker(name, given):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from tmm_cli import load
-from tmm_cli.groups import CLOSED
-from tmm_cli.roots import bisect, roots
-from tmm_cli.structure.assur import analyse
-from tmm_cli.vectors import leaves, mapped
+from tmm_cli.mechanics.groups.closed_forms import CLOSED
+from tmm_cli.mechanics.numerics.roots import bisect, roots
+from tmm_cli.mechanics.numerics.vectors import leaves, mapped
+from tmm_cli.mechanics.structure.assur import analyse
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.longdouble])

@@ -11,11 +11,10 @@ import pytest
 from models import linkage_of, results_of, solved_text
 from transforms import turned
 
-from tmm_cli.analysis.mechanism import Inputs
-from tmm_cli.analysis.pipeline import solve
-from tmm_cli.linkage import Friction, Request
-from tmm_cli.results.cells import computed_tables
-from tmm_cli.results.digits import accuracy
+from tmm_cli.mechanics.analysis.mechanism import Inputs
+from tmm_cli.mechanics.analysis.pipeline import solve
+from tmm_cli.mechanics.linkage import Friction, Request
+from tmm_cli.reports.digits import accuracy, computed_tables
 
 G = 9.81
 SLIDER = {

@@ -11,7 +11,7 @@ from fuzz_blocks import BLOCKS, Parts
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.groups.state import State
+from tmm_cli.mechanics.groups.state import State
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text

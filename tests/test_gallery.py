@@ -14,15 +14,14 @@ from bank import moved
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.animate.content import picture_of
-from tmm_cli.animate.gallery.card import card
-from tmm_cli.animate.gallery.chains import ROW, places_of
-from tmm_cli.animate.gallery.page import page
-from tmm_cli.animate.gallery.turning import PLACE, TURN
+from tmm_cli.animation.content import picture_of
+from tmm_cli.animation.gallery.card import card
+from tmm_cli.animation.gallery.page import page
+from tmm_cli.animation.gallery.turning import PLACE, ROW, TURN, places_of
 from tmm_cli.language import spoken
-from tmm_cli.linkage import FRAME
-from tmm_cli.structure.spatial import SpatialChain, SpatialPair
+from tmm_cli.mechanics.analysis.pipeline import at_positions
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.structure.spatial import SpatialChain, SpatialPair
 
 NAMES = ("crank-slider", "slotted-lever", "cam-lever", "excavator", "double-crank", "manipulator-open")
 MOST = 3_000_000 / 60  # bytes of a mechanism

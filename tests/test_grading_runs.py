@@ -14,12 +14,12 @@ from dataclasses import replace
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.grading import run, workers
-from tmm_cli.grading.kept import keep, read_kept
+from tmm_cli.batch import workers
+from tmm_cli.batch.task import read_task
+from tmm_cli.batch.workers import cluster, here, processes
+from tmm_cli.grading import run
 from tmm_cli.grading.record import Given, Mark, StudentMarks, Submission, VariantTable
-from tmm_cli.grading.run import graded
-from tmm_cli.grading.task import read_task
-from tmm_cli.grading.workers import cluster, here, processes
+from tmm_cli.grading.run import graded, keep, read_kept
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 

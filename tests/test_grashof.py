@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.four_bar import TYPES, FourBar, turning
-from tmm_cli.synthesis.grashof.solver import LEVERS, SLIDERS, CrankSlider, SlottedLever, crank_slider, slotted_lever
+from tmm_cli.synthesis.grashof import LEVERS, SLIDERS, CrankSlider, SlottedLever, crank_slider, slotted_lever
 from tmm_cli.synthesis.reading import build
 
 FOUR_BAR = """

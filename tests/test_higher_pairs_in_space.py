@@ -7,9 +7,9 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
+from tmm_cli.mechanics.structure.redundancy import space
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.structure.redundancy import space
 
 
 def in_space(text):

@@ -18,13 +18,12 @@ from tmm_cli.cli.common import each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.reporting import bounds_of
 from tmm_cli.cli.talk import speaking
-from tmm_cli.draw.paper.axes import filling
+from tmm_cli.drawing.paper.chart import filling
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
-from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.record import balance_symbol
+from tmm_cli.mechanics.forces.free_bodies import balance_symbol, load_symbols
+from tmm_cli.mechanics.quantities import KINDS
 from tmm_cli.problem.units import UnitSystem, parse_unit
-from tmm_cli.quantities import KINDS
-from tmm_cli.results.output import write_results
+from tmm_cli.reports.files import write_results
 
 KEPT, UPDATED = cache(messages.catalogue), cache(messages.updated)  # read once for all tests
 
@@ -152,9 +151,13 @@ def test_a_file_that_cannot_be_read_is_refused_in_its_language(tmp_path, content
     assert told in ended.stderr.splitlines()[0]
 
 
-TO_PEOPLE = ("draw", "results/reports", "plans", "note", "animate", "cli", "grading/exports")
+TO_PEOPLE = (
+    "drawing", "mechanics/plans", "note", "animation", "cli", "grading/exports",
+    "reports/structure_t", "reports/space_t",
+    "reports/cycle_t", "reports/quality_t", "reports/force_t", "reports/dynamics_t", "reports/synthesis_t",
+)  # fmt: skip
 TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
-    "draw/formats/*", "animate/page.py", "animate/courses.py", "grading/exports/tables_csv.py", "cli/bench/*",
+    "drawing/formats/*", "animation/page.py", "animation/content.py", "grading/exports/tables_csv.py", "cli/bench/*",
     "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
 }  # fmt: skip
 

@@ -14,14 +14,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tmm_cli import solve
-from tmm_cli.draw import sheets
-from tmm_cli.draw.layout.contents import chosen
-from tmm_cli.draw.layout.large import PAPERS, field_of, large_sheets
-from tmm_cli.draw.layout.packing import Field, pack, spread
-from tmm_cli.draw.layout.title_block import SIZES, inner
-from tmm_cli.draw.paper.drawing import Circle, Drawing, Line, Text
-from tmm_cli.draw.paper.writing import cut, wrap
-from tmm_cli.plans.record import ROUND
+from tmm_cli.drawing.layout.contents import chosen
+from tmm_cli.drawing.layout.large import PAPERS, field_of, large_sheets
+from tmm_cli.drawing.layout.packing import SIZES, Field, inner, pack, spread
+from tmm_cli.drawing.paper.record import Circle, Drawing, Line, Text
+from tmm_cli.drawing.paper.writing import cut, wrap
+from tmm_cli.drawing.run import sheets
+from tmm_cli.mechanics.plans.record import ROUND
 
 
 @given(st.lists(st.tuples(st.floats(10, 300), st.floats(10, 200)), min_size=1, max_size=12))

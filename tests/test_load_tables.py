@@ -11,22 +11,22 @@ from scipy.interpolate import CubicSpline
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.accuracy.digits import bounds, judged
-from tmm_cli.analysis.pipeline import at_places
-from tmm_cli.analysis.running import reduced_machine
-from tmm_cli.double_double import DoubleDouble, rounded
-from tmm_cli.draw.sheets.diagrams import closely
-from tmm_cli.grading.task import Task
-from tmm_cli.interpolation import Table
-from tmm_cli.library import problem_of
+from tmm_cli.batch.prepare import prepare as prepare_all
+from tmm_cli.batch.task import Task
+from tmm_cli.drawing.sheets.diagrams import closely
+from tmm_cli.mechanics.accuracy.digits import bounds, judged
+from tmm_cli.mechanics.analysis.pipeline import at_places
+from tmm_cli.mechanics.dynamics.steady import reduced_machine
+from tmm_cli.mechanics.numerics.double_double import DoubleDouble, rounded
+from tmm_cli.mechanics.numerics.interpolation import Table
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.templates import template_text
-from tmm_cli.results.given import given
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.given import given
+from tmm_cli.reports.warnings import warnings
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.run import swept
-from tmm_cli.variants.batch import prepare as prepare_all
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}

@@ -8,15 +8,15 @@ from models import PARALLELOGRAM, solved_text
 from scipy.interpolate import CubicSpline
 
 from tmm_cli import prepare, solve
-from tmm_cli.analysis.pipeline import at_positions
-from tmm_cli.analysis.running import reduced_machine
-from tmm_cli.interpolation import Table
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.analysis.pipeline import at_positions
+from tmm_cli.mechanics.dynamics.steady import reduced_machine
+from tmm_cli.mechanics.numerics.interpolation import Table
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.given import given
-from tmm_cli.results.understood import doubts
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.given import given
+from tmm_cli.reports.understood import doubts
+from tmm_cli.reports.warnings import warnings
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.accuracy.digits import judged
-from tmm_cli.grading.grade import grade
+from tmm_cli.batch.task import Task, read_task
 from tmm_cli.grading.record import Given, Submission, VariantTable
-from tmm_cli.grading.task import Task, read_task
-from tmm_cli.library import problem_of
-from tmm_cli.problem.build import build
+from tmm_cli.grading.run import grade
+from tmm_cli.mechanics.accuracy.digits import judged
+from tmm_cli.problem.build import build, problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.given import given
+from tmm_cli.reports.given import given
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.run import swept

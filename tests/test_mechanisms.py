@@ -15,7 +15,7 @@ from test_commands import tmm
 from tmm_cli import load, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.properties import properties_shown
+from tmm_cli.reports.properties import properties_shown
 
 
 def shown(name):

@@ -12,17 +12,16 @@ import pytest
 
 from tests.test_language import Cyrillic
 from tmm_cli import load, solve
-from tmm_cli.animate.courses import charts
-from tmm_cli.draw import remarks, sheets
+from tmm_cli.animation.content import charts
+from tmm_cli.drawing.run import remarks, sheets
 from tmm_cli.language import CATALOGUES, spoken
-from tmm_cli.note import note
 from tmm_cli.note.formats.html import html
-from tmm_cli.results.explain import explain
-from tmm_cli.results.for_people import cells
-from tmm_cli.results.in_words import in_words
-from tmm_cli.results.reports import tables
-from tmm_cli.results.understood import doubts, understood
-from tmm_cli.results.warnings import warnings
+from tmm_cli.note.register import note
+from tmm_cli.reports.explain import explain, in_words
+from tmm_cli.reports.register import tables
+from tmm_cli.reports.spreadsheets import cells
+from tmm_cli.reports.understood import doubts, understood
+from tmm_cli.reports.warnings import warnings
 
 PROBLEMS = ("shaper", "planetary-dwell-press", "crank-rocker-synthesis", "press-class-iii", "cylinder", "valve-drive")
 WORD = re.compile(r"(?<!\w)[A-Za-z]{3,}(?!\w)")

@@ -9,12 +9,13 @@ from formulas import formulas
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.note import note
+from tmm_cli.note import centres
+from tmm_cli.note.balancing import chapter as balancing
 from tmm_cli.note.blocks import Figure, Heading, Note
-from tmm_cli.note.chapters import balancing, centres
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found
 from tmm_cli.note.formats.html import html
+from tmm_cli.note.register import note
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

@@ -7,8 +7,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tmm_cli.draw.paper.drawing import Drawing, Line, Text
-from tmm_cli.note.blocks import (
+from tmm_cli.drawing.paper.record import Drawing, Line, Text
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.note.blocks import (  # fmt: skip
     Contents,
     Equation,
     Figure,
@@ -20,11 +21,10 @@ from tmm_cli.note.blocks import (
     Sources,
     Title,
     paragraph,
-)  # fmt: skip
+)
 from tmm_cli.note.expression import Found, Function, Leaf, Sum
 from tmm_cli.note.formats import FORMATS
 from tmm_cli.note.math import Letter, row
-from tmm_cli.plans.record import Symbol
 
 docx = pytest.importorskip("docx")
 

@@ -12,13 +12,12 @@ from models import PROBLEMS, solved_text
 
 from tmm_cli import load, solve
 from tmm_cli.language import spoken
+from tmm_cli.mechanics.forces.free_bodies import Symbol, load_symbols, reaction_symbol
 from tmm_cli.note.blocks import Block, Equation, Heading, Paragraph
-from tmm_cli.note.chapters.forces import blocks
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
+from tmm_cli.note.forces.chapter import blocks
 from tmm_cli.note.math import Letter, Row
-from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.record import Symbol, reaction_symbol
 
 FRICTION = "friction: {coefficient: 0.1, radius: 15}"
 

@@ -9,11 +9,11 @@ from models import PROBLEMS, solved_text
 from test_jams import planets
 
 from tmm_cli import load, solve
-from tmm_cli.draw.paper.picture import Picture
+from tmm_cli.drawing.paper.picture import Picture
 from tmm_cli.note.blocks import Equation, Heading, Paragraph
-from tmm_cli.note.chapters.kinematics import blocks
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found
+from tmm_cli.note.kinematics.chapter import blocks
 from tmm_cli.note.kinematics.on_paper import Here
 from tmm_cli.note.math import Letter, Row
 

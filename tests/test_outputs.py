@@ -11,7 +11,7 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text

@@ -11,15 +11,13 @@ from random_linkages import linkage
 from test_properties import CHAINS, SEEDS, generic
 from test_properties import solved as solved_for
 
-from tmm_cli.forces.lever import lever
-from tmm_cli.plans.acceleration import acceleration_plan
-from tmm_cli.plans.bodies import named
-from tmm_cli.plans.forces import force_plans
-from tmm_cli.plans.lever import lever_plan
-from tmm_cli.plans.readings import Reading, readings, turns
-from tmm_cli.plans.record import ROUND, Symbol, reaction_symbol, round_scale
-from tmm_cli.plans.velocity import velocity_plan
-from tmm_cli.vectors import cross, dot
+from tmm_cli.mechanics.forces.free_bodies import Symbol, named, reaction_symbol
+from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.plans.forces import force_plans
+from tmm_cli.mechanics.plans.lever import lever_plan
+from tmm_cli.mechanics.plans.motion import Reading, acceleration_plan, readings, turns, velocity_plan
+from tmm_cli.mechanics.plans.record import ROUND, round_scale
 
 
 @given(SEEDS, CHAINS)

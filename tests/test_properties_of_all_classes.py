@@ -7,15 +7,15 @@ import pytest
 from random_linkages import any_linkage
 from transforms import mirrored, renamed, reversed_in_time, sized, turned
 
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.forces.energy import energy
-from tmm_cli.forces.lever import lever
-from tmm_cli.forces.loads import applied
-from tmm_cli.forces.plan import power, react
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import move
-from tmm_cli.structure.assur import analyse
-from tmm_cli.vectors import cross
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.forces.energy import energy
+from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.forces.loads import applied
+from tmm_cli.mechanics.forces.plan import power, react
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.numerics.vectors import cross
+from tmm_cli.mechanics.structure.assur import analyse
 
 LINKAGES = [
     (1, ("III", "gear"), "crank"), (1, ("IV",), "cylinder"), (1, ("VI", "cam"), "crank"),

@@ -11,10 +11,10 @@ import pytest
 from test_loads import MACHINE
 
 from tmm_cli import solve
-from tmm_cli.dynamics.reduced import reduced
-from tmm_cli.dynamics.steady import steady as running
-from tmm_cli.dynamics.task import SteadyTask
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.dynamics.reduced import reduced
+from tmm_cli.mechanics.dynamics.steady import steady as running
+from tmm_cli.mechanics.dynamics.task import SteadyTask
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
 
 TURN = 2 * np.pi

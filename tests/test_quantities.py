@@ -8,17 +8,17 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.accuracy.digits import quantities
-from tmm_cli.draw.sheets.lever import lever
-from tmm_cli.draw.sheets.mechanism import detailed
-from tmm_cli.draw.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.mechanism import detailed
+from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.mechanics.accuracy.digits import quantities
+from tmm_cli.mechanics.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
-from tmm_cli.results.as_json import schema, to_json
-from tmm_cli.results.digits import accuracy
-from tmm_cli.results.reports import tables
-from tmm_cli.results.terminal import cells
+from tmm_cli.reports.digits import accuracy
+from tmm_cli.reports.register import tables
+from tmm_cli.reports.result_json import schema, to_json
+from tmm_cli.reports.terminal import cells
 
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
     "kinematics.points": (POINT, set()),

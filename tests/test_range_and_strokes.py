@@ -12,10 +12,10 @@ from models import PROBLEMS as FILES
 from models import results_of
 
 from tmm_cli import solve
-from tmm_cli.pairs.cam_law import SHAPES
+from tmm_cli.mechanics.groups.pairs.higher import SHAPES
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.reports import tables
+from tmm_cli.reports.register import tables
 
 UNITS = {"length": "mm", "angle": "deg"}
 

@@ -12,10 +12,9 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_cli.problem import composer
-from tmm_cli.problem.errors import ProblemError, clean, nearest, quote
+from tmm_cli.problem import reader as composer
+from tmm_cli.problem.errors import Mark, ProblemError, WrittenNumber, clean, nearest, quote
 from tmm_cli.problem.reader import MAX_BYTES, decimal_comma_hint, read_file, read_text
-from tmm_cli.problem.tree import Mark, WrittenNumber
 
 
 @pytest.fixture(params=[name for name in ("CSafeLoader", "SafeLoader") if hasattr(yaml, name)])

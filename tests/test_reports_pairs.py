@@ -10,8 +10,8 @@ from test_draw_pairs import solved
 from tmm_cli import solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.explain import explain
-from tmm_cli.results.reports import tables
+from tmm_cli.reports.explain import explain
+from tmm_cli.reports.register import tables
 
 
 def table(name, of):

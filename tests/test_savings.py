@@ -16,23 +16,23 @@ from bank import problem as read
 from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.assembly.choose import assemble
 from tmm_cli.bench.chart_savings import charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
-from tmm_cli.draw import files as drawings
-from tmm_cli.groups.sequence import DriverMotion, NotComputed, towards
-from tmm_cli.kinematics.motion import move
-from tmm_cli.library import count, problem_of, structure_of
-from tmm_cli.problem.build_chain import build_chain
+from tmm_cli.drawing.run import files as drawings
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.groups.sequence import DriverMotion, NotComputed, towards
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.quantities import LENGTH, NUMBER
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.problem.blocks.chain import build_chain
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import LENGTH, NUMBER
-from tmm_cli.results.files import Staged, listed
-from tmm_cli.results.stages import heavy, stages
-from tmm_cli.results.table import Column, Table
-from tmm_cli.results.text import csv_text, json_bytes, json_text
-from tmm_cli.structure.assur import analyse
+from tmm_cli.reports.files import Staged, listed
+from tmm_cli.reports.stages import heavy, stages
+from tmm_cli.reports.table import Column, Table, csv_text, json_bytes, json_text
+from tmm_cli.synthesis.solving import count, structure_of
 
 NAMES = [name for name in NAMES if name != "crank-rocker-optimal"]  # a four-bar, sought for seconds
 

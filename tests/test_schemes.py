@@ -18,22 +18,21 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.cli import scheme_files
-from tmm_cli.cli.scheme_files import named_types, skeleton
-from tmm_cli.draw.sheets.group_table import EXAMPLES
-from tmm_cli.linkage import Driver, Hinge, Link, Linkage, Sketch
+from tmm_cli.cli import schemes as scheme_files
+from tmm_cli.cli.schemes import named_types, skeleton
+from tmm_cli.drawing.sheets.group_table import EXAMPLES
+from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure.group import ROMAN, group_class
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.schemes import schemes_table
-from tmm_cli.results.terminal import show
-from tmm_cli.schemes.chains import KinematicChain
-from tmm_cli.schemes.chains import chains as every_chain
-from tmm_cli.schemes.isomorphism import canonical
-from tmm_cli.schemes.schemes import MOST_SCHEMES
-from tmm_cli.schemes.schemes import schemes as every_scheme
-from tmm_cli.structure.assur import ROMAN, analyse
-from tmm_cli.structure.group_class import group_class
+from tmm_cli.reports.space_tables import schemes_table
+from tmm_cli.reports.terminal import show
+from tmm_cli.synthesis.schemes.chains import KinematicChain, canonical
+from tmm_cli.synthesis.schemes.chains import chains as every_chain
+from tmm_cli.synthesis.schemes.schemes import MOST_SCHEMES
+from tmm_cli.synthesis.schemes.schemes import schemes as every_scheme
 
 chains, schemes = cache(every_chain), cache(every_scheme)
 

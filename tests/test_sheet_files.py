@@ -13,15 +13,15 @@ from big_sheets import about
 from pypdf import PdfReader
 from test_commands import ROOT, SHAPER, tmm
 
-from tmm_cli.draw.formats import FORMATS
-from tmm_cli.draw.formats.dxf import plain
-from tmm_cli.draw.layout.files import files_of_sheets
-from tmm_cli.draw.layout.large import PAPERS, field_of, framed
-from tmm_cli.draw.layout.title_block import SIZES, Titles, inner
-from tmm_cli.draw.paper.drawing import Drawing, Text
-from tmm_cli.draw.paper.fonts import corners
-from tmm_cli.draw.sheets.mechanism import detailed
-from tmm_cli.draw.symbols.scene import Scene
+from tmm_cli.drawing.formats import FORMATS
+from tmm_cli.drawing.formats.dxf import plain
+from tmm_cli.drawing.layout.files import files_of_sheets
+from tmm_cli.drawing.layout.large import PAPERS, field_of, framed
+from tmm_cli.drawing.layout.packing import SIZES, Titles, inner
+from tmm_cli.drawing.paper.fonts import corners
+from tmm_cli.drawing.paper.record import Drawing, Text
+from tmm_cli.drawing.sheets.mechanism import detailed
+from tmm_cli.drawing.symbols.scene import Scene
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
@@ -148,7 +148,7 @@ def test_the_command_writes_a_file_a_sheet_and_format(tmp_path):
 def test_an_unknown_format_and_a_missing_library_are_said_in_a_line(tmp_path, monkeypatch):
     done = tmm("sheets", SHAPER, "--as", "dwg", "-o", tmp_path)
     assert done.returncode == 2 and "dwg" in done.stderr and "dxf" in done.stderr
-    monkeypatch.setattr("tmm_cli.draw.layout.files.find_spec", lambda name: None)
+    monkeypatch.setattr("tmm_cli.drawing.layout.files.find_spec", lambda name: None)
     done = tmm("sheets", SHAPER, "--as", "dxf", "-o", tmp_path)
     assert done.returncode == 2 and "pip install 'tmm-cli[cad]'" in done.stderr
     assert not list(tmp_path.iterdir())

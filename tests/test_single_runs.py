@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, solve
-from tmm_cli.dynamics.motors import Kloss, Linear
-from tmm_cli.dynamics.reduced import reduced
-from tmm_cli.dynamics.run import acceleration, run
-from tmm_cli.dynamics.task import Profile, RunTask
-from tmm_cli.errors import LongRunError, StandstillError
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
+from tmm_cli.mechanics.dynamics.reduced import reduced
+from tmm_cli.mechanics.dynamics.single_run import acceleration, run
+from tmm_cli.mechanics.dynamics.task import Profile, RunTask
+from tmm_cli.mechanics.errors import LongRunError, StandstillError
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.reports import walk
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.register import walk
+from tmm_cli.reports.warnings import warnings
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -126,7 +126,7 @@ def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
 
 
 def test_a_run_that_wants_very_many_steps_ends_with_what_it_came_to(monkeypatch):
-    monkeypatch.setattr("tmm_cli.dynamics.run.MOST", 500)
+    monkeypatch.setattr("tmm_cli.mechanics.dynamics.single_run.MOST", 500)
     with pytest.raises(LongRunError) as stopped:
         run(machine(load=-2.0, ripple=1.5), RunTask(motor=Linear(50.0, 10.0)))
     assert 0 < stopped.value.way < TURN and stopped.value.count == 500

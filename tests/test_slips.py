@@ -10,12 +10,12 @@ import pytest
 from models import solved_text
 from test_bad_input import changed, refusal
 
+from tmm_cli.mechanics.quantities import ANGLE
+from tmm_cli.problem.arithmetic import evaluate
 from tmm_cli.problem.build import build
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.expressions import evaluate
-from tmm_cli.problem.extended import ExtendedUnits
 from tmm_cli.problem.reader import read_text
-from tmm_cli.quantities import ANGLE
+from tmm_cli.problem.units import ExtendedUnits
 from tmm_cli.synthesis.reading import alone, task_of
 
 FOUR_BAR = """tmm: 1

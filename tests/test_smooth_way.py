@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from models import PARALLELOGRAM, solved_text
 
-from tmm_cli.analysis.pipeline import at_positions
+from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.results.reports.quality import tables
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.quality_tables import quality_tables as tables
+from tmm_cli.reports.warnings import warnings
 
 KITE = """tmm: 1
 points: {O: [0, 0], D: [100, 0]}

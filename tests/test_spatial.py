@@ -14,16 +14,16 @@ from models import CLASS_III
 from test_commands import ROOT, described, tmm
 
 from tmm_cli import load
-from tmm_cli.library import count
-from tmm_cli.linkage import FRAME
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure.graph import classification, contours
+from tmm_cli.mechanics.structure.redundancy import CHOICES, rank_of, space, spatial_chain
+from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair, examine
+from tmm_cli.problem.blocks.chain import build_chain
 from tmm_cli.problem.build import build
-from tmm_cli.problem.build_chain import build_chain
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file, read_text
-from tmm_cli.structure.assur import analyse
-from tmm_cli.structure.contours import classification, contours
-from tmm_cli.structure.redundancy import CHOICES, rank_of, space, spatial_chain
-from tmm_cli.structure.spatial import KINDS, SpatialChain, SpatialPair, examine
+from tmm_cli.synthesis.solving import count
 
 LETTERS = {"R": "turning", "P": "sliding", "H": "screw", "C": "cylindrical", "U": "universal", "S": "spherical",
            "E": "planar", "L": "cylinder on plane", "B": "sphere on plane"}  # fmt: skip

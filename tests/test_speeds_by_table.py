@@ -6,11 +6,11 @@ from scipy.integrate import quad
 from test_loads import MACHINE
 
 from tmm_cli import prepare, solve
-from tmm_cli.accuracy.digits import bounds
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.accuracy.digits import bounds
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.given import given
+from tmm_cli.reports.given import given
 
 BODIES = """masses: {2: {mass: 3 kg, inertia: 0.01, centre: {on: AB}}, 3: {mass: 2 kg}}
 loads: {f: {on: 3, force: {resists: 100 N}}}

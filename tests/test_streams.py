@@ -10,13 +10,12 @@ from functools import partial
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
+from tmm_cli.batch.workers import processes
 from tmm_cli.cli.talk import tell_fault
-from tmm_cli.grading.workers import processes
-from tmm_cli.library import problem_of
+from tmm_cli.mechanics.quantities import NUMBER, product_text
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import NUMBER, product_text
-from tmm_cli.results.table import Column, Table, table_of_words
-from tmm_cli.results.text import csv_text
+from tmm_cli.reports.table import Column, Table, csv_text, table_of_words
 
 SINE = ROOT / "problems" / "sine.yaml"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}
@@ -98,7 +97,7 @@ def interrupted(where):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False)
 
 
-@pytest.mark.parametrize("where", ["tmm_cli.errors", "tmm_cli.cli", "typer", "numpy"])
+@pytest.mark.parametrize("where", ["tmm_cli.mechanics.errors", "tmm_cli.cli", "typer", "numpy"])
 def test_ctrl_c_at_any_time_ends_with_130_and_no_word(where):
     done = interrupted(where)
     assert (done.returncode, done.stderr) == (130, b"")
@@ -240,7 +239,9 @@ def test_a_fault_in_another_process_is_placed_where_it_was_raised(capsys):
         list(processes(2)([partial(product_text, 3)] * 2, lambda: False))
     except Exception as error:
         assert tell_fault(error, ["grade"]) == 3
-    assert re.match(r"internal fault: AttributeError at tmm_cli/quantities\.py:\d+ \(", capsys.readouterr().err)
+    assert re.match(
+        r"internal fault: AttributeError at tmm_cli/mechanics/quantities\.py:\d+ \(", capsys.readouterr().err
+    )
 
 
 def test_a_fault_of_one_file_does_not_keep_the_others_from_being_worked_on(monkeypatch):

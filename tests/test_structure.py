@@ -15,19 +15,19 @@ from models import CLASS_III, SI, results_of
 from test_commands import SHAPER, tmm
 
 from tmm_cli import solve
-from tmm_cli.analysis.pipeline import at_places
+from tmm_cli.mechanics.analysis.pipeline import at_places
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
+from tmm_cli.mechanics.structure.naming import basic_schemes, four_link_scheme, link_motion, six_bar_schemes
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.reports.structure import (
+from tmm_cli.reports.structure_tables import (
     counted_by_classes,
     counted_generally,
     counted_with_replacements,
     motion_in_words,
 )
-from tmm_cli.results.warnings import warnings
-from tmm_cli.structure.assur import analyse
-from tmm_cli.structure.contours import classification, contours, is_dependent
-from tmm_cli.structure.naming import basic_schemes, four_link_scheme, link_motion, six_bar_schemes
+from tmm_cli.reports.warnings import warnings
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
 

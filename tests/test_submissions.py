@@ -11,8 +11,8 @@ import xlsxwriter
 from test_variants_of_task import TABLE, family_of, task
 
 from tmm_cli.grading.cells import rows_of
-from tmm_cli.grading.grade import grade
 from tmm_cli.grading.record import Given
+from tmm_cli.grading.run import grade
 from tmm_cli.grading.submissions import answers
 from tmm_cli.grading.submissions import read as reading
 from tmm_cli.grading.submissions.read import read_submissions

@@ -11,20 +11,20 @@ from scipy.optimize import minimize_scalar
 from test_commands import tmm
 from test_loads import MACHINE
 
-from tmm_cli.analysis.pipeline import at_places
-from tmm_cli.draw.paper.contours import contour, hatching, region
-from tmm_cli.draw.sheets.sweep import sheets
-from tmm_cli.grading.task import Task
-from tmm_cli.library import problem_of, solve
+from tmm_cli.batch.task import Task
+from tmm_cli.drawing.paper.contours import contour, hatching, region
+from tmm_cli.mechanics.analysis.pipeline import at_places
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file, read_text
-from tmm_cli.problem.settings import with_settings
+from tmm_cli.problem.reader import read_file, read_text, with_settings
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.quantities import read_shown
 from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
 from tmm_cli.sweep.run import refuse_points, swept
+from tmm_cli.sweep.sheet import sheets
 from tmm_cli.synthesis import measures
+from tmm_cli.synthesis.solving import solve
 
 ROOT = Path(__file__).parents[1]
 PROBLEMS = ROOT / "problems"

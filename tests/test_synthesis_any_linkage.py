@@ -10,7 +10,7 @@ from models import file_of
 from tmm_cli import solve
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.reading import build, task_of
 

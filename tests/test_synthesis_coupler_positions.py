@@ -9,18 +9,17 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.linkage import Sketch
+from tmm_cli.batch.prepare import prepare
+from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.coupler_positions import search
-from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses, beside, by_turn, centre, marks
+from tmm_cli.synthesis.coupler_positions import dyads as search
+from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses, Task, beside, by_turn, centre, marks
 from tmm_cli.synthesis.coupler_positions.curve import curve
 from tmm_cli.synthesis.coupler_positions.dyads import guiding
-from tmm_cli.synthesis.coupler_positions.task import Task
+from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.reading import build
 from tmm_cli.synthesis.record import Infeasible
-from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
 points: {A: [Ax, Ay], D: [Dx, Dy]}
@@ -212,7 +211,7 @@ def best_of(positions):
     places, angles = zip(*((complex(x, y), np.radians(angle)) for x, y, angle in positions), strict=True)
     task = Task(places, angles)
     limits = search.Limits(0.15 * task.size, *(3 * [2 * task.size]))
-    return task.poses, search.best(task.poses, task.size, limits, {})
+    return task.poses, search.best_on_curves(task.poses, task.size, limits, {})
 
 
 def random_positions(rng):

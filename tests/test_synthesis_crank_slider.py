@@ -11,15 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tmm_cli import solve
-from tmm_cli.linkage import Sketch
+from tmm_cli.batch.prepare import prepare
+from tmm_cli.mechanics.linkage import Sketch
+from tmm_cli.mechanics.numerics.roots import roots
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.roots import roots
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.crank_slider.solver import Task, find, largest_theta, least_pressure, shortest
-from tmm_cli.synthesis.mean_ratio import k_of, theta_of
+from tmm_cli.synthesis.crank_slider import Task, find, largest_theta, least_pressure, shortest
+from tmm_cli.synthesis.measures import k_of, measured, theta_of
 from tmm_cli.synthesis.reading import build
-from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
 points: {{O: [0, 0]}}

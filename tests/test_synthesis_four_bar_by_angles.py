@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.linkage import Sketch
+from tmm_cli.batch.prepare import prepare
+from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, of_zeros, outputs, solutions
-from tmm_cli.synthesis.four_bar_by_angles.least_squares import signed_bars
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, of_zeros, outputs, signed_bars, solutions
 from tmm_cli.synthesis.four_bar_by_angles.pairs import Task, chosen, quality, real, through
+from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.reading import build
-from tmm_cli.variants.batch import prepare
 
 LINKAGE = """
 points: {A: [0, 0], D: [l4, 0]}

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
+from tmm_cli.mechanics.quantities import LENGTH, NUMBER
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.quantities import LENGTH, NUMBER
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.reading import alone, build
+from tmm_cli.synthesis.measures import measured
+from tmm_cli.synthesis.reading import alone, build, rounded
 from tmm_cli.synthesis.record import Infeasible, Outcome, Value, sound
-from tmm_cli.synthesis.refusals import rounded
 
 SEEDS = range(2)
 FARTHER = 2e-4  # relative: beyond the limit

@@ -11,12 +11,12 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli import solve
+from tmm_cli.mechanics.numerics.roots import peak, zero
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.crank_slider.solver import Task, find
+from tmm_cli.synthesis.crank_slider import Task, find
+from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.optimal.evolution import evolve
-from tmm_cli.synthesis.optimal.peaks import peak, zero
 from tmm_cli.synthesis.optimal.polish import DONE, Local, polish
 from tmm_cli.synthesis.reading import build
 
@@ -81,8 +81,8 @@ def test_the_same_seed_gives_the_same_answer_to_the_last_bit():
 
 
 def test_least_pressure_angle_of_a_crank_slider_is_the_least_that_its_k_allows():
-    from tmm_cli.synthesis.crank_slider.solver import least_pressure
-    from tmm_cli.synthesis.mean_ratio import theta_of
+    from tmm_cli.synthesis.crank_slider import least_pressure
+    from tmm_cli.synthesis.measures import theta_of
 
     problem = slider("""
   objective: pressure

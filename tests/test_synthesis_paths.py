@@ -7,14 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tmm_cli.bench.paths import PROBLEMS
+from tmm_cli.bench.searches import PROBLEMS
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.optimal.least_squares import Rows, descend, step_of
-from tmm_cli.synthesis.optimal.many_starts import Ends, residuals
+from tmm_cli.synthesis.optimal.many_starts import Ends, Rows, Settling, descend, residuals, step_of
 from tmm_cli.synthesis.optimal.outcome import outcome_of
-from tmm_cli.synthesis.optimal.settling import Settling
 from tmm_cli.synthesis.optimal.solver import best
 from tmm_cli.synthesis.reading import task_of
 

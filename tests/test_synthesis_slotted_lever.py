@@ -10,16 +10,14 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.linkage import FRAME, Sketch
+from tmm_cli.batch.prepare import prepare
+from tmm_cli.mechanics.linkage import FRAME, Sketch
+from tmm_cli.mechanics.numerics.roots import roots
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.roots import roots
-from tmm_cli.synthesis.check import measured
-from tmm_cli.synthesis.mean_ratio import k_of
+from tmm_cli.synthesis import shaper, slotted_lever
+from tmm_cli.synthesis.measures import k_of, measured
 from tmm_cli.synthesis.reading import build
-from tmm_cli.synthesis.shaper import solver as shaper
-from tmm_cli.synthesis.slotted_lever import solver as slotted_lever
-from tmm_cli.variants.batch import prepare
 
 LEVER = """
 points: {O: [xO, yO], C: [xC, yC]}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bank import solved
 
-from tmm_cli.synthesis.mean_ratio import ratio
+from tmm_cli.synthesis.measures import ratio_of_curve as ratio
 from tmm_cli.synthesis.measures import ratio_open
 
 PROBLEMS = Path(__file__).parent.parent / "problems"

@@ -15,11 +15,12 @@ from test_properties import CHAINS
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.structure.assur import analyse
-from tmm_cli.tape import DependsOnData, record
-from tmm_cli.tape.program import CHUNK
-from tmm_cli.variants.batch import CHECKS, everything, prepare
-from tmm_cli.variants.stack import NotAlikeError, varying
+from tmm_cli.batch.prepare import CHECKS, everything, prepare
+from tmm_cli.batch.tape import record
+from tmm_cli.batch.tape.program import CHUNK
+from tmm_cli.batch.tape.traced import DependsOnData
+from tmm_cli.batch.variant import NotAlikeError, varying
+from tmm_cli.mechanics.structure.assur import analyse
 
 Q = np.linspace(0.1, 6.3, 24)
 

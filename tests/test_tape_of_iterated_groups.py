@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from models import CLASS_III, linkage_of
 from test_tape import agree, kind, largest_of_kinds, plainly
 
-from tmm_cli.bench.methods import taped
+from tmm_cli.batch.prepare import prepare
+from tmm_cli.bench.methods import product as taped
 from tmm_cli.bench.methods.case import errors
 from tmm_cli.bench.references import reference
-from tmm_cli.groups.elimination import Eliminated, Order
+from tmm_cli.mechanics.numerics.linear import Eliminated, Order
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.variants.batch import prepare
 
 ROUND = np.linspace(0.123, 6.28, 90)
 ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"

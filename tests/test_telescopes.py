@@ -13,27 +13,26 @@ from test_commands import ROOT
 from test_cylinders import SWINGING
 
 from tmm_cli import load, solve
-from tmm_cli.accuracy.data import widened
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.enumerate import find_assemblies
-from tmm_cli.assembly.rank import mobile
-from tmm_cli.double_double import EPS, exactly
-from tmm_cli.forces.loads import applied
-from tmm_cli.forces.plan import react
-from tmm_cli.groups.branch_trace import State
-from tmm_cli.groups.newton import Newton
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.groups.telescope import Telescope, TelescopeParts
-from tmm_cli.kinematics.motion import move
+from tmm_cli.batch.prepare import everything, prepare
+from tmm_cli.batch.prepare import solved as stages
+from tmm_cli.batch.taped import OneByOne, Taped
+from tmm_cli.batch.variant import Places
+from tmm_cli.mechanics.accuracy.lengths import widened
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.enumerate import find_assemblies
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.forces.loads import applied
+from tmm_cli.mechanics.forces.plan import react
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.groups.state import State
+from tmm_cli.mechanics.groups.telescope import Telescope, TelescopeParts
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.numerics.double_double import EPS, exactly
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.check import measured
+from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.reading import build, task_of
-from tmm_cli.variants.batch import everything, prepare
-from tmm_cli.variants.batch import solved as stages
-from tmm_cli.variants.one_by_one import OneByOne
-from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.variant import Places
 
 # pairs of the arm with what it hangs on, of the arm with the cylinder's far end, and of its near end
 CHAINS = ("RRR", "RRP", "PRR", "RPR", "PRP", "RPP", "PPR")

@@ -12,7 +12,7 @@ from test_commands import tmm
 from tmm_cli import load, solve
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
-from tmm_cli.results.understood import doubts, understood
+from tmm_cli.reports.understood import doubts, understood
 
 SHAPER = Path(__file__).parent.parent / "problems" / "shaper.yaml"
 TEXT = SHAPER.read_text(encoding="utf-8")

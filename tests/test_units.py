@@ -9,9 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_cli.language import spoken
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem, parse_unit
-from tmm_cli.quantities import (
+from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
@@ -26,6 +24,8 @@ from tmm_cli.quantities import (
     TIME,
     Dimension,
 )
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem, parse_unit
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from test_synthesis_any_linkage import block, text_of
 
+from tmm_cli.batch.taped import OneByOne
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.optimal.candidates import Candidates
 from tmm_cli.synthesis.reading import task_of
-from tmm_cli.variants.one_by_one import OneByOne
 
 ALWAYS = (", when: working stroke", ""), ("from: working stroke", "from: 90")
 TASKS = {

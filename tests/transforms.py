@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.linkage import FRAME, Hinge, Linkage, Mesh, Output
-from tmm_cli.pairs.cam_law import CamLaw, Piece
+from tmm_cli.mechanics.groups.pairs.higher import CamLaw, Piece
+from tmm_cli.mechanics.linkage import FRAME, Hinge, Linkage, Mesh, Output
 
 
 def mirrored(it: Linkage) -> Linkage:

@@ -15,8 +15,8 @@ import numpy as np
 from multibody import Multibody
 
 from tmm_cli import solve
-from tmm_cli.analysis.pipeline import at_positions
 from tmm_cli.bench.methods.case import Case
+from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.build import build
 from tmm_cli.problem.reader import read_text
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 # Nothing is imported here: the command reads this file before its own, where an interruption is caught.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from tmm_cli.library import load, prepare, redrive, solve
+    from tmm_cli.synthesis.solving import load, prepare, redrive, solve
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "load", "prepare", "redrive", "solve"]
@@ -29,6 +29,6 @@ def __getattr__(name: str) -> object:
     """What `__all__` names, imported when it is asked for."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from tmm_cli import library
+    from tmm_cli.synthesis import solving
 
-    return getattr(library, name)
+    return getattr(solving, name)

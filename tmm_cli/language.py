@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 if TYPE_CHECKING:
     from gettext import NullTranslations
 
+
 LANGUAGES: Final = ("en", "ru", "sr")
 ENGLISH: Final = LANGUAGES[0]
 LOCALE: Final = Path(__file__).with_name("locale")

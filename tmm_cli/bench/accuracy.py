@@ -16,8 +16,8 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Meth
 from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS, TAPED
 from tmm_cli.bench.references import NAMES, reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.results.table import Table
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.reports.table import Table
 
 NAMED: dict[Compared, str] = {
     "positions": "Positions", "velocities": "Velocities", "accelerations": "Accelerations",

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.batch.prepare import Batch, everything, prepare
 from tmm_cli.bench.references import reference
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import Linkage
-from tmm_cli.variants.batch import Batch, everything, prepare
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.vectors import Real
 
 G = 9.81
 

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from tmm_cli.bench.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
-from tmm_cli.bench.families import BY_NAME
+from tmm_cli.bench.scenes import BY_NAME
 from tmm_cli.bench.stability import OURS, Row, Stability
 
 PANELS = 5  # on a sheet; the sixth place is the key's

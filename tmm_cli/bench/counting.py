@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.analysis import mechanism, pipeline
-from tmm_cli.assembly import choose, search
-from tmm_cli.groups import sequence
-from tmm_cli.groups.base import Kernel
-from tmm_cli.groups.dyads import DYADS
-from tmm_cli.groups.newton import Newton
-from tmm_cli.kinematics import driver_range as quality
-from tmm_cli.kinematics import motion, pressure, strokes
+from tmm_cli.mechanics.analysis import mechanism, pipeline
+from tmm_cli.mechanics.assembly import choose, search
+from tmm_cli.mechanics.groups import sequence
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.dyads import DYADS
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.kinematics import driver_range as quality
+from tmm_cli.mechanics.kinematics import motion, pressure, strokes
 
 STAGES = (choose, search, mechanism, motion, pipeline, pressure, quality, strokes)
 

@@ -9,21 +9,21 @@ from typing import Any
 
 import numpy as np
 
+from tmm_cli.batch.prepare import Batch, prepare
 from tmm_cli.bench import speed_of_iterated, speed_of_sweeps
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
-from tmm_cli.bench.chains import chain
 from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
-from tmm_cli.bench.methods import taped
+from tmm_cli.bench.methods import product as taped
 from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.bench.rivals import installed
+from tmm_cli.bench.scenes import chain
 from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar
 from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweeping
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.results.table import Table
-from tmm_cli.variants.batch import Batch, prepare
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.reports.table import Table
 
 POSITIONS = (12, 360, 36_000)
 VARIANTS = (100, 10_000)

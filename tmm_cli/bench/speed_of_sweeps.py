@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any
 
+from tmm_cli.batch.task import Task
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import tree_of
-from tmm_cli.grading.task import Task
-from tmm_cli.results.table import Table
+from tmm_cli.reports.table import Table
 from tmm_cli.sweep.grid import grid, read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 

@@ -14,17 +14,17 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.accuracy.digits import bare, bounds
-from tmm_cli.bench.families import BY_NAME
 from tmm_cli.bench.measured import Measured, words
 from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
-from tmm_cli.bench.truths import Known, known
-from tmm_cli.errors import LinkageError
-from tmm_cli.results.table import Table
-from tmm_cli.tolerances import ROUNDOFF
-from tmm_cli.vectors import Real
+from tmm_cli.bench.references import Known, known
+from tmm_cli.bench.scenes import BY_NAME
+from tmm_cli.mechanics.accuracy.digits import bare, bounds
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.reports.table import Table
 
 OURS = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself

@@ -8,13 +8,13 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.animate.page import page
+from tmm_cli.animation.page import page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.language import _
-from tmm_cli.results.files import folder_name, refuse_place, write_whole
-from tmm_cli.results.warnings import warnings
+from tmm_cli.reports.files import folder_name, refuse_place, write_whole
+from tmm_cli.reports.warnings import warnings
 
 
 def animate(

@@ -1,16 +1,124 @@
-"""`tmm check`."""
+"""Problems computed again and compared with their golden runs."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, NamedTuple
+from xml.etree import ElementTree
 
 import typer
 
-from tmm_cli.cli.common import problems_in, progress, refusing
-from tmm_cli.cli.golden_runs import compared, compared_grades, show_outcomes, write_junit
-from tmm_cli.cli.talk import say
+from tmm_cli import __version__
+from tmm_cli.cli.common import console, problems_in, progress, refusing
+from tmm_cli.cli.reporting import computed
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
+from tmm_cli.grading.examples import grades
 from tmm_cli.language import _
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.reports.compare import Difference, brief, difference_table, differences, recorded
+from tmm_cli.reports.files import write_whole
+from tmm_cli.reports.result_json import to_json
+from tmm_cli.reports.table import json_bytes
+from tmm_cli.reports.terminal import show
+
+TOLERANCE = 1e-9
+
+
+class Outcome(NamedTuple):
+    """A problem, what is wrong with it as a whole, what differs, and the exit code of that."""
+
+    name: str
+    wrong: str = ""
+    different: Sequence[Difference] = ()
+    code: int = OK
+
+
+def compared(file: Path, update: bool) -> Outcome:
+    """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
+    expected_file = file.parent / "expected" / f"{file.stem}.json"
+    return _compared(file.stem, expected_file, lambda: to_json(computed(str(file), "forces", silent=True)), update)
+
+
+def compared_grades(task: Path, update: bool) -> Outcome:
+    """A graded example likewise, with expected.json beside its task."""
+    return _compared(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
+
+
+def _compared(name: str, expected_file: Path, compute: Callable[[], dict[str, Any]], update: bool) -> Outcome:
+    try:
+        found = compute()
+    except ProblemError as error:
+        return Outcome(name, wrong=str(error), code=BAD_INPUT)
+    expected = _read(expected_file)
+    known = isinstance(expected, dict)
+    if update:
+        if not known or expected["result"] != recorded(found):
+            golden = {
+                "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
+                "tolerance": expected["tolerance"] if known else TOLERANCE,
+                "result": recorded(found),
+            }
+            try:
+                write_whole(expected_file, json_bytes(golden))
+            except OSError as error:
+                wrong = f"{error.filename}: {error.strerror}"
+                return Outcome(name, wrong=wrong, code=BAD_INPUT)
+        return Outcome(name)
+    if not known:
+        return Outcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
+    different = differences(expected["result"], found, float(expected["tolerance"]))
+    return Outcome(name, different=different, code=CHECK_FAILED if different else OK)
+
+
+def _read(file: Path) -> Any:
+    """The expected values, or what is wrong with them."""
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        float(content["tolerance"])
+        content["result"].items()
+    except FileNotFoundError:
+        return _("there are no expected values; tmm check --update writes them")
+    except RecursionError:
+        return _("this is not a file of expected values (its brackets are nested without end)")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        return _("this is not a file of expected values ({error})").format(error=error)
+    return content
+
+
+def show_outcomes(outcomes: Sequence[Outcome]) -> None:
+    """What differs as a table, and what is wrong with whole problems."""
+    table = difference_table({outcome.name: outcome.different for outcome in outcomes})
+    if table.rows:
+        show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
+    for outcome in outcomes:
+        if outcome.wrong:
+            say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
+
+
+def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
+    """The outcomes as a JUnit report."""
+    failures = sum(bool(outcome.different) for outcome in outcomes)
+    errors = sum(bool(outcome.wrong) for outcome in outcomes)
+    suite = ElementTree.Element(
+        "testsuite", name="tmm check", tests=str(len(outcomes)), failures=str(failures), errors=str(errors)
+    )
+    for name, wrong, different, __ in outcomes:
+        case = ElementTree.SubElement(suite, "testcase", classname="problems", name=name)
+        if wrong:
+            ElementTree.SubElement(case, "error", message=wrong)
+        elif different:
+            failure = ElementTree.SubElement(case, "failure", message=f"{len(different)} quantities differ")
+            failure.text = "\n".join(
+                f"{d.quantity}: expected {brief(d.expected)}, found {brief(d.found)}" for d in different[:50]
+            )
+    write_whole(path, ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True))
+
+
+# `tmm check`.
+
 
 EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
 

@@ -10,9 +10,9 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import TypeVar
 
+from tmm_cli.batch.workers import begin
 from tmm_cli.cli.common import bars
-from tmm_cli.draw.formats import here
-from tmm_cli.grading.workers import begin
+from tmm_cli.drawing.formats import here
 from tmm_cli.language import _, course, speaking
 
 FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded

@@ -10,10 +10,10 @@ import typer
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.library import problem_of
+from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError, clean, path_text
 from tmm_cli.problem.formats import foreign_of
-from tmm_cli.problem.formats.written import written
+from tmm_cli.problem.formats.foreign import written
 from tmm_cli.problem.reader import file_text, read_text
 
 

@@ -8,18 +8,17 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.analysis.all_assemblies import with_assemblies
-from tmm_cli.analysis.centres import with_centres
-from tmm_cli.analysis.extremes import with_extremes
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.assembly.enumerate import listed
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
 from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
-from tmm_cli.library import inputs_of, solve
+from tmm_cli.mechanics.analysis.extremes import with_extremes
+from tmm_cli.mechanics.analysis.in_detail import with_assemblies, with_centres
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.assembly.enumerate import listed
 from tmm_cli.problem.refusals import in_words_of
+from tmm_cli.synthesis.solving import inputs_of, solve
 
 INTERMITTENT = ("intermittent", "intermittent-cycle")
 Assemblies = Annotated[

@@ -11,12 +11,12 @@ from tmm_cli import solve
 from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.talk import OK, printable, say, warn
-from tmm_cli.draw import remarks
+from tmm_cli.drawing.run import remarks
 from tmm_cli.language import _
-from tmm_cli.note import note as note_of
 from tmm_cli.note.formats import FORMATS, formats_of
-from tmm_cli.results.files import folder_name, write_whole
-from tmm_cli.results.warnings import warnings
+from tmm_cli.note.register import note as note_of
+from tmm_cli.reports.files import folder_name, write_whole
+from tmm_cli.reports.warnings import warnings
 
 
 def note(

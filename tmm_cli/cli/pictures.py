@@ -6,13 +6,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from tmm_cli import draw
-from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import Pictures
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import say
-from tmm_cli.draw.formats import Drawn, files
-from tmm_cli.draw.sheets import assemblies, centres, group_table, hodographs, synthesis
+from tmm_cli.drawing import run as draw
+from tmm_cli.drawing.formats import Drawn, files
+from tmm_cli.drawing.sheets import assemblies, centres, group_table, hodographs, synthesis
+from tmm_cli.mechanics.analysis.pipeline import Results
 
 
 def _whole(results: Results, *, quiet: bool = False) -> Pictures:

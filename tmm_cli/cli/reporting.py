@@ -6,27 +6,25 @@ import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from tmm_cli.analysis.pipeline import Results, Stage
-from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, count_detail, introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.library import count, problem_of, redrive, solve, structure_of
-from tmm_cli.problem.build import is_chain
-from tmm_cli.problem.build_chain import build_chain
-from tmm_cli.results.as_json import sections
-from tmm_cli.results.digits import AccuracyReport, accuracy, beside
-from tmm_cli.results.files import Staged, folder_name, listed
-from tmm_cli.results.for_people import Kind
-from tmm_cli.results.output import Written, write_results
-from tmm_cli.results.properties import properties_shown
-from tmm_cli.results.reports import walk
-from tmm_cli.results.table import Table
-from tmm_cli.results.terminal import show as print_table
-from tmm_cli.results.text import json_text
-from tmm_cli.results.warnings import warnings
-from tmm_cli.synthesis.check import measured_on
+from tmm_cli.mechanics.analysis.pipeline import Results, Stage
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.problem.blocks.chain import build_chain
+from tmm_cli.problem.build import is_chain, problem_of
+from tmm_cli.reports.digits import AccuracyReport, accuracy, beside
+from tmm_cli.reports.files import Staged, Written, folder_name, listed, write_results
+from tmm_cli.reports.properties import properties_shown
+from tmm_cli.reports.register import walk
+from tmm_cli.reports.result_json import sections
+from tmm_cli.reports.spreadsheets import Kind
+from tmm_cli.reports.table import Table, json_text
+from tmm_cli.reports.terminal import show as print_table
+from tmm_cli.reports.warnings import warnings
+from tmm_cli.synthesis.measures import measured_on
+from tmm_cli.synthesis.solving import count, redrive, solve, structure_of
 
 
 def computed(

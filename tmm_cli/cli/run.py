@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import (
     Files,
     Folder,
@@ -24,8 +23,9 @@ from tmm_cli.cli.common import (
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
 from tmm_cli.cli.talk import warn
-from tmm_cli.results.output import write_results
-from tmm_cli.results.warnings import warnings
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.reports.files import write_results
+from tmm_cli.reports.warnings import warnings
 
 SHOWN = (
     "synthesis-found",

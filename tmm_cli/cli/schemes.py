@@ -1,21 +1,165 @@
-"""`tmm schemes`."""
+"""Schemes and chains that are asked for; their problem files: the first good pose of each, tried as by `tmm run`."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from tmm_cli.cli.common import Json, console, drawn, emit_json, progress, refusing
-from tmm_cli.cli.scheme_files import named_types, wanted_chains, wanted_schemes, write_skeletons
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import ProblemError, unknown_name
+from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
-from tmm_cli.results.files import Staged
-from tmm_cli.results.schemes import chains_json, chains_table, schemes_json, schemes_table
-from tmm_cli.results.terminal import MORE_ROWS_AS_JSON, show
+from tmm_cli.reports.files import Staged, write_whole
+from tmm_cli.reports.space_tables import Written, chains_json, chains_table, schemes_json, schemes_table
+from tmm_cli.reports.terminal import MORE_ROWS_AS_JSON, show
+from tmm_cli.reports.warnings import warnings
+from tmm_cli.synthesis.schemes.chains import MOST_LINKS as MOST_CHAIN_LINKS
+from tmm_cli.synthesis.schemes.chains import KinematicChain, chains
+from tmm_cli.synthesis.schemes.layout import layouts
+from tmm_cli.synthesis.schemes.schemes import (
+    CLASSES,
+    MOST_CRANKS,
+    MOST_LINKS,
+    MOST_SCHEMES,
+    TYPES,
+    Scheme,
+    TooManySchemes,
+)
+from tmm_cli.synthesis.schemes.schemes import (
+    schemes as all_schemes,
+)
+from tmm_cli.synthesis.schemes.skeleton import problem_text
+from tmm_cli.synthesis.solving import solve
+
+CANDIDATES = 24  # poses that are solved before the best of them is taken
+FEW = 6  # the same, of schemes with groups that are not solved in closed form
+MOST_FILES = 300  # each takes some tenths of a second
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """A problem file of a scheme. solved: whether it was computed with its forces; else its structure was."""
+
+    text: str
+    solved: bool
+    warnings: int
+
+    @property
+    def badness(self) -> tuple[bool, int]:
+        return not self.solved, self.warnings
+
+
+def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
+    """The first good pose, or that with the fewest warnings; None when no pose can be assembled."""
+    closed = all(group.type.grade == 2 for group in scheme.groups)
+    best: Skeleton | None = None
+    for layout in layouts(scheme)[: CANDIDATES if closed else FEW]:
+        found = _tried(problem_text(scheme, layout, title), scheme, closed)
+        if found is not None and (best is None or found.badness < best.badness):
+            best = found
+        if best is not None and best.badness == (False, 0):
+            break
+    return best
+
+
+def _tried(text: str, scheme: Scheme, closed: bool) -> Skeleton | None:
+    """The problem with its forces; of groups that are not closed, whose assembly may not be found, its structure."""
+    problem = build(read_text(text, scheme.name))
+    try:
+        results = solve(problem)
+    except ProblemError:
+        if closed:
+            return None
+        solve(problem, "structure")
+        return Skeleton(text, False, 0)
+    return Skeleton(text, True, sum(1 for __ in warnings(results))) if results.lever_holds else None
+
+
+def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> Written:
+    """A problem file a scheme in the folder.
+
+    each: the schemes once more, as a progress bar counts them. Nothing is written before all files are made, and no
+    file that is there already with other contents is touched. Raises ProblemError.
+    """
+    if len(found) > MOST_FILES:
+        raise ProblemError(
+            _("these are too many files"), path=("--out",), found=_("{count} schemes").format(count=len(found)),
+            allowed=_("at most {most}: fewer links, or fewer types of groups (--groups)").format(most=MOST_FILES),
+        )  # fmt: skip
+    digits = max(2, len(str(len(found))))
+    texts: dict[Path, str] = {}
+    written: list[tuple[Path, bool] | None] = []
+    for number, scheme in enumerate(each, 1):
+        one = skeleton(scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula))
+        path = folder / f"scheme-{number:0{digits}d}-{scheme.name}.yaml"
+        written.append(None if one is None else (path, one.solved))
+        if one is not None:
+            texts[path] = one.text
+    for path, text in texts.items():
+        if path.exists() and path.read_bytes() != text.encode():
+            raise ProblemError(
+                _("there is another file of that name, perhaps your own work"), path=("--out",), found=str(path),
+                allowed=_("another folder"),
+            )  # fmt: skip
+    for path, text in texts.items():
+        write_whole(path, text.encode())
+    return written
+
+
+def named_types(text: str) -> tuple[str, ...]:
+    """Types of groups from a list of types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
+    found: list[str] = []
+    for word in text.split(","):
+        name = word.strip().upper()
+        if name not in TYPES and name not in CLASSES:
+            known = [*CLASSES, *(name for name in TYPES if name not in CLASSES)]
+            raise unknown_name(word.strip(), known, _("there is no such group"), path=("--groups",))
+        found += CLASSES.get(name, (name,))
+    return tuple(dict.fromkeys(found))
+
+
+def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
+    """The schemes, or a ProblemError that says what can be asked for."""
+    _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS + 1, 2))
+    try:
+        return all_schemes(links, mobility, types)
+    except TooManySchemes:
+        raise ProblemError(
+            _("these are too many schemes: more than {most}").format(most=MOST_SCHEMES), path=("--links",),
+            found=str(links), allowed=_("fewer links, or fewer types of groups (--groups)"),
+        ) from None  # fmt: skip
+
+
+def wanted_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
+    """The chains, or a ProblemError that says what can be asked for."""
+    _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
+    return chains(links, mobility)
+
+
+def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: range) -> None:
+    """Refuse a mobility above the most, and numbers of links that no structure of this mobility has."""
+    if not 1 <= mobility <= most:
+        raise ProblemError(
+            _("structures of this mobility are not built"), path=("--mobility",), found=str(mobility),
+            allowed=_("1 to {most}").format(most=most),
+        )  # fmt: skip
+    if links not in allowed:
+        raise ProblemError(
+            _("no structure of mobility {mobility} has so many links").format(mobility=mobility), path=(option,),
+            found=str(links),
+            allowed=_("for W = {mobility}: {links}").format(mobility=mobility, links=", ".join(map(str, allowed))),
+        )  # fmt: skip
+
+
+# `tmm schemes`.
+
 
 DEFAULT_GROUPS = "II"
 

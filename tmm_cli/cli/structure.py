@@ -6,12 +6,12 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.analysis.spatial_chain import ChainResults
 from tmm_cli.cli.common import Files, Json, Out, Settings, Tables, Variant, Variants, drawn, each
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
+from tmm_cli.mechanics.structure.spatial import ChainResults
 
 Drawings = Annotated[
     bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")

@@ -8,25 +8,25 @@ from typing import Annotated
 
 import typer
 
+from tmm_cli.batch.task import Task
+from tmm_cli.batch.workers import cluster, processes
 from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import OK, printable, say, warn
-from tmm_cli.draw.formats import files as drawings
-from tmm_cli.draw.sheets.sweep import sheets
-from tmm_cli.grading.task import Task
-from tmm_cli.grading.workers import cluster, processes
+from tmm_cli.drawing.formats import files as drawings
 from tmm_cli.language import ENGLISH, _, spoken
 from tmm_cli.problem.record import Problem
-from tmm_cli.results.files import RECORD, Staged, folder_name, refuse_place
-from tmm_cli.results.terminal import show as show_table
-from tmm_cli.results.text import csv_text, json_text, plain
-from tmm_cli.results.understood import without_effect
-from tmm_cli.results.warnings.forces import tables_of_many
+from tmm_cli.reports.files import RECORD, Staged, folder_name, refuse_place
+from tmm_cli.reports.table import csv_text, json_text, plain
+from tmm_cli.reports.terminal import show as show_table
+from tmm_cli.reports.understood import without_effect
+from tmm_cli.reports.warnings_of_forces import tables_of_many
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.record import Swept
 from tmm_cli.sweep.report import borders_table, points_table, sections
 from tmm_cli.sweep.run import refuse_points, swept
+from tmm_cli.sweep.sheet import sheets
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML) with parameters.", show_default=False)]
 Over = Annotated[

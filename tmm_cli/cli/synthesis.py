@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tmm_cli.analysis.pipeline import Results
 from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each, emit_json
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.library import solve
+from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.results.files import Staged, folder_name, held
-from tmm_cli.results.reports.synthesis import missed, tables_of, to_json
-from tmm_cli.results.terminal import show
-from tmm_cli.results.text import csv_text, json_bytes
-from tmm_cli.results.understood import bare_speeds, bare_units
-from tmm_cli.synthesis.check import measured_on
+from tmm_cli.reports.files import Staged, folder_name, held
+from tmm_cli.reports.synthesis_tables import missed, tables_of, to_json
+from tmm_cli.reports.table import csv_text, json_bytes
+from tmm_cli.reports.terminal import show
+from tmm_cli.reports.understood import bare_speeds, bare_units
+from tmm_cli.synthesis.measures import measured_on
 from tmm_cli.synthesis.reading import TaskFile, alone, build
+from tmm_cli.synthesis.solving import solve
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:

@@ -8,14 +8,14 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tmm_cli.errors import LinkageError
-from tmm_cli.grading.grade import numbers_of
+from tmm_cli.batch.family import families
+from tmm_cli.batch.task import Asked, Task
 from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.run import numbers_of
 from tmm_cli.grading.sheet import right
-from tmm_cli.grading.task import Asked, Task
 from tmm_cli.language import _
-from tmm_cli.quantities import NUMBER
-from tmm_cli.variants.family import families
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.quantities import NUMBER
 
 HEADER = ("student", "quantity", "position", "value", "direction, deg", "unit", "allowed", "allowed, %", "note")
 NOTHING = 1e-9  # of what is allowed: smaller values are zero but for rounding

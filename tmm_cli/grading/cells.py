@@ -1,4 +1,4 @@
-"""Tables of other programs as rows of texts: CSV as people save it, and XLSX. Nothing of them is trusted or run."""
+"""Texts that others wrote, made harmless: one line, short, nothing that steers."""
 
 from __future__ import annotations
 
@@ -8,16 +8,96 @@ import io
 import lzma
 import os
 import re
+import signal
 import stat
+import sys
 import zipfile
 import zlib
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from datetime import date, datetime, time, timedelta
+from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
-from tmm_cli.grading.guarded import GuardedProcess, ProcessEndedError
 from tmm_cli.language import N_, _
 from tmm_cli.problem.errors import ProblemError, quote
+
+LONGEST_SHOWN = 200  # characters of a name, or of an answer as it was written
+LONGEST_SENTENCE = 600
+JOINERS = "\u200c\u200d"  # that words of Persian and of Indian languages need
+
+
+def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
+    """A text that others wrote, on one line, without signs that steer (a page, a terminal, the order of letters)."""
+    if len(text) > longest:
+        text = text[: longest - 1] + "…"
+    return text if text.isprintable() else re.sub(r"\s", " ", "".join(map(_shown, text)))
+
+
+def _shown(sign: str) -> str:
+    return sign if sign.isprintable() or sign.isspace() or sign in JOINERS else "\ufffd"
+
+
+def sentence(text: str) -> str:
+    """The same of a sentence that may quote them."""
+    return shown(text, LONGEST_SENTENCE)
+
+
+# Calls that may exhaust the memory or abort, in one process that is started again after its end.
+
+
+if sys.platform != "win32":
+    import resource
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class ProcessEndedError(Exception):
+    """The process ended before it answered."""
+
+
+class GuardedProcess:
+    """A process for calls, one after another; it starts with the first call.
+
+    memory: bytes of address space that the process may take, where the system has such a limit (POSIX).
+    """
+
+    def __init__(self, memory: int) -> None:
+        self._memory = memory
+        self._pool: ProcessPoolExecutor | None = None
+
+    def call(self, function: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
+        """What the function returns, or the exception that it raises; both are pickled.
+
+        Raises:
+            ProcessEndedError: the process was ended, for example for want of memory. The next call starts another one.
+        """
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(1, get_context("spawn"), _limit, (self._memory,))
+        try:
+            return self._pool.submit(function, *args, **named).result()
+        except BrokenProcessPool:
+            self._pool.shutdown(wait=False)
+            self._pool = None
+            raise ProcessEndedError from None
+
+
+def _limit(memory: int) -> None:
+    """Limit the memory of this process and silence its last words; Ctrl-C is for the first process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    if sys.platform != "win32":
+        __, most = resource.getrlimit(resource.RLIMIT_AS)
+        limit = memory if most == resource.RLIM_INFINITY else min(memory, most)
+        resource.setrlimit(resource.RLIMIT_AS, (limit, most))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+# Tables of other programs as rows of texts: CSV as people save it, and XLSX. Nothing of them is trusted or run.
+
 
 READER = GuardedProcess(memory=2 << 30)
 LARGEST = 2_000_000  # bytes of a file

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from tmm_cli.batch.task import read_task
 from tmm_cli.grading.record import StudentMarks
 from tmm_cli.grading.run import graded
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.tables import read_table
-from tmm_cli.grading.task import read_task
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file

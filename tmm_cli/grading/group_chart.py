@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from tmm_cli.draw.paper.axes import filling
-from tmm_cli.draw.paper.chart import FINE, Panel
-from tmm_cli.draw.paper.drawing import POINT, Drawing
-from tmm_cli.draw.paper.fonts import width
-from tmm_cli.draw.paper.sheet import DARK, Sheet
+from tmm_cli.batch.task import Task
+from tmm_cli.drawing.formats import files as pictures
+from tmm_cli.drawing.paper.chart import FINE, Panel, filling
+from tmm_cli.drawing.paper.fonts import width
+from tmm_cli.drawing.paper.record import POINT, Drawing
+from tmm_cli.drawing.paper.sheet import DARK, Sheet
+from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
-from tmm_cli.grading.task import Task
 from tmm_cli.language import N_, _
-from tmm_cli.plans.record import LANDSCAPE
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.plans.record import LANDSCAPE
 
 MOST, FEWEST = 10, 6  # bars that a panel has room for
 LONGEST = 32  # characters of a line beside a bar
@@ -159,3 +160,12 @@ def _area(panel: Panel, left: float, right: float, low: float, high: float, colo
     """A rectangle on the paper, mm."""
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     panel.sheet.area(corners, colour, "none", z=z, blocks=False)
+
+
+# group.png and group.svg: the drawing of the group. Imported when it is drawn: matplotlib is slow to load.
+
+
+def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
+    """One drawing, in every format of drawings."""
+    for name, picture in pictures([("group", chart(book.task, book.marks))]):
+        yield name, (picture,)

@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Literal
+
+import numpy as np
+
+from tmm_cli.grading.sheet import Right, Written
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis.named_quantities import Quantity
+from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, FORCE, LENGTH, MOMENT, SPEED, Dimension
+from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.units import UnitError, UnitSystem, parse_unit
 
 Key = tuple[str, int | None]  # a quantity and the position as the students count it; None: of the mechanism as a whole
 Form = Literal["number", "size", "components", "polar"]
@@ -99,3 +110,82 @@ class StudentMarks:
     @property
     def of(self) -> float:
         return sum(mark.of for mark in self.marks)
+
+
+# What an answer may mean: its number in the unit written beside it, or in each that people write without saying so.
+
+
+UNSAID: dict[Dimension, tuple[str, ...]] = {
+    LENGTH: ("mm", "m", "cm"),
+    ANGLE: ("deg", "rad"),
+    SPEED: ("m/s", "mm/s"),
+    ACCELERATION: ("m/s^2", "mm/s^2"),
+    ANGULAR_SPEED: ("rad/s", "rpm"),
+    FORCE: ("N", "kN"),
+    MOMENT: ("N*m", "N*mm"),
+}
+
+
+Cells = dict[tuple[int, int], str]  # words by student and answer
+
+
+def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) -> tuple[Written, Cells, Cells]:
+    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
+    shape = len(submissions), len(wanted.asked)
+    value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
+    how: Cells = {}
+    refused: Cells = {}
+    for k, asked in enumerate(wanted.asked):
+        for (form, unit, turn_unit), rows in _alike(submissions, asked.key).items():
+            given = [submissions[n].answers[asked.key] for n in rows]
+            try:
+                named = _factors(asked.quantity, unit, units)
+                numbers = _numbers(given, form, factor(turn_unit or "deg", ANGLE))
+            except ProblemError as no:
+                refused |= dict.fromkeys(((n, k) for n in rows), str(no))
+                continue
+            size[rows, k] = asked.quantity.vector and form in ("number", "size")
+            meant = numbers[:, None] * np.array(list(named.values()))
+            best = np.zeros(len(rows), dtype=int)
+            if len(named) > 1:
+                error = wanted.side_by_side(rows, k, len(named)).error(Written(meant, size[rows, k][:, None]))
+                best = np.argmin(np.nan_to_num(error, nan=np.inf), axis=1)
+                names = list(named)
+                how |= {(n, k): names[b] for n, b in zip(rows, best.tolist(), strict=True)}
+            value[rows, k] = meant[np.arange(len(rows)), best]
+    return Written(value, size), how, refused
+
+
+def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
+    """Who answered in the same form and units."""
+    found: dict[tuple[Form, str, str], list[int]] = {}
+    for n, submission in enumerate(submissions):
+        given = submission.answers.get(key)
+        if given is not None:
+            found.setdefault((given.form, given.unit, given.turn_unit), []).append(n)
+    return found
+
+
+def _factors(quantity: Quantity, unit: str, units: UnitSystem) -> dict[str, float]:
+    """In SI: the unit as it is written, else each that it may be, the file's own first. Raises UnitError."""
+    names = (unit,) if unit else (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
+    return {name: factor(name, quantity.dimension) for name in names}
+
+
+def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
+    """What was written, as complex numbers of the unit."""
+    first, second = np.array([[one.first, one.second] for one in given]).T
+    turned = first * np.exp(1j * second * turn) if form == "polar" else first
+    found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)
+    return found
+
+
+@cache
+def factor(name: str, dimension: Dimension) -> float:
+    """A unit in SI. Raises UnitError where it measures something else."""
+    if not name:
+        return 1.0
+    unit = parse_unit(name)
+    if not unit.dimension.fits(dimension):
+        raise UnitError(_("{want} is wanted here").format(want=dimension), found=quote(name), allowed=dimension.example)
+    return unit.si(1.0)

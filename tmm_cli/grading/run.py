@@ -1,25 +1,242 @@
-"""A group graded chunk by chunk, here, in processes or on a cluster, and only what has changed since the last time.
+"""Marks of earlier runs, so that only what has changed is graded: a line a student, added as soon as it is graded.
 
-Chunks do not depend on who grades them, so the gradebook is the same to the last bit.
+A line has the key of what it was graded from, a digest of the rest, and the marks as JSON. A line that is damaged is as
+if it were not there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
 from functools import partial
+from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from tmm_cli.batch.family import Family, families
+from tmm_cli.batch.task import Asked, Task
+from tmm_cli.batch.workers import Way, here, processes, program_digest
 from tmm_cli.grading.copies import with_copies
+from tmm_cli.grading.diagnose import diagnose
 from tmm_cli.grading.exports import write
 from tmm_cli.grading.exports.book import Gradebook
-from tmm_cli.grading.grade import CHUNK, grade, ungraded
-from tmm_cli.grading.kept import keep, key_of, read_kept
-from tmm_cli.grading.record import StudentMarks, Submission, VariantTable
-from tmm_cli.grading.task import Task
-from tmm_cli.grading.workers import Way, here, processes
-from tmm_cli.language import _
-from tmm_cli.problem.tree import Tree
+from tmm_cli.grading.mistakes.data import OtherZero
+from tmm_cli.grading.own_answers import following
+from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable, read
+from tmm_cli.grading.sheet import right
+from tmm_cli.grading.submissions.answers import at_positions
+from tmm_cli.language import _, language
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.quantities import Dimension
+from tmm_cli.problem.errors import Tree
+
+NAMES = tuple(field.name for field in fields(Mark))
+VECTORS = ("value", "right")
+
+
+def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
+    """A digest of all that the marks of a student come from: program, task, variant, what was handed in."""
+    row = table.rows.get(submission.student)
+    return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
+
+
+def _digest(*parts: object) -> str:
+    return blake2b(repr(parts).encode(errors="backslashreplace"), digest_size=16).hexdigest()
+
+
+def _line(key: str, marks: StudentMarks) -> str:
+    """A line of the file, without its end."""
+    rows = [[_plain(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
+    text = json.dumps([marks.student, rows, marks.problems])
+    return f"{key} {_digest(text)} {text}"
+
+
+def _plain(value: Any, name: str) -> Any:
+    """A value of a mark as JSON has it: of a vector, which may be a real number, both components."""
+    if name not in VECTORS or value is None:
+        return value
+    number = complex(value)
+    return [number.real, number.imag]
+
+
+def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
+    """The marks under these keys, as far as the file has them."""
+    found: dict[str, StudentMarks] = {}
+    try:
+        with path.open(encoding="ascii", errors="replace") as stream:
+            for line in stream:
+                key, _, rest = line.rstrip("\n").partition(" ")
+                digest, _, text = rest.partition(" ")
+                if key in keys and digest == _digest(text):
+                    with suppress(TypeError, ValueError, KeyError):  # of another form: graded again
+                        found[key] = _kept_marks(text)
+    except OSError:
+        pass  # there is none yet, or none that can be read
+    return found
+
+
+def _kept_marks(text: str) -> StudentMarks:
+    student, rows, problems = json.loads(text)
+    return StudentMarks(student, tuple(_mark(dict(zip(NAMES, row, strict=True))) for row in rows), tuple(problems))
+
+
+def _mark(row: dict[str, Any]) -> Mark:
+    vectors = {name: None if row[name] is None else complex(*row[name]) for name in VECTORS}
+    return Mark(**row | vectors | {name: tuple(row[name]) for name in ("key", "reasons", "mistakes")})
+
+
+def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:
+    """Add marks by their keys. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a", encoding="ascii") as stream:
+        stream.writelines(f"\n{_line(key, own)}" for key, own in marks.items())
+
+
+# The way of grading: variants solved together, every answer judged, what is wrong explained.
+
+
+CHUNK = 500  # students at once: all their numbers stay near the processor
+POSITIONS = 100_000  # of all these students, at most: numbers of the work are some hundred megabytes
+
+
+def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
+    """Marks of every student, in the order of the submissions. Raises ProblemError."""
+    some = max(1, min(CHUNK, POSITIONS // task.positions))
+    for first in range(0, len(submissions), some):
+        yield from _chunk(task, table, submissions[first : first + some])
+
+
+def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
+    found: dict[int, StudentMarks] = {}
+    known = [n for n, s in enumerate(submissions) if s.student in table.rows]
+    dimensions, columns = numbers_of(task, table, [submissions[n].student for n in known])
+    for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+        own = [known[row] for row in rows]
+        if isinstance(family, LinkageError):
+            found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
+        else:
+            for part, begun in _begun(task, family, [submissions[n] for n in own]):
+                there = [own[row] for row in part]
+                found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
+    for n, submission in enumerate(submissions):
+        yield found.get(n) or ungraded(task, submission, _("there is no variant of this student"))
+
+
+def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
+    """Dimensions of the parameters, and their numbers (students, parameters): in SI, bare where no value has a unit.
+
+    Raises ProblemError.
+    """
+    found = [[task.value(text) for text in table.rows[student]] for student in students]
+    said = [next((v.dimension for v in column if v.dimension), None) for column in zip(*found, strict=True)]
+    own = task.dimensions(table.names)
+    dimensions = tuple(first or then for first, then in zip(said or own, own, strict=True))
+    columns = np.array([
+        [task.number(value, dimension) for value, dimension in zip(row, dimensions, strict=True)] for row in found
+    ]).reshape(len(students), len(table.names))  # fmt: skip
+    return dimensions, columns
+
+
+def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
+    """Of a student of whom nothing can be judged."""
+    marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
+    return StudentMarks(submission.student, marks, (*submission.problems, why))
+
+
+def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Iterator[tuple[Real, Family]]:
+    """The students who count the positions from where the task does, and those who do from the other extreme position.
+
+    The latter only where the task allows it; each by what makes more of the answers right.
+    """
+    rows, strokes = np.arange(len(submissions)), family.strokes
+    if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
+        yield rows, family
+        return
+    both = (family, OtherZero(True).family(family))
+    holds = []
+    for one in both:
+        wanted = right(one, task.asked)
+        holds.append(np.sum(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed, axis=1))
+    other = holds[1] > holds[0]
+    for one, part in zip(both, (rows[~other], rows[other]), strict=True):
+        if part.size:
+            yield part, one.take(part)
+
+
+def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
+    """Of the students of one family."""
+    submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
+    found: dict[int, StudentMarks] = {}
+    for rows, asked in _by_attachment(task, family, submissions):
+        same = [submissions[n] for n in rows.tolist()]
+        part = family if len(rows) == len(submissions) else family.take(rows)
+        found |= dict(zip(rows.tolist(), _marks_of(task, asked, part, same), strict=True))
+    return [marks for _row, marks in sorted(found.items())]
+
+
+def _by_attachment(
+    task: Task, family: Family, submissions: Sequence[Submission]
+) -> Iterator[tuple[Real, tuple[Asked, ...]]]:
+    """Students with what is asked of them, reactions in compound hinges as each has attached the links there.
+
+    The other attachment counts for an answer that it makes right and the usual one does not.
+    """
+    other = tuple(replace(one, quantity=one.quantity.otherwise or one.quantity) for one in task.asked)
+    if other == task.asked:
+        yield np.arange(len(submissions)), task.asked
+        return
+    holds = []
+    for asked in (task.asked, other):
+        wanted = right(family, asked)
+        holds.append(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed)
+    patterns, which = np.unique(holds[1] & ~holds[0], axis=0, return_inverse=True)
+    for number, pattern in enumerate(patterns):
+        asked = tuple(b if chosen else a for a, b, chosen in zip(task.asked, other, pattern, strict=True))
+        yield np.flatnonzero(which.ravel() == number), asked
+
+
+def _marks_of(
+    task: Task, asked_all: tuple[Asked, ...], family: Family, submissions: Sequence[Submission]
+) -> list[StudentMarks]:
+    """Of students of one family of whom the same is asked."""
+    wanted = right(family, asked_all)
+    written, how, refused = read(task.units, wanted, submissions)
+    error = wanted.error(written)
+    claims = diagnose(family, wanted, written)
+    follows = following(family, wanted, written, claims)
+    found = []
+    for n, submission in enumerate(submissions):
+        marks = []
+        for k, asked in enumerate(asked_all):
+            there, given = bool(written.there[n, k]), submission.answers.get(asked.key)
+            state: State = "missing"
+            if there or (n, k) in refused:
+                state = "right" if error[n, k] <= wanted.allowed[n, k] else "follows" if (n, k) in follows else "wrong"
+            named = [claim for claim in claims.get(n, ()) if k in claim.answers]
+            reasons = [refused[n, k]] if (n, k) in refused else [claim.told for claim in named]
+            if state == "follows":
+                sources = ", ".join(asked_all[j].name for j in follows[n, k])
+                reasons = [_("It is right given your own {sources}.").format(sources=sources)]
+            marks.append(Mark(
+                asked.key, state, asked.points if state in ("right", "follows") else 0.0, asked.points,
+                complex(written.value[n, k]) if there else None, complex(wanted.value[n, k]),
+                bool(written.size[n, k]), float(wanted.scale[n, k]), float(error[n, k]) if there else 0.0,
+                float(wanted.allowed[n, k]), how.get((n, k), ""), tuple(reasons),
+                tuple(claim.called for claim in named), given.text if given else "",
+            ))  # fmt: skip
+        found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
+    return found
+
+
+# A group graded chunk by chunk, here, in processes or on a cluster, and only what has changed since the last time.
+#
+# Chunks do not depend on who grades them, so the gradebook is the same to the last bit.
+
 
 SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the others
 
@@ -61,7 +278,7 @@ def graded(
     new = [n for n, key in enumerate(keys) if key not in found]
     seen(len(keys) - len(new))
     parts = [new[first : first + CHUNK] for first in range(0, len(new), CHUNK)]
-    chunks = [_chunk(task, table, [submissions[n] for n in part]) for part in parts]
+    chunks = [_graded_chunk(task, table, [submissions[n] for n in part]) for part in parts]
     for number, marks in way(chunks, stopped):
         own = {keys[n]: one for n, one in zip(parts[number], marks, strict=True)}
         found |= own
@@ -82,7 +299,7 @@ def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) 
         pass
 
 
-def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Chunk:
+def _graded_chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Chunk:
     students = [submission.student for submission in submissions]
     rows = {student: table.rows[student] for student in students if student in table.rows}
     return Chunk(task.tree, VariantTable(table.names, rows), tuple(submissions))

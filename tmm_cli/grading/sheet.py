@@ -8,12 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
-from tmm_cli.analysis.quantities.base import Quantity
+from tmm_cli.batch.family import Family
+from tmm_cli.batch.task import Asked
+from tmm_cli.batch.variant import changed, numbers
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.solution import Solution, solve
-from tmm_cli.grading.task import Asked
-from tmm_cli.groups.base import Closed
-from tmm_cli.quantities import (
+from tmm_cli.mechanics.analysis.named_quantities import Quantity
+from tmm_cli.mechanics.groups.base import Closed
+from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -25,9 +28,6 @@ from tmm_cli.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.variants.family import Family
-from tmm_cli.variants.stack import changed, numbers
-from tmm_cli.vectors import Real, Vector
 
 DRAWN, COMPUTED = 0.005, 0.0005  # how exactly lengths are taken off a drawing (0.5 mm of 100 mm), and computed with
 STEP = 1e-6  # by which lengths are changed to see what hangs on them

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.forces.friction import solve_friction
-from tmm_cli.forces.loads import applied
-from tmm_cli.forces.plan import Reactions, react
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import Motion, move
-from tmm_cli.kinematics.strokes import Strokes
-from tmm_cli.linkage import Linkage
-from tmm_cli.variants.family import Family
+from tmm_cli.batch.family import Family
+from tmm_cli.mechanics.forces.friction import solve_friction
+from tmm_cli.mechanics.forces.loads import applied
+from tmm_cli.mechanics.forces.plan import Reactions, react
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.mechanics.linkage import Linkage
 
 if TYPE_CHECKING:
     from tmm_cli.grading.mistakes.base import Mistake

@@ -10,32 +10,32 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.analysis.in_detail import in_detail
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.draw.formats import Drawn
-from tmm_cli.draw.paper.drawing import Drawing
-from tmm_cli.draw.paper.picture import Space, within
-from tmm_cli.draw.sheets import centres, hodographs, law_of_motion
-from tmm_cli.draw.sheets.diagrams import diagrams
-from tmm_cli.draw.sheets.force_plans import forces
-from tmm_cli.draw.sheets.group_loads import group_loads
-from tmm_cli.draw.sheets.groups import all_groups
-from tmm_cli.draw.sheets.lever import lever
-from tmm_cli.draw.sheets.mechanism import Position, place_of_driver, position
-from tmm_cli.draw.sheets.motion_plans import motion_plans
-from tmm_cli.draw.sheets.positions import all_positions
-from tmm_cli.draw.sheets.single_run import single_run
-from tmm_cli.draw.sheets.structure import whole_scheme
-from tmm_cli.draw.sheets.synthesis import synthesised
-from tmm_cli.forces.lever import Lever
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
+from tmm_cli.drawing.formats import Drawn
+from tmm_cli.drawing.paper.picture import Space, within
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.sheets import centres, hodographs, law_of_motion
+from tmm_cli.drawing.sheets.diagrams import diagrams
+from tmm_cli.drawing.sheets.force_plans import forces
+from tmm_cli.drawing.sheets.group_loads import group_loads
+from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver, position
+from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.positions import all_positions
+from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
+from tmm_cli.drawing.sheets.synthesis import synthesised
 from tmm_cli.language import _, language, numeral, signed, typeset
+from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.free_bodies import subscript
+from tmm_cli.mechanics.forces.lever import Lever
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.plans.record import extent, round_scale
+from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
-from tmm_cli.plans.record import extent, round_scale, subscript
 from tmm_cli.problem.units import on_paper
-from tmm_cli.quantities import Dimension
 
 EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption

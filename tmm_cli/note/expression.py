@@ -13,8 +13,8 @@ from functools import partial
 from itertools import chain
 
 from tmm_cli.language import half_up
+from tmm_cli.mechanics.forces.free_bodies import Symbol
 from tmm_cli.note import math as paper
-from tmm_cli.plans.record import Symbol
 
 FIGURES = 4  # of a result, and of what is put in if that does
 MOST_FIGURES = 8  # of what is put in, where terms nearly cancel

@@ -10,9 +10,9 @@ from tmm_cli.note.blocks import Line, Rows, cells
 from tmm_cli.note.context import Subject, by_hand, with_degrees
 from tmm_cli.note.expression import fixed, plain, rounded
 from tmm_cli.problem.units import UnitSystem, on_paper
-from tmm_cli.results.table import Column, Table
-from tmm_cli.results.terminal import cells as cells_of
-from tmm_cli.results.terminal import figures
+from tmm_cli.reports.table import Column, Table
+from tmm_cli.reports.terminal import cells as cells_of
+from tmm_cli.reports.terminal import figures
 
 DIGITS = 4
 NONE = "—"

@@ -1,10 +1,4 @@
-"""A YAML file to plain data with a line and column for every key and value.
-
-PyYAML only splits the text into events. Composing (composer) and resolving (scalars) are ours, because its
-YAML 1.1 spoils engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, repeated
-keys win silently.
-A text is hostile until read: its size, depth and number of values are bounded.
-"""
+"""PyYAML's syntax errors in simple words: the one table of them."""
 
 from __future__ import annotations
 
@@ -12,14 +6,278 @@ import codecs
 import os
 import re
 import stat
-from typing import Final
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, Final, NoReturn
+
+import yaml
 
 from tmm_cli.language import _
-from tmm_cli.problem.composer import Composer
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.scalars import HIDDEN
-from tmm_cli.problem.tree import Mark, Path, Tree
-from tmm_cli.problem.yaml_errors import tab_error
+from tmm_cli.problem.errors import MAX_DEPTH, Mark, Path, ProblemError, Tree, quote, unknown_name
+from tmm_cli.problem.scalars import HIDDEN, Scalar, comma_error, plain_value, split_number
+
+# In a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
+_IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
+
+
+def tab_error(file: str, mark: Mark) -> ProblemError:
+    """The refusal of a tab where the indentation counts."""
+    return ProblemError(
+        _("a tab is used for indentation"),
+        found=_("a tab"),
+        allowed=_("spaces, two for each level"),
+        file=file,
+        mark=mark,
+    )
+
+
+def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
+    """The error of either of PyYAML's parsers on `text`, with its line and column."""
+    opened, shown = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
+    indent = _("keys and items of one level start in one column, indented by spaces")
+    quoted = _("a quote is not closed"), _("text between two equal quotes"), opened
+    table = {  # PyYAML's words (of both its parsers): what is wrong, what is allowed, and where
+        "mapping values are not": (
+            _("a ':' where none can be"), _("one 'key: value' in a line; text with ': ' in quotes"), shown
+        ),
+        "expected ',' or ']'": (_("'[' is not closed"), _("'[1, 2]', items separated by commas"), opened),
+        "expected ',' or '}'": (_("'{' is not closed"), _("'{a: 1, b: 2}', items separated by commas"), opened),
+        "end of stream": quoted,
+        "found unexpected document": quoted,
+        "could not find expected ':'": (_("a line without ':'"), _("'key: value', with a space after ':'"), opened),
+        "cannot start any token": (_("a value cannot start with this character"), _("text between quotes"), shown),
+        "expected <block end>": (_("this does not fit the lines above"), indent, shown),
+        "did not find expected key": (_("this does not fit the lines above"), indent, shown),
+        "entries are not allowed": (
+            _("a list item '-' where none can be"), _("each '- item' in a line of its own"), shown
+        ),
+        "node content": (_("a value is missing"), _("a value"), shown),
+        "nesting depth": (_("nested too deeply"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
+    }  # fmt: skip
+    problem = f"{error.problem} {error.context}"
+    plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
+    message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
+    if opened and shown and "expected ',' or" in problem and _is_closed(text, opened.index):
+        start = _start_of_stray_text(text, opened.index, shown.index)
+        message, allowed = _("',' or the closing bracket is expected here"), _("[2 kN, 0] or {a: 1, b: 2}")
+        return _refusal_at(start, text, file, message, allowed)
+    if shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
+        message, allowed = _("text after a closing bracket"), _("[2 kN, 0]: units inside; a comment begins with #")
+        return _refusal_at(shown.index, text, file, message, allowed)
+    if place is None:
+        return ProblemError(message, allowed=allowed, file=file)
+    mark = Mark(place.line + 1, place.column + 1)
+    rest = text[place.index :]
+    if rest.startswith("\t"):
+        return tab_error(file, mark)
+    line = rest.split("\n")[0].strip()
+    return ProblemError(message, found=quote(line) if line else None, allowed=allowed, file=file, mark=mark)
+
+
+def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) -> ProblemError:
+    mark = Mark(text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index))
+    found = quote(text[index:].split("\n")[0].strip())
+    return ProblemError(message, found=found, allowed=allowed, file=file, mark=mark)
+
+
+def _is_closed(text: str, start: int) -> bool:
+    """Return True if the bracket at `start` is closed before a line that is indented no more than its own line."""
+    line = text[text.rfind("\n", 0, start) + 1 : start]
+    indent, closing = len(line) - len(line.lstrip(" ")), ""
+    for item in _IN_BRACKETS.finditer(text, start):
+        if item["indent"] is not None:
+            if len(item["indent"]) <= indent and text[item.end()] not in "]}":
+                return False
+        elif item[0] in ("[", "{"):
+            closing = {"[": "]", "{": "}"}[item[0]] + closing
+        elif item[0] in ("]", "}"):
+            if closing[0] != item[0]:
+                return False
+            closing = closing[1:]
+            if not closing:
+                return True
+    return False
+
+
+def _start_of_stray_text(text: str, start: int, stop: int) -> int:
+    """Where an item in brackets that the parser gives up at `stop` goes wrong: a semicolon, a new line, or `stop`."""
+    item = max(text.rfind(mark, start, stop) for mark in ",[{")
+    semicolon, line = text.rfind(";", item, stop), text.rfind("\n", item, stop)
+    if semicolon > line:
+        return semicolon
+    return stop - len(text[line + 1 : stop].lstrip(" ")) if line > item else stop
+
+
+# PyYAML's events to plain data and marks. MAX_DEPTH bounds the recursion, MAX_NODES the work.
+
+
+MAX_NODES: Final = 50_000
+
+LONGEST_CALL: Final = 100  # so far the end of a call that was cut is looked for
+
+LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_ITEM_BELOW = re.compile(r"[\r\n] *- ")
+_CALL = re.compile(r"[^\[\]{}\n]*?,[^\[\]{}\n]*?\)(?=\s*[,}\]\n]|$)")  # what may end with its bracket behind a comma
+_COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
+
+
+class Composer:
+    """Data, marks, key marks and commas of one text; `compose` fills them (see tree.Tree)."""
+
+    def __init__(self, text: str, file: str) -> None:
+        self.text, self.file = text, file
+        self.events = self.parsed()
+        self.nodes = 0
+        self.marks: dict[Path, Mark] = {}
+        self.key_marks: dict[Path, Mark] = {}
+        self.commas: dict[Path, str] = {}
+
+    def compose(self) -> dict[str, Any]:
+        """The top mapping. Raises ProblemError, with file, line and column, at the first mistake."""
+        top = None
+        for event in self.events:
+            if isinstance(event, yaml.NodeEvent):
+                top = self.node(event, ())
+            elif isinstance(event, yaml.DocumentStartEvent) and () in self.marks:
+                self.refuse(event, (), _("a second document"), "---", _("one document in a file"))
+        if top is None:
+            raise ProblemError(_("the file is empty"), allowed=_("a mapping such as 'tmm: 1'"), file=self.file)
+        if not isinstance(top, dict):
+            raise ProblemError(
+                _("the top level is not a mapping"), found=quote(top), allowed=_("lines 'key: value'"),
+                file=self.file, mark=self.marks[()],
+            )  # fmt: skip
+        return top
+
+    def parsed(self) -> Iterator[Any]:
+        try:
+            yield from yaml.parse(self.text, Loader=LOADER)
+        except yaml.MarkedYAMLError as error:
+            raise syntax_error(error, self.text, self.file) from None
+        except (yaml.YAMLError, ValueError, OverflowError):
+            raise ProblemError(_("this is not YAML"), file=self.file) from None
+
+    def refuse(
+        self, event: Any, path: Path, message: str, found: str | None = None, allowed: str | None = None
+    ) -> NoReturn:
+        raise self.placed(ProblemError(message, found=found, allowed=allowed), event, path)
+
+    def placed(self, error: ProblemError, event: Any, path: Path) -> ProblemError:
+        new = error.at(*path)
+        new.file, new.mark = self.file, _mark(event)
+        return new
+
+    def node(self, event: Any, path: Path) -> Any:
+        """The value that begins with this event."""
+        self.check(event, path)
+        self.marks[path] = _mark(event)
+        if isinstance(event, yaml.ScalarEvent):
+            return self.scalar(event, path)
+        return self.mapping(event, path) if isinstance(event, yaml.MappingStartEvent) else self.sequence(event, path)
+
+    def mapping(self, start: Any, path: Path) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        before = None
+        while not isinstance(key := next(self.events), yaml.MappingEndEvent):
+            self.check(key, path)
+            name = self.key(key, path, found)
+            value = next(self.events)
+            found[name] = self.node(value, (*path, name))
+            if start.flow_style and value.end_mark.index == value.start_mark.index:
+                self.key_alone(key, value, before, path)
+            before = (*path, name), value
+        return found
+
+    def sequence(self, start: Any, path: Path) -> list[Any]:
+        found: list[Any] = []
+        while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
+            its_path = *path, len(found)
+            found.append(self.node(event, its_path))
+            if start.flow_style and isinstance(event, yaml.ScalarEvent) and not event.style:
+                self.cut_by_comma(event, its_path)
+        if start.flow_style:
+            end: Any = event
+            written = self.text[start.start_mark.index : end.end_mark.index]
+            pointed = _COMMA.sub(r"\1.\2", written)
+            if pointed != written:
+                self.commas[path] = pointed if "," in pointed else pointed[1:-1]
+        return found
+
+    def check(self, event: Any, path: Path) -> None:
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            self.refuse(event, path, _("too many values"), allowed=_("at most {most}").format(most=MAX_NODES))
+        if len(path) >= MAX_DEPTH and not isinstance(event, yaml.ScalarEvent):
+            allowed = _("at most {most} levels").format(most=MAX_DEPTH)
+            self.refuse(event, path[:3], _("nested too deeply"), allowed=allowed)
+        if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
+            self.refuse(
+                event, path, _("aliases are not part of a problem file"),
+                allowed=_("the value written out, or a parameter; text that starts with * or & in quotes"),
+            )  # fmt: skip
+        if event.tag is not None:
+            self.refuse(event, path, _("tags are not part of a problem file"), quote(event.tag), _("plain values"))
+
+    def key(self, event: Any, path: Path, mapping: dict[str, Any]) -> str:
+        """The name of a key, as it is written."""
+        if not isinstance(event, yaml.ScalarEvent):
+            self.refuse(event, path, _("a list or mapping is used as a key"), allowed=_("a word or number"))
+        name: str = event.value
+        path = (*path, name)
+        if name in mapping:
+            allowed = _("the first is at line {line}").format(line=self.key_marks[path].line)
+            self.refuse(event, path, _("duplicate key"), quote(name), allowed)
+        self.key_marks[path] = _mark(event)
+        return name
+
+    def scalar(self, event: Any, path: Path) -> Scalar:
+        text: str = event.value
+        if event.style:
+            if hidden := HIDDEN.search(text):
+                self.refuse(event, path, _("a control character"), found=quote(hidden[0]), allowed=_("printable text"))
+            return text
+        if event.start_mark.line != event.end_mark.line:
+            if _ITEM_BELOW.search(self.text[event.start_mark.index : event.end_mark.index]):
+                self.refuse(event, path, _("a value and a list below it"), quote(text), _("one of the two"))
+            return text
+        try:
+            return plain_value(text)
+        except ProblemError as error:
+            raise self.placed(error, event, path) from None
+
+    def cut_by_comma(self, event: Any, path: Path) -> None:
+        """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
+        if event.value.count("(") <= event.value.count(")"):
+            return
+        if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + LONGEST_CALL]):
+            if cut[0].startswith("("):  # as coordinates are written on paper
+                self.refuse(event, path, _("two coordinates [x, y] are wanted"), quote(cut[0]), f"[{cut[0][1:-1]}]")
+            self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
+
+    def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
+        """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`: {"length:5": null}."""
+        if ":" in self.text[key.end_mark.index : value.start_mark.index]:
+            return
+        if before is not None and isinstance(before[1], yaml.ScalarEvent) and not before[1].style:
+            its_path, number = before
+            self.cut_by_comma(number, its_path)
+            touching = self.text[number.end_mark.index : key.start_mark.index] == ","
+            if touching and split_number(number.value, key.value):
+                raise self.placed(comma_error(number.value, key.value), number, its_path)
+        self.refuse(key, path, _("a key without a value"), quote(key.value), _("'key: value', a space after ':'"))
+
+
+def _mark(event: Any) -> Mark:
+    return Mark(event.start_mark.line + 1, event.start_mark.column + 1)
+
+
+# A YAML file to plain data with a line and column for every key and value.
+#
+# PyYAML only splits the text into events. Composing (composer) and resolving (scalars) are ours, because its
+# YAML 1.1 spoils engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, repeated
+# keys win silently.
+# A text is hostile until read: its size, depth and number of values are bounded.
+
 
 MAX_BYTES: Final = 1_000_000
 
@@ -115,3 +373,51 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
 def _mark_at(text: str, index: int) -> Mark:
     lines = re.split(r"\r\n|\r|\n", text[:index])
     return Mark(len(lines), len(lines[-1]) + 1)
+
+
+# Parameters that are given beside the file: `--set OA=120`.
+
+
+def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
+    """The file with other values of parameters that it has, each read as if it stood there. Raises ProblemError."""
+    own = tree.data.get("parameters")
+    parameters = dict(own) if isinstance(own, dict) else {}
+    given: dict[Path, str] = {}
+    for setting in settings:
+        words = f"--set {setting}"
+        name, sign, text = (part.strip() for part in setting.partition("="))
+        path = ("parameters", name)
+        if not sign or not name:
+            raise ProblemError(_("a name and a value are wanted"), allowed="--set OA=120", file=words)
+        if name not in parameters:
+            none = None if parameters else _("none: the file has no parameters")
+            raise unknown_name(name, parameters, _("there is no parameter of that name"), none, path=path, file=words)
+        if path in given:
+            raise ProblemError(_("this is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
+        given[path] = words
+        try:
+            parameters[name] = plain_value(text)
+        except ProblemError as error:
+            raise error.at(*path).located(words) from None
+    return replace(tree, data={**tree.data, "parameters": parameters}, given=given) if given else tree
+
+
+def unused(tree: Tree, names: Iterable[str]) -> list[str]:
+    """Those of these parameters that no value of the file names, nor a parameter that one names."""
+    own = tree.data.get("parameters", {})
+    met: set[str] = set()
+    left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
+    while left:
+        new = {word for value in left for word in _words(value)} - met
+        met |= new
+        left = [own[word] for word in new if word in own]
+    return [name for name in names if name not in met]
+
+
+def _words(value: Any) -> Iterator[str]:
+    """What could be names in texts, which arithmetic is too."""
+    if isinstance(value, str):
+        yield from re.findall(r"[^\W\d]\w*", value)
+    elif isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from _words(part)

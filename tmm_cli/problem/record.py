@@ -8,18 +8,17 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from tmm_cli.linkage import Linkage, Request
-from tmm_cli.problem.schema_sheet import NoteStyle, SheetTexts
-from tmm_cli.problem.schema_shown import Shown
-from tmm_cli.problem.tree import Tree
+from tmm_cli.mechanics.linkage import Linkage, Request
+from tmm_cli.mechanics.structure.spatial import SpatialChain
+from tmm_cli.problem.errors import Tree
+from tmm_cli.problem.schema import NoteStyle, SheetTexts, Shown
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.structure.spatial import SpatialChain
 
 if TYPE_CHECKING:
-    from tmm_cli.dynamics.balancing_task import BalancingTask
-    from tmm_cli.dynamics.task import RunTask, SteadyTask
-    from tmm_cli.kinematics.intermittent_task import WheelTask
+    from tmm_cli.mechanics.analysis.intermittent import WheelTask
+    from tmm_cli.mechanics.dynamics.balancing import BalancingTask
+    from tmm_cli.mechanics.dynamics.task import RunTask, SteadyTask
     from tmm_cli.synthesis.record import Outcome
 
 

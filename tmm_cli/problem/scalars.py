@@ -7,8 +7,7 @@ import re
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.tree import WrittenNumber
+from tmm_cli.problem.errors import ProblemError, WrittenNumber, quote
 
 Scalar = str | int | float | bool | None
 

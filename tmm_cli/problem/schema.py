@@ -1,24 +1,21 @@
-"""The shape of a problem file, for pydantic: what keys there are and what may stand in them.
-
-Only shape is checked here; numbers with units, names of points and guides and the rest of the sense are checked where
-the file is built into a linkage (build), which knows the parameters and units. The field descriptions are what
-`tmm schema` prints.
-"""
+"""The shapes of the blocks `sheet` and `note`: texts of the title block, and how the course writes its notes."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
 
-from tmm_cli.problem.schema_balancing import Balancing
-from tmm_cli.problem.schema_dynamics import Dynamics
-from tmm_cli.problem.schema_intermittent import Wheels
-from tmm_cli.problem.schema_loads import Load, Mass
-from tmm_cli.problem.schema_meshes import Cam, Gear, Rack
+from tmm_cli.problem.blocks.keys_on_request import Balancing, Dynamics, Wheels
+from tmm_cli.problem.blocks.loads import Load, Mass
+from tmm_cli.problem.blocks.meshes import Cam, Gear, Rack
+from tmm_cli.problem.blocks.springs import Friction, Spring
 from tmm_cli.problem.schema_parts import (
     MAX_LINKS,
     MAX_POSITIONS,
+    NAMES,
     FileHead,
     Name,
     Place,
@@ -27,10 +24,142 @@ from tmm_cli.problem.schema_parts import (
     Vector,
     checked_name,
     checked_value,
-)  # fmt: skip
-from tmm_cli.problem.schema_sheet import NoteStyle, SheetTexts
-from tmm_cli.problem.schema_shown import Shows
-from tmm_cli.problem.schema_springs import Friction, Spring
+)
+
+LONGEST = 200
+
+
+def _words(found: Any) -> str:
+    """A line of text; the number of a group may be written as a number."""
+    if isinstance(found, bool) or not isinstance(found, int | str):
+        raise PydanticCustomError("words", "text is wanted")
+    if len(str(found)) > LONGEST:
+        raise PydanticCustomError("words", f"text is at most {LONGEST} characters long")
+    return str(found)
+
+
+Words = Annotated[str, BeforeValidator(_words), WithJsonSchema({"anyOf": NAMES})]
+
+
+class SheetTexts(Strict):
+    """Texts of the title block. One that is too long for its cell is cut there."""
+
+    student: Words = Field(default="", description="who drew it")
+    group: Words = Field(default="", description="the student's group")
+    teacher: Words = Field(default="", description="who checks it")
+    institution: Words = Field(default="", description="the university, on the title page of the note")
+    department: Words = Field(default="", description="the university and its department")
+    code: Words = Field(default="", description="designation of the project; the number of the sheet is added to it")
+    block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")
+
+
+class NoteStyle(Strict):
+    """How the course writes: of the choices each is the usual one where the file leaves it out."""
+
+    inertia: Literal["U", "Φ"] | None = Field(
+        default=None,
+        description="letter of inertia forces; left out: that of the language (in Russian Φ)",
+    )
+    arms: Literal["m", "paper"] = Field(
+        default="m",
+        description="arms in equations of moments: in metres, or in millimetres of the drawing with its scale mu_l",
+    )
+    sections: Literal["usual", "MATI"] = Field(
+        default="usual", description="MATI: the force analysis in the steps 1 to 4 of the guidelines, before the lever"
+    )
+
+
+# The shape of the block `shows`: properties of a mechanism as numbers, with what they should be.
+
+
+Number = Annotated[int, Field(ge=0)]
+Quantity = Annotated[str, Field(min_length=1, max_length=60)]
+
+
+class Shown(Strict):
+    """A quantity by the name that the tables give it, as one number."""
+
+    of: Quantity = Field(description="what: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; of vectors the size")
+    at: Number | None = Field(default=None, description="in which position")
+    between: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="instead: its change from one position to another"
+    )
+    over: Literal["largest", "least", "range"] | None = Field(
+        default=None, description="instead: over the way of the driver, its turn or the positions asked"
+    )
+    within: Value | None = Field(
+        default=None, description="with `at`: the way of the driver about there, on which it changes by no more"
+    )
+    per: Value | None = Field(
+        default=None,
+        description="divided by another quantity, place by place for largest and least, or by a value",
+    )
+    set: dict[Name, Value] = Field(default_factory=dict, max_length=50, description="with these parameters instead")
+    without: Name | None = Field(default=None, description="of the structure: when this hinge has broken")
+    expected: Value | None = Field(default=None, description="what it should be, from elsewhere: a run compares it")
+
+
+Shows = Annotated[dict[Annotated[str, Field(max_length=120)], Shown], Field(max_length=50)]
+
+
+# The shape of a problem file that gives a chain in space by its pairs alone.
+
+
+MAX_PAIRS = 300
+MAX_MOBILITY = 6 * MAX_LINKS
+
+Kind = Literal[
+    "turning", "sliding", "screw", "cylindrical", "spherical with a pin", "universal", "spherical", "planar",
+    "sphere in cylinder", "cylinder on plane", "sphere on plane",
+]  # fmt: skip
+
+
+Freedoms = Annotated[int, Field(ge=0, le=MAX_MOBILITY)]
+
+
+class SpatialPair(Strict):
+    """A pair of two links."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
+    kind: Kind | None = Field(default=None, description="its kind, which says the freedoms")
+    freedoms: int | None = Field(default=None, ge=1, le=5, description="instead of kind: 1 to 5 freedoms")
+
+
+class Spatial(Strict):
+    """A chain in space, given by pairs alone."""
+
+    links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
+        Field(default=None, description="moving links, names or how many; those of the pairs when left out")
+    )
+    pairs: dict[Name, SpatialPair] = Field(min_length=1, max_length=MAX_PAIRS)
+    output: Name | None = Field(default=None, description="the link that is held for the manoeuvrability")
+    local: Freedoms | dict[Name, Freedoms] | None = Field(
+        default=None, description="local freedoms Wm, all of them or by link; found from the pairs when left out"
+    )
+    wanted: Freedoms | None = Field(
+        default=None, description="mobility Wo that it is meant to have, for q = Wo + Wm - W"
+    )
+
+
+class SpatialStructure(Strict):
+    """What is counted without dimensions."""
+
+    spatial: Spatial
+
+
+class SpatialFile(FileHead):
+    """A chain in space without dimensions: only its structure is counted."""
+
+    reference: str = Field(default="", max_length=100, description="of the mechanism in a book or a list")
+    shows: Shows = Field(default={}, description="W, Wm, q or m: {mobility: {of: W, expected: 9}}")
+    structure: SpatialStructure
+
+
+# The shape of a problem file, for pydantic: what keys there are and what may stand in them.
+#
+# Only shape is checked here; numbers with units, names of points and guides and the rest of the sense are checked where
+# the file is built into a linkage (build), which knows the parameters and units. The field descriptions are what
+# `tmm schema` prints.
 
 
 class Guide(Strict):
@@ -215,3 +344,30 @@ class File(FileHead):
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
     frame: Name = Field(default="0", description="the number of the frame that is printed: R_65 for R_05 where it is 6")
     note: NoteStyle = Field(default_factory=NoteStyle, description="how the note and its drawings are written")
+
+
+# The JSON Schema of problem files, for editors.
+
+
+def file_schema(tasks: Iterable[type[BaseModel]], blocks: type[BaseModel]) -> dict[str, Any]:
+    """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`; blocks: further
+    ones of a file, by their names."""
+    definitions: dict[str, Any] = {}
+
+    def schema(model: type[BaseModel]) -> dict[str, Any]:
+        inner = model.model_json_schema(by_alias=True)
+        definitions.update({**inner.pop("$defs", {}), **definitions})
+        return inner
+
+    planar = schema(File)
+    planar["properties"]["synthesis"]["anyOf"] = [{"$ref": "#/$defs/Synthesis"}]
+    planar["properties"] |= schema(blocks)["properties"]
+    definitions["SpatialFile"] = schema(SpatialFile)
+    definitions["Synthesis"] = {"anyOf": [schema(task) for task in tasks]}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$defs": definitions,
+        "if": {"required": ["structure"]},
+        "then": {"$ref": "#/$defs/SpatialFile"},
+        "else": planar,
+    }

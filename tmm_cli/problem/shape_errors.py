@@ -1,19 +1,69 @@
-"""The first mistake in the shape of a file: pydantic's errors in the file's own terms."""
+"""Keys of problem files as they are called in Russian and Serbian: who writes one of these is told the key."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Final, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from tmm_cli.language import N_, _
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.foreign_keys import FOREIGN
+from tmm_cli.problem.errors import Path, ProblemError, Tree, nearest, quote
 from tmm_cli.problem.reader import decimal_comma_hint
-from tmm_cli.problem.tree import Path, Tree
+
+_WORDS: Final = {
+    "title": "название заголовок naslov naziv",
+    "description": "описание opis",
+    "units": "единицы jedinice",
+    "parameters": "параметры parametri",
+    "synthesis": "синтез sinteza",
+    "points": "точки tačke tacke",
+    "guides": "направляющие vođice vodice",
+    "links": "звенья članovi clanovi чланови",
+    "link": "звено član clan члан",
+    "driver": "привод двигатель pogon",
+    "gears": "колёса колеса шестерни zupčanici zupcanici",
+    "racks": "рейки letve",
+    "cams": "кулачки bregovi",
+    "springs": "пружины opruge",
+    "friction": "трение trenje",
+    "sketch": "эскиз схема skica",
+    "masses": "массы mase",
+    "mass": "масса masa",
+    "loads": "нагрузки силы opterećenja opterecenja",
+    "gravity": "тяжесть gravitacija",
+    "output": "выход izlaz",
+    "positions": "положения položaji polozaji",
+    "checks": "проверки provere",
+    "sheet": "лист",
+    "student": "студент",
+    "group": "группа grupa",
+    "teacher": "преподаватель руководитель nastavnik profesor",
+    "institution": "университет институт вуз univerzitet fakultet",
+    "department": "кафедра katedra",
+    "code": "шифр обозначение oznaka",
+    "length": "длина dužina duzina",
+    "name": "имя ime",
+    "speed": "скорость brzina",
+    "slides": "скользит ползун klizi klizač",
+    "along": "вдоль duž duz",
+    "angle": "угол ugao",
+    "force": "сила sila",
+    "moment": "момент moment",
+    "weight": "вес težina tezina",
+    "inertia": "инерция inercija",
+    "centre": "центр centar težište",
+    "count": "число количество broj",
+    "turns": "вращение smer",
+    "task": "задача zadatak",
+}
+FOREIGN: Final = {word: key for key, words in _WORDS.items() for word in words.split()}
+
+
+# The first mistake in the shape of a file: pydantic's errors in the file's own terms.
+
 
 KEYS_WANTED = N_("keys with values are wanted")
 WORDS = {  # what is wrong with a value, by pydantic's kind of error

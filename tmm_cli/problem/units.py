@@ -7,14 +7,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial, reduce
 from typing import Any, Final
 
-from tmm_cli.double_double import PI, DoubleDouble
+import numpy as np
+
 from tmm_cli.language import ENGLISH, _, language, spelt
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under, unknown_name
-from tmm_cli.problem.scalars import finite_float
-from tmm_cli.quantities import (
+from tmm_cli.mechanics.numerics.double_double import PI, DoubleDouble
+from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,
     FORCE,
@@ -28,6 +28,8 @@ from tmm_cli.quantities import (
     Dimension,
     product_text,
 )
+from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under, unknown_name
+from tmm_cli.problem.scalars import finite_float
 
 
 class UnitError(ProblemError):
@@ -286,3 +288,33 @@ def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:
 def on_paper(unit: str) -> str:
     """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
     return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
+
+
+# Units of a file whose numbers are no plain floats: of 31 digits, or numbers that vary from linkage to linkage.
+
+
+FUNCTIONS = {
+    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
+    "atan2": np.arctan2, "hypot": np.hypot, "sqrt": np.sqrt, "min": partial(reduce, np.minimum),
+    "max": partial(reduce, np.maximum), "abs": abs,
+}  # fmt: skip
+
+
+class ExtendedUnits(UnitSystem):
+    """Units whose numbers have 31 digits, from the decimals as they are written."""
+
+    functions = {**FUNCTIONS, "pi": DoubleDouble.decimal(PI)}  # noqa: RUF012  a table
+
+    def number(self, written: str | int | float) -> float:
+        super().number(written)  # refuses what float64 has no place for
+        found: Any = DoubleDouble.decimal(written if isinstance(written, str) else repr(written))
+        return found  # type: ignore[no-any-return]
+
+
+class VariedUnits(UnitSystem):
+    """Units whose functions of arithmetic take numbers that vary (see tmm_cli.batch.tape.varied)."""
+
+    functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
+
+    def __init__(self, own: UnitSystem) -> None:
+        vars(self).update(vars(own))

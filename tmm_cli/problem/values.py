@@ -11,14 +11,12 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.problem.arithmetic import MOST_ANGLE
-from tmm_cli.problem.errors import ProblemError, nearest, quote, under, unknown_name
-from tmm_cli.problem.expressions import evaluate, evaluate_quantity
+from tmm_cli.mechanics.numerics.tolerances import NO_COSINE
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension
+from tmm_cli.problem.arithmetic import MOST_ANGLE, evaluate, evaluate_quantity
+from tmm_cli.problem.errors import Path, ProblemError, nearest, quote, under, unknown_name
 from tmm_cli.problem.schema_parts import OnLine
-from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
-from tmm_cli.quantities import ANGLE, LENGTH, NUMBER, Dimension
-from tmm_cli.tolerances import NO_COSINE
 
 LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.choices import NUMBER
-from tmm_cli.grading.task import Task
+from tmm_cli.batch.choices import NUMBER
+from tmm_cli.batch.task import Task
 from tmm_cli.language import _
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.quantities import Dimension
-from tmm_cli.vectors import Real
 
 OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
 COUNT = (41, 21)  # values where none is given: of one parameter, of each of two

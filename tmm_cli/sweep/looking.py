@@ -11,14 +11,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.kinematics.strokes import Strokes, resisted
-from tmm_cli.roots import least, roots
-from tmm_cli.sweep.peaks import near_peaks, peaks_between
-from tmm_cli.sweep.taped import FINELY, Closely, Turning, turned
-from tmm_cli.variants.family import named_strokes
-from tmm_cli.variants.stack import each
-from tmm_cli.variants.variant import Variant
-from tmm_cli.vectors import Real
+from tmm_cli.batch.family import named_strokes
+from tmm_cli.batch.variant import Variant, each
+from tmm_cli.mechanics.kinematics.strokes import Strokes, resisted
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.sweep.taped import FINELY, Closely, Turning, near_peaks, peaks_between, turned
 
 SCAN = 72  # places in a turn of the driver
 BLOCK = 50  # variants that are looked at finely at once

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.language import N_
+from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.sweep.grid import Axis
 from tmm_cli.sweep.quantities import Shown
-from tmm_cli.vectors import Real
 
 WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # how a mechanism goes
 STATES = ("works", "limit", "stops", "apart", "refused")  # in files

@@ -8,18 +8,18 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.grading.workers import Way, here
+from tmm_cli.batch.workers import Way, here
 from tmm_cli.language import _
-from tmm_cli.problem.budget import BUDGET, parts, refuse_work
+from tmm_cli.mechanics.numerics.roots import bisect
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.problem.build import BUDGET, parts, refuse_work
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
-from tmm_cli.roots import bisect
 from tmm_cli.sweep.grid import MOST, Axis, grid
 from tmm_cli.sweep.looking import SCAN
 from tmm_cli.sweep.mechanisms import Found, Mechanisms
 from tmm_cli.sweep.record import STATES, Mark, Swept
 from tmm_cli.sweep.taped import CYCLE
-from tmm_cli.vectors import Real
 
 CHUNK, FEW = 20_000, 20  # points of a job: by the tape, one by one
 TAPED, ALONE = 1 / 1_200, 1 / 4  # what a part at a position costs, against a run of one file (problem.budget)

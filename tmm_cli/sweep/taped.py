@@ -1,7 +1,4 @@
-"""The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
-
-Unlike variants.taped this knows loads that act by the strokes: where these begin and how far they go are inputs.
-"""
+"""Peaks of curves round a cycle, of many variants at once, between the places at which they are known."""
 
 from __future__ import annotations
 
@@ -12,24 +9,67 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.rank import mobile
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.groups.base import Closed
-from tmm_cli.groups.sequence import link_states
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.output import output_place, output_slope
-from tmm_cli.kinematics.pressure import angle, followers
-from tmm_cli.kinematics.strokes import Stroke, Strokes
-from tmm_cli.structure.cycle import turns_of_cycle
-from tmm_cli.structure.naming import output_link
-from tmm_cli.tape import Program, record
-from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.tolerances import END_OF_SLOT
-from tmm_cli.variants.batch import CHECKS, SURE, solved
-from tmm_cli.variants.stack import each, stands
-from tmm_cli.variants.variant import Make, NoTapeError, Variant, stood_for
-from tmm_cli.vectors import Real
+from tmm_cli.batch.prepare import CHECKS, SURE, solved
+from tmm_cli.batch.tape import record
+from tmm_cli.batch.tape.program import Program
+from tmm_cli.batch.tape.traced import TracedNumber
+from tmm_cli.batch.variant import Make, NoTapeError, Variant, each, stands, stood_for
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.groups.base import Closed
+from tmm_cli.mechanics.groups.sequence import link_states
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.pressure import angle, followers
+from tmm_cli.mechanics.kinematics.strokes import Stroke, Strokes, output_place, output_slope
+from tmm_cli.mechanics.numerics.roots import SIDE, peak
+from tmm_cli.mechanics.numerics.tolerances import END_OF_SLOT
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.cycle import turns_of_cycle
+from tmm_cli.mechanics.structure.naming import output_link
+
+WINDOW, SHARE = 17, 30  # places about a peak, and how many steps of them are one of the scan
+SHIFTS = 12  # of a window whose largest value lies at its edge
+
+
+def near_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
+    """Peaks of closed curves (variants, places) that may reach a level (variants,) between two places: row and place.
+
+    Between places a curve rises by no more than twice what it rises from one to the next. where: places that count.
+    """
+    before, after = np.roll(curve, 1, axis=1), np.roll(curve, -1, axis=1)
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(curve - before, curve - after)
+        found = (curve >= before) & (curve > after) & (curve + 2 * rise >= level[:, None]) & where
+    row, place = np.nonzero(found)
+    return row, place
+
+
+def peaks_between(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
+    """The peak of each of many curves about a place q of its own (peaks,), with its values before, there and after.
+
+    curve: values at places (peaks, n), for every curve its own.
+    """
+    before, here, after = values
+    bend = 2 * here - before - after
+    with np.errstate(invalid="ignore", divide="ignore"):
+        off = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
+    middle = q + step * np.clip(off, -1, 1)
+    window = step / SHARE * np.arange(-(WINDOW // 2), WINDOW // 2 + 1)
+    for _ in range(SHIFTS):
+        there = curve(middle[:, None] + window)
+        top = np.argmax(there, axis=1)
+        edge = (top < SIDE) | (top >= WINDOW - SIDE)
+        if not np.any(edge):
+            break
+        middle = np.where(edge, middle + window[top], middle)
+    return np.maximum(here, peak(there))
+
+
+# The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
+#
+# Unlike variants.taped this knows loads that act by the strokes: where these begin and how far they go are inputs.
+
 
 CYCLE = 180  # steps of a turn of the driver between which peaks of what has a value a position are searched for
 FINELY = 1440  # places in a turn of the driver, as the ordinary stages look at

@@ -15,11 +15,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.groups.sequence import DriverMotion
-from tmm_cli.kinematics.motion import move
-from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.tolerances import SAME_RATIO
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
 
 TYPES: Final = (  # in the order frame, input, coupler, output: by the shortest link, the longest, the shortest again
     "GCCC", "GCRR", "GRCR", "GRRC", "RRR1", "RRR2", "RRR3", "RRR4", "SCCC", "SCRR", "SRCR", "SRRC", "S2X", "S3X",

@@ -1,17 +1,73 @@
-"""What is measured on an analysed mechanism (pipeline.Results); nan where it has no such quantity."""
+"""The coefficient k of change of mean speed: from the angle theta between the extreme cranks, and of any curve.
+
+k of a curve is found closely: strokes end where the slope of the output changes its sign. Dwells, in which the slope is
+exactly zero, belong to no stroke; where the output all but rests rounding gives the slope one sign and the other, and
+the middle of such places is one end. Both as in tmm_cli.mechanics.kinematics.strokes.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.kinematics.driver_range import DriverRange
-from tmm_cli.kinematics.output import find_travel, output_slope
-from tmm_cli.kinematics.pressure import find_pressure
-from tmm_cli.linkage import FRAME
-from tmm_cli.tolerances import SURE_SIGN
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.kinematics.driver_range import DriverRange
+from tmm_cli.mechanics.kinematics.pressure import find_pressure
+from tmm_cli.mechanics.kinematics.strokes import find_travel, output_slope
+from tmm_cli.mechanics.linkage import FRAME, Output
+from tmm_cli.mechanics.numerics.roots import bisect
+from tmm_cli.mechanics.numerics.tolerances import MET, NO_DEMAND, SURE_SIGN
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.synthesis.record import Demand, Outcome
+
+
+def theta_of(k: Any) -> Any:
+    """The angle theta between the extreme cranks, from k."""
+    k = np.asarray(k)
+    return np.pi * (k - 1) / (k + 1)
+
+
+def k_of(theta: Any) -> Any:
+    """The coefficient k from theta."""
+    return (np.pi + theta) / (np.pi - theta)
+
+
+def ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
+    """The longer strokes over the shorter; nan where there are none.
+
+    slope: the output's first transfer function at shares of the cycle; shares: all round it, at equal steps.
+    """
+    y, step = slope(shares), shares[1] - shares[0]
+    moves = np.flatnonzero(y)
+    after = np.roll(moves, -1)
+    back = y[moves] * y[after] < 0
+    last, first = moves[back], after[back]
+    if not last.size:
+        return float("nan")
+    still = np.mod(first - last, len(y)) > 1
+    before, on = np.sign(y[last]), np.sign(y[first])
+    stops = _edges(slope, shares[last], step, before)
+    goes_on = 1.0 - _edges(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
+    middle = stops + (np.mod(goes_on - stops + 0.5, 1.0) - 0.5) / 2
+    stops, goes_on = np.where(still, stops, middle), np.where(still, goes_on, middle)
+    lengths = np.mod(np.roll(stops, -1) - goes_on, 1.0)
+    forward = on > 0
+    rise, fall = float(lengths[forward].sum()), float(lengths[~forward].sum())
+    return max(rise, fall) / min(rise, fall)
+
+
+def _edges(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
+    """Where a slope that has the sign `before` at low has it no more, at most a step farther on."""
+    return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
+
+
+# What is measured on an analysed mechanism (pipeline.Results); nan where it has no such quantity.
+
 
 NONE = math.nan
 
@@ -111,3 +167,73 @@ def end_angle(results: Results, near: float) -> float:
     turn = math.atan2(arm.imag, arm.real)
     ends = [turn + end - near for s in strokes.strokes for end in (s.low, s.low + s.run)]
     return near + min((math.remainder(away, math.tau) for away in ends), key=abs)
+
+
+# What was asked for, measured on the analysed mechanism.
+
+
+@dataclass(frozen=True)
+class MeasuredDemand:
+    """A demand, its value on the mechanism (SI, rad; nan: there is none), and the relative difference.
+
+    open: by how much of it rounding leaves the value open, where that is more than is tolerated.
+    """
+
+    demand: Demand
+    value: float
+    difference: float
+    open: float = 0.0
+
+    @property
+    def met(self) -> bool:
+        return self.difference <= max(MET, self.open)
+
+
+@lru_cache(maxsize=1)
+def measured_on(results: Results) -> tuple[MeasuredDemand, ...]:
+    """What a problem's synthesis asked and foretold, on its mechanism; nothing where there is none, or no motion."""
+    synthesis = results.problem.synthesis
+    if synthesis is None or results.of or results.motion is None:
+        return ()
+    return measured(synthesis.outcome, results)
+
+
+def measured(outcome: Outcome, results: Results) -> tuple[MeasuredDemand, ...]:
+    """Every demand on the mechanism, of the link that the task is about, whatever the file's output is."""
+    results, found = _about(synthesised_link(outcome, results), results), []
+    for demand in outcome.demands:
+        value = _settled(demand, float(demand.measure(results)))
+        left = demand.open(results) if demand.open is not None else 0.0
+        found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > MET else 0.0))
+    return tuple(found)
+
+
+def synthesised_link(outcome: Outcome, results: Results) -> str | None:
+    """The link whose stroke or swing the task found: of those of its kind on the frame the nearest to the driver.
+
+    The file's output if it is one of them, or the task says nothing of a kind.
+    """
+    linkage, output = results.linkage, results.mechanism.output
+    on_frame = {"slide": linkage.slides_on_frame, "swing": linkage.hinged_to_frame}.get(outcome.output)
+    if on_frame is None:
+        return output
+    away = {FRAME: 0} | {driver.link: 0 for driver in linkage.drivers}  # groups from the driver to a link
+    for group in results.structure.all_groups:
+        away |= dict.fromkeys(group.links, 1 + max(away[link] for link in group.known))
+    links = [link for group in results.structure.all_groups for link in group.links if on_frame(link)]
+    return min(links, key=lambda link: (away[link], link != output), default=output)
+
+
+def _about(link: str | None, results: Results) -> Results:
+    """The same with another link as the output."""
+    mechanism = results.mechanism
+    if link is None or link == mechanism.output:
+        return results
+    inputs = replace(results.inputs, linkage=replace(results.linkage, output=Output(link), outputs=(Output(link),)))
+    other = replace(mechanism, inputs=inputs).known(kernels=mechanism.kernels, driver_range=mechanism.driver_range)
+    return replace(results, inputs=inputs, mechanism=other)
+
+
+def _settled(demand: Demand, value: float) -> float:
+    """The same; zero where it is nothing but rounding beside what counts."""
+    return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

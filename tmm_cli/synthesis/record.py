@@ -11,8 +11,9 @@ import numpy as np
 from tmm_cli.language import _
 
 if TYPE_CHECKING:
-    from tmm_cli.linkage import Sketch
+    from tmm_cli.mechanics.linkage import Sketch
     from tmm_cli.synthesis.construction import Construction, Diagram
+
 
 SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
 Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number

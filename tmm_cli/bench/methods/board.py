@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.forces.plan import Reactions, react
-from tmm_cli.groups.sequence import driven_state, drives_at, frame_state
-from tmm_cli.groups.state import (
+from tmm_cli.mechanics.forces.plan import Reactions, react
+from tmm_cli.mechanics.groups.base import Wrapped
+from tmm_cli.mechanics.groups.sequence import driven_state, drives_at, frame_state
+from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
     GroupReactions,
@@ -29,14 +30,12 @@ from tmm_cli.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.groups.wrapped import Wrapped
-from tmm_cli.kinematics.motion import Motion, move
-from tmm_cli.linkage import FRAME
-from tmm_cli.plans.acceleration import acceleration_plan
-from tmm_cli.plans.forces import force_plans
-from tmm_cli.plans.record import Plan, sheet_scale
-from tmm_cli.plans.velocity import velocity_plan
-from tmm_cli.vectors import Real, Vector, cross, unit
+from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, unit
+from tmm_cli.mechanics.plans.forces import force_plans
+from tmm_cli.mechanics.plans.motion import acceleration_plan, velocity_plan
+from tmm_cli.mechanics.plans.record import Plan, sheet_scale
 
 
 def snapped(value: Vector, grid: Real) -> Vector:

@@ -9,18 +9,17 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.forces.applied import Applied
-from tmm_cli.forces.loads import applied
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.groups.base import Kernel, spread
-from tmm_cli.groups.sequence import DriverMotion, drives_at
-from tmm_cli.groups.state import Accel, Pose, Rate, Wrench
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.strokes import Strokes
-from tmm_cli.linkage import Linkage
-from tmm_cli.structure.assur import Structure, analyse
-from tmm_cli.vectors import Real, Vector, cross
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.forces.loads import Applied, applied
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.groups.base import Kernel, spread
+from tmm_cli.mechanics.groups.sequence import DriverMotion, drives_at
+from tmm_cli.mechanics.groups.state import Accel, Pose, Rate, Wrench
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross
+from tmm_cli.mechanics.structure.assur import Structure, analyse
 
 Compared = Literal["positions", "velocities", "accelerations", "reactions", "balancing"]
 QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")

@@ -1,8 +1,7 @@
-"""Newton's method on loop closure: joint coordinates along a tree of pairs, each pair beside it closes a loop.
+"""Equations of pairs as rows, and their derivatives by the places of links: of all pairs at once, or of those cut open.
 
-R. L. Norton, Design of Machinery, ch. 4 and 7; J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of
-Multibody Systems, ch. 2 (relative coordinates). There are two equations a loop. One matrix gives places, velocities,
-accelerations and, transposed, the forces in the cut pairs; forces in the tree then follow from its leaves to its root.
+E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3; J. Garcia de Jalon, E. Bayo, Kinematic
+and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
 """
 
 from __future__ import annotations
@@ -10,19 +9,166 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Protocol
 
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, answers
-from tmm_cli.bench.methods.following import Nodes, close, follow
-from tmm_cli.bench.methods.rows import Rows, by_links
-from tmm_cli.groups.linear import solve
-from tmm_cli.groups.sequence import frame_state
-from tmm_cli.groups.state import Accel, Pose, Poses, Rate, Wrench
-from tmm_cli.linkage import FRAME
-from tmm_cli.pairs.sliding import Guided
-from tmm_cli.structure.assur import Pair
-from tmm_cli.vectors import Real, Vector, dot, unit
+from tmm_cli.mechanics.groups.pairs import PAIRS
+from tmm_cli.mechanics.groups.pairs.lower import Constraint, Driven, Guided
+from tmm_cli.mechanics.groups.sequence import frame_state
+from tmm_cli.mechanics.groups.state import Accel, Drives, Pose, Poses, Rate, Rates, Wrench
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.linear import solve
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, unit
+from tmm_cli.mechanics.structure.group import Pair
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Two rows a pair, then the driver's if it is one of them. size (m): what lengths are counted in."""
+
+    linkage: Linkage
+    pairs: tuple[Pair, ...]
+    driven: bool = False
+    size: float = 1.0
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What each pair, and the driver, asks of its links."""
+        found = tuple(PAIRS[pair.kind](pair, self.linkage) for pair in self.pairs)
+        return (*found, Driven.of(self.linkage.driver, self.linkage)) if self.driven else found
+
+    @cached_property
+    def scale(self) -> Real:
+        """What makes each row a pure number."""
+        return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
+
+    def residuals(self, poses: Poses, drives: Drives) -> Real:
+        """What each row is short of zero, (positions, rows)."""
+        return np.stack([row for c in self.constraints for row in c.residuals(poses, drives)], axis=-1) * self.scale
+
+    def matrix(self, poses: Poses) -> Real:
+        """Derivatives by x, y and angle of each moving link, (positions, rows, 3 links)."""
+        first = {name: 3 * k for k, name in enumerate(self.linkage.moving)}
+        J = np.zeros((len(poses[self.linkage.driver.link].x), len(self.scale), 3 * len(first)))
+        for number, constraint in enumerate(self.constraints):
+            for link, parts in constraint.jacobian_rows(poses).items():
+                if link in first:
+                    at = first[link]
+                    for row, (along, around) in enumerate(parts, 2 * number):
+                        J[:, row, at], J[:, row, at + 1], J[:, row, at + 2] = along.real, along.imag, around
+        return J * self.scale[:, None]
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Real:
+        """Second derivatives when no link accelerates, (positions, rows)."""
+        return np.stack([row for c in self.constraints for row in c.velocity_terms(poses, rates)], axis=-1) * self.scale
+
+    def reactions(self, poses: Poses, multipliers: Real) -> dict[str, Vector]:
+        """Multipliers as forces on the second link of each pair, N."""
+        found: dict[str, Vector] = {}
+        pushes = list(np.moveaxis(multipliers * self.scale, -1, 0))
+        for number, (pair, constraint) in enumerate(zip(self.pairs, self.constraints, strict=False)):
+            force = constraint.reaction(poses, pushes[2 * number : 2 * number + 2]).force
+            found[pair.name] = force if pair.j == constraint.links[1] else -force
+        return found
+
+
+def by_links(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
+    """A vector and a number of each moving link, of its origin and its angle, in the columns of the matrix."""
+    found = [part for at, around in map(parts.__getitem__, linkage.moving) for part in (at.real, at.imag, around)]
+    return np.stack(found, axis=-1)
+
+
+# Newton's method on the closure of a whole linkage, started from the nearest of places that were followed once.
+
+
+ROUNDS = 12  # of Newton's method at most; more help nothing where it converges at all
+NODES = 36  # in a turn of the driver, or over the length of the linkage to both sides of the sketch
+ROUNDING = 1e-11  # a gap below this that no longer halves is rounding
+
+
+class Closure(Protocol):
+    """The equations of a linkage in coordinates X (positions, unknowns) of its own choice, without dimension."""
+
+    def residuals(self, X: Real, q: Real) -> Real:
+        """What each equation is short of zero, (positions, unknowns)."""
+
+    def matrix(self, X: Real, q: Real) -> Real:
+        """Their derivatives by the coordinates, (positions, unknowns, unknowns)."""
+
+    def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
+        """The coordinates of given poses."""
+
+
+def close(closure: Closure, X: Real, q: Real, tolerance: float) -> Real:
+    """Newton's method, each position until its gaps are within the tolerance, or are rounding; else it is nan."""
+    active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
+    for _ in range(ROUNDS):
+        residuals = closure.residuals(X, q)
+        size = np.max(np.abs(residuals), axis=-1)
+        active = active & ~(size <= tolerance) & ~((size < ROUNDING) & (size > last / 2))
+        if not np.any(active):
+            break
+        step = solve(closure.matrix(X, q), -residuals)
+        X, last = np.where(active[:, None], X + step, X), size
+    if np.any(active):
+        size = np.max(np.abs(closure.residuals(X, q)), axis=-1)
+        X = np.where((active & ~(size <= max(tolerance, ROUNDING)))[:, None], np.nan, X)
+    return X
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Coordinates of a closure along the driver's way, at growing places q."""
+
+    q: Real
+    X: Real
+    cycle: float | None
+
+    def near(self, q: Real) -> Real:
+        """Those of the nearest node."""
+        within = q if self.cycle is None else self.q[0] + np.mod(q - self.q[0], self.cycle)
+        right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
+        nearer = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
+        return self.X[nearer]
+
+
+def follow(case: Case, closure: Closure) -> Nodes:
+    """A walk from the sketch to both sides, as far as the linkage goes; half a turn each way for a crank."""
+    at = case.linkage.sketch.at
+    here = np.array([at])
+    poses = dict(move(case.linkage, case.kernels, here, case.law).poses)
+    turns = case.linkage.driver.kind == "turn"
+    reach = np.pi if turns else case.size
+    q, X = [at], [close(closure, closure.sketched(poses, here), here, 0.0)[0]]
+    ways = [_walk(closure, X[0], at, sense * reach / (NODES // 2)) for sense in (-1, 1)]
+    whole = turns and all(len(way) == NODES // 2 for way in ways)
+    q = [*(place for place, _ in reversed(ways[0])), at, *(place for place, _ in ways[1])]
+    X = [*(found for _, found in reversed(ways[0])), X[0], *(found for _, found in ways[1])]
+    return Nodes(np.array(q), np.array(X), 2 * np.pi if whole else None)
+
+
+def _walk(closure: Closure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
+    """Places and coordinates one step after the other, until it no longer closes."""
+    found: list[tuple[float, Real]] = []
+    with np.errstate(all="ignore"):
+        for k in range(1, NODES // 2 + 1):
+            q = np.array([at + k * step])
+            X = close(closure, X[None, :], q, 0.0)[0]
+            if not np.max(np.abs(closure.residuals(X[None, :], q))) < ROUNDING:
+                break
+            found.append((float(q[0]), X))
+    return found
+
+
+# Newton's method on loop closure: joint coordinates along a tree of pairs, each pair beside it closes a loop.
+#
+# R. L. Norton, Design of Machinery, ch. 4 and 7; J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of
+# Multibody Systems, ch. 2 (relative coordinates). There are two equations a loop. One matrix gives places,
+# velocities, accelerations and, transposed, the forces in the cut pairs; forces in the tree then follow from its
+# leaves to its root.
 
 
 @dataclass(frozen=True)

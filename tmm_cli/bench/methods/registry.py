@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from tmm_cli.bench.methods import board, differences, loops, multibody, precision, taped
+from tmm_cli.bench.methods import board, differences, loops, multibody
+from tmm_cli.bench.methods import product as precision
+from tmm_cli.bench.methods import product as taped
 from tmm_cli.bench.methods.case import Answers, Case, Method
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.numerics.vectors import Real
 
 
 def family(

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, Unable
-from tmm_cli.linkage import FRAME
-from tmm_cli.vectors import Real, cross, dot, unit
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real, cross, dot, unit
 
 Angles = Callable[[Real, int], tuple[Real, Real]]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import typer
 
-from tmm_cli.cli.commands import add_commands
+from tmm_cli.cli.app import add_commands
 
 MEASUREMENTS = {
     "accuracy": "Time of a position against its error, of many methods.",

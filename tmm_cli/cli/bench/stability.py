@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.bench.chart_stability import charts
-from tmm_cli.bench.families import BY_NAME
+from tmm_cli.bench.scenes import BY_NAME
 from tmm_cli.bench.stability import measure
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json

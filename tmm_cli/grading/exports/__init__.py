@@ -8,17 +8,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from tmm_cli.grading.exports import (
-    feedback,
-    gradescope,
-    junit,
-    moodle,
-    tables_csv,
-    xlsx,
-)
+from tmm_cli.grading.exports import feedback, gradescope, junit, moodle, tables_csv, xlsx
 from tmm_cli.grading.exports.book import Export, Gradebook
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.results.files import Staged, write_whole
+from tmm_cli.reports.files import Staged, write_whole
 
 EXPORTS: Final[Mapping[str, Export]] = {
     "csv": tables_csv.files,
@@ -27,7 +20,7 @@ EXPORTS: Final[Mapping[str, Export]] = {
     "gradescope": gradescope.files,
     "moodle": moodle.files,
     "junit": junit.files,
-    "drawing": lambda book: import_module(f"{__name__}.group").files(book),
+    "drawing": lambda book: import_module("tmm_cli.grading.group_chart").files(book),
 }
 
 

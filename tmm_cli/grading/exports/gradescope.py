@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 
+from tmm_cli.grading.cells import sentence
 from tmm_cli.grading.exports.book import Gradebook, fitting, rounded
 from tmm_cli.grading.exports.student_sheet import output
 from tmm_cli.grading.record import StudentMarks
-from tmm_cli.grading.shown import sentence
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape, quoteattr
 
+from tmm_cli.grading.cells import shown
 from tmm_cli.grading.exports.book import Gradebook, fitting
 from tmm_cli.grading.exports.student_sheet import output
-from tmm_cli.grading.shown import shown
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from tmm_cli.grading.cells import shown
 from tmm_cli.grading.exports.book import Gradebook, rounded
 from tmm_cli.grading.exports.tables_csv import csv_lines
-from tmm_cli.grading.shown import shown
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:

@@ -6,9 +6,9 @@ import cmath
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from tmm_cli.grading.cells import sentence, shown
 from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, rounded, share_text
 from tmm_cli.grading.record import Mark, State, StudentMarks
-from tmm_cli.grading.shown import sentence, shown
 from tmm_cli.language import N_, _, numeral
 
 WIDENED = 1.05  # times the usual error: less more is not worth telling

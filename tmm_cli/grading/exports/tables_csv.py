@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from tmm_cli.grading.exports.book import Gradebook, points_text
-from tmm_cli.grading.exports.rows import ANSWERS_HEADER, Cell, answers_rows, marks_header, marks_rows
+from tmm_cli.grading.exports.book import (
+    ANSWERS_HEADER,
+    Cell,
+    Gradebook,
+    answers_rows,
+    marks_header,
+    marks_rows,
+    points_text,
+)
 from tmm_cli.grading.record import Mark
-from tmm_cli.results.text import csv_cell
+from tmm_cli.reports.table import csv_cell
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:

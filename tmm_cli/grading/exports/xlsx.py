@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.exports.book import Gradebook, rounded
-from tmm_cli.grading.exports.rows import Cell, finite, marks_header, marks_rows, reasons
+from tmm_cli.grading.cells import shown
+from tmm_cli.grading.exports.book import Cell, Gradebook, finite, marks_header, marks_rows, reasons, rounded
 from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
-from tmm_cli.grading.shown import shown
 from tmm_cli.grading.statistics import tables
-from tmm_cli.quantities import NUMBER
-from tmm_cli.results.table import Column
-from tmm_cli.results.workbook import WRITTEN, empty_workbook
+from tmm_cli.mechanics.quantities import NUMBER
+from tmm_cli.reports.spreadsheets import WRITTEN, empty_workbook
+from tmm_cli.reports.table import Column
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}

@@ -7,14 +7,24 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
+from tmm_cli.batch.task import Task
 from tmm_cli.grading.record import Given, Key, Submission
-from tmm_cli.grading.submissions.headings import Heading, Headings, Part, UnknownQuantityError, read_position
-from tmm_cli.grading.submissions.numbers import checked_unit, read_answer
-from tmm_cli.grading.task import Task
+from tmm_cli.grading.submissions.numbers import (
+    Heading,
+    Headings,
+    Part,
+    UnknownQuantityError,
+    checked_unit,
+    read_answer,
+    read_position,
+)
 from tmm_cli.language import _
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.units import parse_unit
-from tmm_cli.quantities import ANGLE
 
 MOST_TOLD = 20  # problems of one submission
 MOST_CELLS = 10_000  # of one submission
@@ -188,3 +198,37 @@ def _number(text: str, unit: str) -> Given:
     if found is None or found.form != "number":
         raise ProblemError(_("one number is wanted here"), found=quote(text))
     return found
+
+
+# Answers whose position is told by the driver's angle, put to the task's positions of the student's variant.
+
+
+NEAR = np.radians(2.0)  # as angles are read off a drawing
+
+
+def at_positions(submission: Submission, task: Task, places: Real) -> Submission:
+    """The submission with these answers among the others; what is not counted of them is told.
+
+    places: angles of the variant's positions (rad).
+    """
+    if not submission.by_angle:
+        return submission
+    asked = {one.key for one in task.asked}
+    answers, told = dict(submission.answers), []
+    for (quantity, angle), given in submission.by_angle.items():
+        away = np.abs(np.remainder(places - angle + np.pi, 2 * np.pi) - np.pi)
+        nearest = int(np.argmin(away))
+        number = nearest + task.rules.count
+        if away[nearest] > NEAR:
+            told.append(
+                _("{quantity} at phi = {angle:.6g} deg: the nearest position, {number}, is at {own:.6g} deg").format(
+                    quantity=quantity, angle=np.degrees(angle), number=number, own=np.degrees(places[nearest]) % 360
+                )
+            )
+        elif (quantity, number) not in asked:
+            told.append(_("not asked, so not counted: {names}").format(names=f"{quantity} at {number}"))
+        elif (quantity, number) in answers:
+            told.append(twice(Heading(quantity, number)))
+        else:
+            answers[quantity, number] = given
+    return replace(submission, answers=answers, by_angle={}, problems=(*submission.problems, *told[:MOST_TOLD]))

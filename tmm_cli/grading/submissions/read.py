@@ -1,21 +1,163 @@
-"""What students hand in: a folder with a file of each, or one table of all. A file that is broken stops nothing."""
+"""The two shapes of a table: an answer in every row, or all answers of a student in one row."""
 
 from __future__ import annotations
 
 import os
+import re
 import unicodedata
-from collections.abc import Collection, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from tmm_cli.batch.task import Task
 from tmm_cli.grading.cells import bytes_of, decoded, rows_of
 from tmm_cli.grading.record import Submission
 from tmm_cli.grading.submissions.answers import Answers, Entry, one_line
-from tmm_cli.grading.submissions.shapes import Shape, shape_of
-from tmm_cli.grading.submissions.yaml_sheet import read_sheet
-from tmm_cli.grading.task import Task
+from tmm_cli.grading.submissions.numbers import PARTS, Part, checked_unit
+from tmm_cli.grading.tables import WHO
 from tmm_cli.language import N_, _
 from tmm_cli.problem.errors import ProblemError, clean, latin, quote
+from tmm_cli.problem.reader import Composer, read_text
+
+Row = Sequence[str]
+
+_COLUMNS = {  # of a table with an answer in every row: how students call them
+    "quantity": ("величина", "что найти", "veličina", "velicina"),
+    "position": ("положение", "№ положения", "номер положения", "položaj", "polozaj", "положај"),
+    "unit": ("единица", "единицы", "ед", "ед изм", "единица измерения", "единицы измерения", "jedinica", "јединица"),
+    "value": ("answer", "значение", "ответ", "vrednost", "vrijednost", "odgovor", "вредност", "одговор"),
+    "size": ("модуль", "intenzitet", "интензитет"),
+    "angle": ("угол", "ugao", "угао"),
+    "student": WHO,
+}
+_WORDS = {word: column for column, words in _COLUMNS.items() for word in words}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How the rows below a header are read. student: the column of names, if there is one. width: of the header."""
+
+    student: int | None
+    entries: Callable[[Row], Iterator[Entry]]
+    width: int
+
+    def named(self, row: Row) -> str:
+        """The student that a row names; "" of none."""
+        return "" if self.student is None else _cell(row, self.student)
+
+    def longer(self, row: Row) -> bool:
+        """Whether something stands beyond the header."""
+        return any(row[self.width :])
+
+
+def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
+    """Long where a column is called `quantity`, and wide otherwise; filled: rows follow. Raises ProblemError."""
+    columns: dict[str, tuple[int, str]] = {}  # places and units: `angle, deg`
+    for n, text in enumerate(header):
+        word, _comma, unit = re.sub(r"\[(.*)\]$", r",\1", text).partition(",")
+        name = " ".join(word.casefold().replace(".", " ").split())
+        columns.setdefault(_WORDS.get(name, name), (n, unit.strip()))
+    if "quantity" in columns:
+        return _long(columns, len(header))
+    first = 0 if _known(header[0], answers) else 1
+    if filled and "student" not in columns and not any(_known(text, answers) for text in header):
+        raise ProblemError(
+            _("no heading of this table is understood"), found=quote("; ".join(header)),
+            allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
+        )  # fmt: skip
+    for text in header[first:]:
+        if _is_unit(text) and not _known(text, answers):
+            raise ProblemError(
+                _("a heading with a comma needs quotes"), found=quote(text), allowed=_('"H, mm" or H [mm]')
+            )
+
+    def entries(row: Row) -> Iterator[Entry]:
+        return (Entry(cell, over) for over, cell in zip(header[first:], row[first:], strict=False))
+
+    return Shape(0 if first else None, entries, len(header))
+
+
+def _known(heading: str, answers: Answers) -> bool:
+    try:
+        answers.heading(Entry("", heading))
+    except ProblemError:
+        return False
+    return True
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        return bool(checked_unit(text))
+    except ProblemError:
+        return False
+
+
+def _long(columns: dict[str, tuple[int, str]], width: int) -> Shape:
+    """Columns quantity, and perhaps student, position, unit, value, x, y, size, angle."""
+    places = {name: place for name, (place, _unit) in columns.items()}
+    parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
+    parts += [(part, *columns[part]) for part in PARTS if part in columns]
+
+    def entries(row: Row) -> Iterator[Entry]:
+        quantity, position, unit = (_cell(row, places.get(name)) for name in ("quantity", "position", "unit"))
+        for part, place, own in parts:
+            yield Entry(_cell(row, place), quantity, part, position, own or ("" if part == "angle" else unit))
+
+    return Shape(places.get("student"), entries, width)
+
+
+def _cell(row: Row, place: int | None) -> str:
+    return row[place] if place is not None and place < len(row) else ""
+
+
+# An answer sheet in YAML: `v of E at 7, m/s: 1,31` line by line, a vector perhaps as a mapping of its parts.
+
+
+class Texts(Composer):
+    """Every value as the text that stands there, as students write numbers in other ways than YAML does."""
+
+    def parsed(self) -> Iterator[Any]:
+        for self.last in super().parsed():
+            yield self.last
+
+    def scalar(self, event: Any, path: Any) -> str:
+        return str(event.value)
+
+    def cut_by_comma(self, event: Any, path: Any) -> None:
+        """Nothing: a list is read as the text that it is."""
+
+    def sequence(self, start: Any, path: Any) -> Any:
+        found = super().sequence(start, path)
+        return self.text[start.start_mark.index : self.last.end_mark.index] if start.flow_style else found
+
+
+def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
+    """The student that a sheet names ("" of none) and its entries. Raises ProblemError."""
+    data = read_text(text, file, Texts).data
+    student: Any = data.pop("student", "")
+    answers: Any = data.pop("answers", data) or {}
+    if not isinstance(student, str) or not isinstance(answers, dict):
+        raise ProblemError(
+            _("this is no answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
+        )
+    return student, list(_entries(answers))
+
+
+def _entries(answers: dict[str, Any]) -> Iterator[Entry]:
+    for over, value in answers.items():
+        if isinstance(value, dict):
+            yield from (Entry(_text(cell), f"{over}, {part}") for part, cell in value.items())
+        else:
+            yield Entry(_text(value), over)
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else quote(value)
+
+
+# What students hand in: a folder with a file of each, or one table of all. A file that is broken stops nothing.
+
 
 LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000

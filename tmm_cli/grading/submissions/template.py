@@ -10,12 +10,12 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from tmm_cli.grading.task import Asked, Task
+from tmm_cli.batch.task import Asked, Task
 from tmm_cli.language import _
+from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.quantities import ANGLE
-from tmm_cli.results.files import write_whole
-from tmm_cli.results.workbook import empty_workbook
+from tmm_cli.reports.files import write_whole
+from tmm_cli.reports.spreadsheets import empty_workbook
 
 COLUMNS = ("quantity", "position", "unit", "value", "x", "y", "size")  # and the angle, in the file's unit
 SCALAR, VECTOR = COLUMNS[3:4], (*COLUMNS[4:], "angle")  # where an answer is written

@@ -11,15 +11,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.dynamics.balancing import Balanced, Counterweight
-from tmm_cli.dynamics.balancing_task import BalancingTask, Place
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Linkage
+from tmm_cli.mechanics.dynamics.balancing import Balanced, BalancingTask, Counterweight, Place
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.vectors import cross, dot
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import EXACT, Expression, Found, Leaf, added, evaluate, signed
-from tmm_cli.plans.record import Symbol
-from tmm_cli.vectors import cross, dot
 
 ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
 SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found

@@ -6,12 +6,11 @@ import math
 from collections.abc import Sequence
 
 from tmm_cli.language import _
+from tmm_cli.mechanics.forces.equilibrium import ForceSum, MomentEquation, Part, Term
+from tmm_cli.mechanics.forces.free_bodies import Symbol
 from tmm_cli.note.breaking import chain
 from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
 from tmm_cli.note.math import Letter, Node, Number, row
-from tmm_cli.plans.moments import MomentEquation, Term
-from tmm_cli.plans.projections import ForceSum, Part
-from tmm_cli.plans.record import Symbol
 
 MU = Symbol("μ", "l")
 ALONG = 1e-12  # one less the cosine: a force with less is along the guide

@@ -6,18 +6,16 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.draw.paper.sheet import safe
-from tmm_cli.forces.applied import Applied
+from tmm_cli.drawing.paper.sheet import safe
 from tmm_cli.language import _
+from tmm_cli.mechanics.forces.free_bodies import Symbol, balance_symbol, load_symbols
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE
+from tmm_cli.mechanics.plans.lever import LeverPlan, Scales, drawn_check, lever_plan, sheets
 from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
-from tmm_cli.plans.bodies import load_symbols
-from tmm_cli.plans.drawn import Scales, drawn_check, sheets
-from tmm_cli.plans.lever import LeverPlan, lever_plan
-from tmm_cli.plans.record import Symbol, balance_symbol
-from tmm_cli.tolerances import NO_DIFFERENCE
 
 
 def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:

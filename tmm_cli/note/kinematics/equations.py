@@ -1,19 +1,151 @@
-"""Vector equations in letters, with what is known of each vector: two lines under one known whole, one line under one
-whose line is known; and the lines that are known."""
+"""Sentences that velocities and accelerations share."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Slide
-from tmm_cli.note.blocks import Block, Equation, said
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.linkage import FRAME, Slide
+from tmm_cli.mechanics.plans.motion import massive
+from tmm_cli.mechanics.plans.vector_equations import About, Along, OnGuide, Spot, Step, VectorEquation
+from tmm_cli.note.blocks import Block, Equation, listed, said
 from tmm_cli.note.breaking import LINE, width
-from tmm_cli.note.kinematics.on_paper import Here, vector
-from tmm_cli.note.kinematics.words import name_of
+from tmm_cli.note.expression import Found, Leaf
+from tmm_cli.note.kinematics.on_paper import Here, OnPaper, Vector, drawn, large, unit, vector, zero
 from tmm_cli.note.math import Letter, Node, Number, Words, row
-from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import About, Along, OnGuide, Spot, Step, VectorEquation
+
+
+def sense(value: float) -> str:
+    """Of what turns."""
+    return _("counterclockwise") if value > 0 else _("clockwise")
+
+
+def name_of(spot: Spot) -> Symbol:
+    """The name of a point; of one under a stone with the number of its link below the line."""
+    return Symbol(spot.at, spot.name[len(spot.at) :])
+
+
+def direct(step: Step) -> list[About]:
+    """Points that follow from what is known before the equations of a group."""
+    return [e for e in step.equations if isinstance(e, About) and e.known and not e.idle]
+
+
+def solved(step: Step) -> list[VectorEquation]:
+    """What is solved together; not what a higher pair gives, nor what follows by itself."""
+    alone = direct(step)
+    return [e for e in step.equations if e not in alone and not (isinstance(e, OnGuide) and e.known)]
+
+
+def sought(step: Step, known: Collection[str]) -> list[Spot]:
+    """Points that the equations give, but for those that move as others."""
+    together = solved(step)
+    others = [e for e in step.equations if e not in together or (isinstance(e, About) and e.idle)]
+    spots = [s for e in together for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])]
+    taken = {*known, *(e.point.name for e in others)}
+    return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
+
+
+def once_a_link(together: Iterable[VectorEquation]) -> list[About]:
+    """The equation of each link whose rotation is sought, by which it is found."""
+    found: dict[str, About] = {}
+    for one in together:
+        if isinstance(one, About) and not one.known:
+            found.setdefault(one.link, one)
+    return list(found.values())
+
+
+def further(step: Step) -> list[About]:
+    """Further points of links that turn."""
+    return [about for about in step.after if not about.idle]
+
+
+def points_of(step: Step) -> set[str]:
+    """Points that are told in a step."""
+    found = {s.name for e in step.equations for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])}
+    return found | {about.point.name for about in further(step)}
+
+
+def equal(*symbols: Symbol) -> Block:
+    """Quantities that are one."""
+    letters = [Letter(one) for one in symbols]
+    return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
+
+
+def introduced(step: Step, points: Sequence[Spot], one: str, several: str) -> Block:
+    """What the equations of a group are for: one point, several ones, or none."""
+    assert step.group is not None
+    text = one if len(points) == 1 else several if points else _("Group {group}: what is not known yet is found from")
+    return said(text, group=step.group.title, points=listed(map(name_of, points)))
+
+
+def scale(plan: OnPaper, vectors: Sequence[Vector], text: str, at_rest: str) -> Iterable[Block]:
+    """Of a plan, by the first vector on it that is known."""
+    first = large(vectors)
+    if first is None:
+        yield said(at_rest)
+        return
+    yield said(text, pole=Symbol(plan.sort.pole), segment=drawn(first), v=first.symbol, a=first.symbol)
+    yield plan.scaled(first)
+
+
+def turning(
+    here: Here, together: Iterable[VectorEquation], letter: str, vector_of: Callable[[About], Vector],
+    carried: str, told: str,
+) -> Iterable[Block]:  # fmt: skip
+    """What links turn with, each once, with its sense; carried: how that is seen, where the method is explained."""
+    for about in once_a_link(together):
+        value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
+        rate = Leaf(Symbol(letter, about.link), abs(value))
+        if not found.segment or not value:
+            yield zero(rate.symbol)
+            continue
+        yield Found(rate.symbol, found.leaf / here.length(about.point, about.base), rate.value, unit(letter))
+        yield said(
+            carried if here.first else told, v=vector(found.symbol), a=vector(found.symbol), epsilon=rate.symbol,
+            point=name_of(about.point), link=about.link, sense=sense(value),
+        )  # fmt: skip
+
+
+def turning_as_one(here: Here, step: Step, letter: str) -> Iterable[Block]:
+    """Links that turn as others do, which is said where the method is explained."""
+    for links in step.same:
+        if links[0] in here.rates(letter):
+            if here.first and not step.ratios:
+                yield said(_("Links {links} turn as one:"), links=", ".join(links))
+            yield equal(*(Symbol(letter, link) for link in links))
+
+
+def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Block]:
+    """Points that no equation needed, and centres of mass: by similarity."""
+    linkage = here.motion.linkage
+    names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in massive(linkage)]
+    if not names:
+        return
+    if here.first:
+        yield said(
+            _("The ends of the vectors of all other points and of the centres of mass are found by similarity: "
+              "the figure of a link on the plan is similar to the link.")
+        )  # fmt: skip
+    named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
+    for name in names:
+        vector = plan.of(name)
+        twin = next((other for other in named if vector.segment and plan.same(name, other)), None)
+        yield plan.read(vector) if twin is None else equal(vector.symbol, plan.of(twin).symbol)
+
+
+def not_on_paper() -> Block:
+    """Of a group that no polygon solves."""
+    return said(
+        _("These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
+          "found before the others. The equations of the group were solved together, numerically; the plan shows "
+          "their solution:")
+    )  # fmt: skip
+
+
+# Vector equations in letters, with what is known of each vector: two lines under one known whole, one line under one
+# whose line is known; and the lines that are known.
+
 
 WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
 

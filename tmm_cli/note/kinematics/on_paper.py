@@ -7,18 +7,19 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from tmm_cli.draw.paper.picture import Picture
-from tmm_cli.draw.sheets.motion_plans import Sort, sorts
-from tmm_cli.kinematics.motion import Motion
+from tmm_cli.drawing.paper.picture import Picture
+from tmm_cli.drawing.sheets.motion_plans import Sort, sorts
 from tmm_cli.language import _
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.plans.motion import turns
+from tmm_cli.mechanics.plans.record import NamedVector, Plan, extent, in_letters, round_scale
+from tmm_cli.mechanics.plans.vector_equations import Spot
 from tmm_cli.note.blocks import Block, Equation
 from tmm_cli.note.context import OF_POSITION, Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Letter, Number, row
-from tmm_cli.plans.readings import turns
-from tmm_cli.plans.record import NamedVector, Plan, Symbol, extent, in_letters, round_scale
-from tmm_cli.plans.vector_equations import Spot
-from tmm_cli.tolerances import NO_VECTOR
 
 SMALL = 0.2  # of the largest known vector: a smaller one is not the one by which a scale is told
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.linkage import FRAME, Mesh
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.groups.pairs.lower import axis
+from tmm_cli.mechanics.linkage import FRAME, Mesh
+from tmm_cli.mechanics.plans.vector_equations import Along, OnGuide, Ratio, Step
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
+from tmm_cli.note.kinematics.equations import sense
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
-from tmm_cli.note.kinematics.words import sense
 from tmm_cli.note.math import Letter, row
-from tmm_cli.pairs.base import axis
-from tmm_cli.plans.record import Symbol
-from tmm_cli.plans.vector_equations import Along, OnGuide, Ratio, Step
 
 
 def begun(here: Here, step: Step, letter: str) -> Iterable[Block]:

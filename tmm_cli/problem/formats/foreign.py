@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
+import cmath
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Literal
+from itertools import count
+from string import ascii_uppercase
+from typing import Any, Literal
+
+from tmm_cli.language import _
+from tmm_cli.problem.errors import Path, ProblemError, Tree, clean, nearest, quote
+from tmm_cli.problem.scalars import plain_value
+from tmm_cli.problem.values import LARGEST
 
 FRAME = "\0"  # no link of any file is called so
 Length = Literal["mm", "cm", "m", "in"]
@@ -82,3 +94,303 @@ class Foreign:
     one_place: bool = False
     notes: tuple[str, ...] = field(default=())
     left: tuple[str, ...] = field(default=())
+
+
+# Values of a foreign file with their places in it, so that a mistake is said where it stands.
+
+
+MOST = 500  # items of a list, keys of a mapping
+
+
+@dataclass(frozen=True)
+class Node:
+    """A value of a file that has been read. All methods raise ProblemError where something else is wanted."""
+
+    tree: Tree
+    data: Any
+    path: Path = ()
+
+    def refused(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
+        """The error, with its place."""
+        found = None if isinstance(self.data, dict | list) else quote(self.data)
+        error = ProblemError(message, path=self.path, found=found, allowed=allowed, near=near)
+        return error.located(self.tree.file, self.tree)
+
+    def get(self, key: str) -> Node | None:
+        """The value of a key, None where there is none."""
+        found = self.mapping().get(key)
+        return None if found is None else Node(self.tree, found, (*self.path, key))
+
+    def __getitem__(self, key: str) -> Node:
+        found = self.get(key)
+        if found is None:
+            error = ProblemError(_("key '{key}' is missing").format(key=key), path=self.path, key=True)
+            raise error.located(self.tree.file, self.tree)
+        return found
+
+    def mapping(self) -> dict[str, Any]:
+        """Its keys."""
+        if not isinstance(self.data, dict):
+            raise self.refused(_("keys with values are wanted"))
+        self._bounded(len(self.data))
+        return self.data
+
+    def _bounded(self, length: int) -> None:
+        if length > MOST:
+            raise self.refused(_("this is too long: at most {max_length}").format(max_length=MOST))
+
+    def pairs(self) -> Iterator[tuple[str, Node]]:
+        """Its keys and their values."""
+        for key, value in self.mapping().items():
+            yield key, Node(self.tree, value, (*self.path, key))
+
+    def items(self) -> list[Node]:
+        """Of a list."""
+        if not isinstance(self.data, list):
+            raise self.refused(_("a list [..., ...] is wanted"))
+        self._bounded(len(self.data))
+        return [Node(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
+
+    def text(self) -> str:
+        """A name."""
+        if isinstance(self.data, bool) or not isinstance(self.data, str | int) or len(str(self.data)) > 100:
+            raise self.refused(_("a name is wanted"))
+        return str(self.data)
+
+    def one_of(self, names: Iterable[str]) -> str:
+        """One of the names that are known."""
+        known, found = list(names), self.text()
+        if found not in known:
+            raise self.refused(_("this word is not known here"), ", ".join(known), nearest(found, known))
+        return found
+
+    def number(self) -> float:
+        """A number that a mechanism can have."""
+        if isinstance(self.data, bool) or not isinstance(self.data, int | float):
+            raise self.refused(_("a number is wanted"))
+        if not -LARGEST <= self.data <= LARGEST:
+            raise self.refused(_("this is too large for a mechanism"))
+        return float(self.data)
+
+    def vector(self) -> complex:
+        """Two coordinates; a third one, of a plane mechanism, is left out."""
+        items = self.items()
+        if len(items) not in (2, 3):
+            raise self.refused(_("two coordinates [x, y] are wanted"))
+        return complex(items[0].number(), items[1].number())
+
+
+# A mechanism of another program as the text of a problem file.
+
+
+PLAIN = re.compile(r"(?!at$|g\d+$)[^\W\d_]\w{0,11}|[1-9]\d?")  # `at` and g1 mean something else beside them
+SAME = 1e-9  # of the size: points so near are in one place
+ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
+
+
+def written(foreign: Foreign, source: str) -> str:
+    """The text; source: the name of the file that was read."""
+    return "\n".join(_Writing.of(foreign).lines(source)) + "\n"
+
+
+@dataclass(frozen=True)
+class _Writing:
+    """names: of points, and links: of bodies, as the problem file calls them; axes: of bodies, origin and angle."""
+
+    foreign: Foreign
+    names: dict[str, str]
+    links: dict[str, str]
+    axes: dict[str, tuple[complex, float]]
+    size: float
+
+    @classmethod
+    def of(cls, foreign: Foreign) -> _Writing:
+        links = _plain([body.name for body in foreign.bodies], map(str, count(1)), digits=True)
+        axes: dict[str, tuple[complex, float]] = {FRAME: (0j, 0.0)}
+        for body in foreign.bodies:
+            axes[body.name] = _axes(foreign, body)
+        for slide in foreign.slides:  # a stone has the directions of what it slides on
+            if not _spread(foreign, slide.runner):
+                axes[slide.runner] = (axes[slide.runner][0], axes[slide.carrier][1])
+        return cls(foreign, _plain(foreign.places, _letters()), links, axes, _size(foreign))
+
+    def lines(self, source: str) -> Iterator[str]:
+        it = self.foreign
+        told = _("Imported from {program}: {file}.").format(program=it.program, file=clean(source, 200))
+        yield f"# {told}"
+        for name, new in {**self.names, **self.links}.items():
+            if name != new:
+                yield "# " + _("{name} is called {new} here.").format(name=clean(name, 60), new=new)
+        yield from (f"# {clean(note, 300)}" for note in it.notes)
+        if it.left:
+            yield "# " + _("Not taken over:")
+            yield from (f"# - {clean(line, 300)}" for line in it.left)
+        yield "tmm: 1"
+        yield f"title: {_text(it.title or source)}"
+        yield f"units: {{length: {it.length}, angle: deg}}"
+        if it.frame:
+            yield "points: " + _flow((self.names[p], self._vector(it.places[p])) for p in it.frame)
+        fixed = [slide for slide in it.slides if slide.carrier == FRAME]
+        if fixed:
+            guides = [(f"g{k}", self._guide(slide)) for k, slide in enumerate(fixed, 1)]
+            yield "guides: " + _flow(guides)
+        yield "links:"
+        for body in it.bodies:
+            yield f"  {self._key(body.name)}: {self._link(body, fixed)}"
+        yield from self._motion()
+        yield from self._loads()
+
+    def _key(self, body: str) -> str:
+        return "0" if body == FRAME else self.links[body]
+
+    def _local(self, body: str, place: complex) -> complex:
+        origin, angle = self.axes[body]
+        return (place - origin) * cmath.rect(1, -angle)
+
+    def _vector(self, z: complex) -> str:
+        return f"[{', '.join(_number(part if abs(part) > ROUNDING * self.size else 0.0) for part in (z.real, z.imag))}]"
+
+    def _guide(self, slide: Slide) -> str:
+        through = self._local(slide.carrier, slide.through)
+        angle = math.degrees(slide.angle - self.axes[slide.carrier][1])
+        return f"{{through: {self._vector(through)}, angle: {_number(math.remainder(angle, 360))}}}"
+
+    def _link(self, body: Body, fixed: list[Slide]) -> str:
+        places = {self.names[point]: self._local(body.name, self.foreign.places[point]) for point in body.points}
+        parts = [("name", _text(body.label))] if body.label else []
+        if len(places) == 2 and _spread(self.foreign, body.name):
+            parts += [("points", f"[{', '.join(places)}]"), ("length", _number(abs(list(places.values())[1])))]
+        elif len(places) == 1:
+            parts.append(("points", f"[{next(iter(places))}]"))
+        else:
+            parts.append(("points", _flow((name, self._vector(z)) for name, z in places.items())))
+        slides = [self._slide(slide, fixed) for slide in self.foreign.slides if slide.runner == body.name]
+        if slides:
+            parts.append(("slides", slides[0] if len(slides) == 1 else f"[{', '.join(slides)}]"))
+        return _flow(parts)
+
+    def _slide(self, slide: Slide, fixed: list[Slide]) -> str:
+        turned = math.degrees(self.axes[slide.runner][1] - self.axes[slide.carrier][1])
+        parts = [("point", self.names[slide.point])]
+        if abs(math.remainder(turned, 360)) > SAME:
+            parts.append(("turned", _number(math.remainder(turned, 360))))
+        if slide.carrier == FRAME:
+            return _flow([("on", f"g{fixed.index(slide) + 1}"), *parts])
+        return _flow([("on", self._key(slide.carrier))]).rstrip("}") + ", " + self._guide(slide)[1:-1] + ", " + _flow(
+            parts)[1:]  # fmt: skip
+
+    def _motion(self) -> Iterator[str]:
+        it, drive = self.foreign, self.foreign.drive
+        given = [("link", self._key(drive.body))]
+        if drive.on != FRAME:
+            given.append(("on", self._key(drive.on)))
+        if drive.at is None:
+            speed = f"{_number(abs(drive.speed))} {drive.unit}"
+            given += [("speed", speed), ("turns", "cw" if drive.speed < 0 else "ccw")]
+        else:
+            given.append(("speed", f"{_number(drive.speed)} {drive.unit.replace('length', it.length)}"))
+        if drive.acceleration:
+            gain = drive.acceleration * (-1 if drive.speed < 0 else 1)
+            given.append(("acceleration", f"{_number(gain)} rad/s^2"))
+        yield "driver: " + _flow(given)
+        angle = math.remainder(math.degrees(self.axes[drive.body][1]), 360)
+        at = _number(angle if drive.at is None else drive.at)
+        moving = [(self.names[p], self._vector(z)) for p, z in it.places.items() if p not in it.frame]
+        turned = [
+            (self._key(body.name), _number(math.degrees(self.axes[body.name][1])))
+            for body in it.bodies
+            if (body.name != drive.body or drive.at is not None)
+            and not _spread(it, body.name)
+            and self._key(body.name) not in it.places
+        ]
+        yield "sketch: " + _flow([("at", at), *moving, *turned])
+        if it.output:
+            yield f"output: {self._key(it.output)}"
+        yield f"positions: {{at: [{at}], detail: [0]}}" if it.one_place else "positions: {count: 12}"
+
+    def _loads(self) -> Iterator[str]:
+        it = self.foreign
+        masses = [(self._key(body.name), self._mass(body)) for body in it.bodies if body.mass or body.inertia]
+        if masses:
+            yield "masses:"
+            yield from (f"  {name}: {mass}" for name, mass in masses)
+        if it.pushes:
+            yield "loads:"
+            names = _plain([push.name for push in it.pushes], (f"F{k}" for k in count(1)))
+            yield from (f"  {names[push.name]}: {self._push(push)}" for push in it.pushes)
+        if it.gravity is not None:
+            yield f"gravity: {self._vector(it.gravity)}"
+
+    def _mass(self, body: Body) -> str:
+        parts = [("mass", f"{_number(body.mass)} kg"), ("inertia", f"{_number(body.inertia)} kg*m^2")]
+        if body.centre is not None:
+            parts.append(("centre", self._vector(self._local(body.name, body.centre))))
+        return _flow(parts)
+
+    def _push(self, push: Push) -> str:
+        parts = [("on", self._key(push.body))]
+        if push.force:
+            parts.append(("at", self._vector(self._local(push.body, push.at))))
+            own = push.force * cmath.rect(1, -self.axes[push.body][1]) if push.turns else push.force
+            size = ", ".join(f"{_number(part)} N" for part in (own.real, own.imag))
+            parts.append(("force", f"[{size}]"))
+            if push.turns:
+                parts.append(("axes", "link"))
+        if push.moment:
+            parts.append(("moment", f"{_number(push.moment)} N*m"))
+        return _flow(parts)
+
+
+def _axes(foreign: Foreign, body: Body) -> tuple[complex, float]:
+    """Origin in the first point, x axis towards the next one that is elsewhere."""
+    places = [foreign.places[point] for point in body.points]
+    origin = places[0] if places else body.centre or 0j
+    away = next((z for z in places if abs(z - origin) > SAME * _size(foreign)), None)
+    return origin, 0.0 if away is None else cmath.phase(away - origin)
+
+
+def _spread(foreign: Foreign, name: str) -> bool:
+    """Whether two points of a body are in two places."""
+    body = next(body for body in foreign.bodies if body.name == name)
+    places = [foreign.places[point] for point in body.points]
+    return any(abs(z - places[0]) > SAME * _size(foreign) for z in places)
+
+
+def _size(foreign: Foreign) -> float:
+    return max((abs(z) for z in foreign.places.values()), default=1.0)
+
+
+def _plain(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
+    """A plain name for each: its own, or else the first of the others that is free. digits: may be a name."""
+    own = list(dict.fromkeys(names))
+    free = (other for other in others if other not in own)
+    return {name: name if _is_plain(name, digits) else next(free) for name in own}
+
+
+def _is_plain(name: str, digits: bool) -> bool:
+    """Whether YAML reads it as a name: no null, no true, no nan."""
+    if not PLAIN.fullmatch(name):
+        return False
+    try:
+        read = plain_value(name)
+    except ProblemError:
+        return False
+    return isinstance(read, str) or (digits and type(read) is int)
+
+
+def _letters() -> Iterator[str]:
+    """A, B, ..., Z, A1, B1, ...."""
+    for k in count():
+        yield from (letter + (str(k) if k else "") for letter in ascii_uppercase)
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.15g}"
+
+
+def _text(text: str) -> str:
+    return json.dumps(clean(text, 200), ensure_ascii=False)
+
+
+def _flow(parts: Iterable[tuple[str, str]]) -> str:
+    return "{" + ", ".join(f"{key}: {value}" for key, value in parts) + "}"

@@ -8,10 +8,9 @@ import re
 from collections.abc import Mapping
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem.errors import Mark, ProblemError, quote
 from tmm_cli.problem.formats.foreign import Foreign
 from tmm_cli.problem.formats.pmks import Force, Joint, Link, Saved, foreign
-from tmm_cli.problem.tree import Mark
 from tmm_cli.problem.values import LARGEST
 
 PARTS = ("joints", "links", "forces", "pathPoints", "threePositions", "settings")

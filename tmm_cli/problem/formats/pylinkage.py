@@ -7,8 +7,7 @@ import math
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Slide
-from tmm_cli.problem.formats.node import Node
+from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Node, Slide
 from tmm_cli.problem.reader import read_text
 
 JOINTS = ("ground", "revolute", "prismatic", "tracker")

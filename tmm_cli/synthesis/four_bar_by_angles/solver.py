@@ -1,29 +1,150 @@
-"""Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
-
-l1 = AB, l2 = BC, l3 = DC, l4 = AD; angles from AD, counterclockwise, without the zero angles phi0 and psi0. Of all real
-solutions those without defects are kept: all pairs on one assembly, no place between them where the input locks.
-More pairs than a four-bar can pass are met with the least squares of errors.
-"""
+"""Structural error of a four-bar that generates a function: its curve and its largest size."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _
+from tmm_cli.mechanics.numerics.roots import least
+from tmm_cli.mechanics.numerics.vectors import settled
 from tmm_cli.synthesis import four_bar
-from tmm_cli.synthesis.four_bar_by_angles.drawing import construction
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars
-from tmm_cli.synthesis.four_bar_by_angles.function import ANGLES
-from tmm_cli.synthesis.four_bar_by_angles.pairs import LONGEST, Quality, Task, chosen, of_ratios, quality, real, through
-from tmm_cli.synthesis.four_bar_by_angles.parallelogram import parallelogram
-from tmm_cli.synthesis.four_bar_by_angles.structural_error import errors, extremes, off, reached
+from tmm_cli.synthesis.construction import Arc, Construction, Diagram, Line, Segment, Spot, swept
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs, parallelogram
+from tmm_cli.synthesis.four_bar_by_angles.pairs import (
+    ANGLES,
+    LONGEST,
+    Function,
+    Quality,
+    Task,
+    chosen,
+    of_ratios,
+    quality,
+    real,
+    through,
+)
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value, given
-from tmm_cli.vectors import settled
+
+ERRORS: Final = 721  # places of the curve
+NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
+
+
+def _scan(function: Function) -> Any:
+    """Input angles (rad) that are looked at: even, and where the table has rows."""
+    even = np.linspace(min(function.phi), max(function.phi), ERRORS)
+    return np.unique(np.concatenate((even, function.corners())))
+
+
+def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, float]:
+    """Input angles (rad) of the largest peaks of an error, and its largest size, to the last digits.
+
+    Where a table has a corner an extreme may be there; between the places of the scan the error has one extreme.
+    """
+    phi = _scan(function)
+    size = np.abs(error(phi))
+    inner = (size[1:-1] >= size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > NEAR * np.max(size))
+    peaks = [least(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
+    places = np.array([place for place, __ in peaks])
+    return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
+
+
+def side_of(one: Bars, task: Task) -> float:
+    """The assembly of the pairs: the sign of (BC x DC)."""
+    phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
+    return min((1.0, -1.0), key=lambda side: float(np.sum((outputs(one, phi, psi, side) - psi) ** 2)))
+
+
+def off(one: Bars, task: Task) -> Any:
+    """Errors of the output angle (rad) at the pairs."""
+    phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
+    return outputs(one, phi, psi, side_of(one, task)) - psi
+
+
+def reached(one: Bars, task: Task) -> Diagram:
+    """Output angles over the input, and the pairs they are to be near."""
+    side, (start, end) = side_of(one, task), task.span
+    phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
+    psi = np.asarray(task.psi, dtype=float)
+    order = np.argsort(at_pairs)
+    lines = (
+        Line(N_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
+        Line(N_("wanted"), at_pairs, psi, dots=True),
+    )
+    return Diagram("pairs", N_("Output angles at the pairs"), (N_("input angle phi"), "angle"),
+                   (N_("output angle psi"), "angle"), lines)  # fmt: skip
+
+
+def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
+    """The curve of structural error over the input angle, with the points of the task, and its largest size."""
+    assert task.function
+    function = task.function
+    side = side_of(one, task)
+
+    def error(phi: Any) -> Any:
+        wanted = function.wanted(phi)
+        return outputs(one, phi, wanted, side) - wanted
+
+    places, largest = extremes(error, function)
+    phi = np.unique(np.concatenate((_scan(function), places)))
+    at_points = np.asarray(task.phi, dtype=float)
+    lines = (
+        Line(N_("structural error of the output angle"), phi, error(phi)),
+        Line(N_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True),
+    )
+    axes = (N_("input angle phi"), "angle"), (N_("structural error of the output angle"), "angle")
+    return Diagram("error", N_("Structural error over the range"), *axes, lines), largest
+
+
+# The construction of a four-bar by pairs of angles: all positions turned back to the first input.
+
+
+def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Construction:
+    """All positions turned back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
+    phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
+    b, c = (np.asarray(x, dtype=complex) * size for x in one.pins(phi, psi))
+    back = c * np.exp(-1j * (phi - phi[0]))
+    a, d = 0j, complex(size)
+    segments = [
+        Segment(a, d, "axis", "l4"), Segment(a, complex(b[0]), "link", "l1"),
+        Segment(complex(b[0]), complex(c[0]), "link", "l2"), Segment(d, complex(c[0]), "link", "l3"),
+    ]  # fmt: skip
+    spots = [Spot("A", a, "support"), Spot("D", d, "support"), Spot("B1", complex(b[0]), "hinge"),
+             Spot("C1", complex(c[0]), "hinge")]  # fmt: skip
+    arcs = [swept(complex(b[0]), back, "dashed", beyond=0.3)]
+    for name, row, centre in (("C", c, d), ("B", b, a)):
+        arcs.append(swept(centre, row))
+        for k in range(1, len(row)):
+            segments.append(Segment(centre, complex(row[k]), "thin"))
+            spots.append(Spot(f"{name}{k + 1}", complex(row[k]), "dot"))
+    before = complex(c[0])
+    for k in range(1, len(back)):
+        here = complex(back[k])
+        arc = sorted((float(np.angle(c[k])), float(np.angle(c[k]) - phi[k] + phi[0])))
+        arcs.append(Arc(a, float(abs(c[k])), arc[0], arc[1], "dashed"))
+        segments += [Segment(before, here, "thin"), Segment((before + here) / 2, complex(b[0]), "dashed")]
+        spots.append(Spot(f"C{k + 1}′", here, "dot"))
+        before = here
+    lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
+    values = tuple((name, value, "length") for name, value in lengths)
+    title = N_(
+        "Pairs turned back about {A} to the first input: {B}1 is the centre of the circle through {C}1, {C}2′ ..."
+    )
+    note = N_("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
+    return Construction(
+        title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
+    )  # fmt: skip
+
+
+# Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
+#
+# l1 = AB, l2 = BC, l3 = DC, l4 = AD; angles from AD, counterclockwise, without the zero angles phi0 and psi0. Of all
+# real solutions those without defects are kept: all pairs on one assembly, no place between them where the input
+# locks. More pairs than a four-bar can pass are met with the least squares of errors.
+
 
 __all__ = ["PARAMETERS", "Task", "solve"]
 LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called

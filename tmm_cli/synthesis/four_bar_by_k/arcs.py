@@ -18,9 +18,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from tmm_cli.mechanics.numerics.vectors import settled, unit
 from tmm_cli.synthesis.four_bar import cosine as cosine_of
-from tmm_cli.synthesis.mean_ratio import theta_of
-from tmm_cli.vectors import settled, unit
+from tmm_cli.synthesis.measures import theta_of
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
 END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for

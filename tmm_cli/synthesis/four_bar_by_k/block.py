@@ -7,10 +7,10 @@ from typing import Literal
 from pydantic import Field
 
 from tmm_cli.language import _
+from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import LENGTH
 from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar_by_k.arcs import Task
 from tmm_cli.synthesis.four_bar_by_k.solver import QUANTITIES

@@ -11,27 +11,25 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from tmm_cli.assembly.rank import mobile
-from tmm_cli.errors import MobilityError
+from tmm_cli.batch.tape.traced import TracedNumber
+from tmm_cli.batch.task import Range, Two, two
+from tmm_cli.batch.variant import Variant
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.extended import VariedUnits
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.errors import MobilityError
+from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH
+from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals.assembly import mobility
+from tmm_cli.problem.refusals import mobility
 from tmm_cli.problem.schema_parts import Name, Strict, Value, Vector
-from tmm_cli.problem.tree import Path
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import ANGLE, KINDS, LENGTH
 from tmm_cli.synthesis.blocks import Block, OfTheFile
 from tmm_cli.synthesis.optimal import task
-from tmm_cli.synthesis.optimal.block_over import asked_over, driven, place_of
-from tmm_cli.synthesis.optimal.block_ranges import FileWith, Range, Two, read_ranges, two
+from tmm_cli.synthesis.optimal.block_ranges import FileWith, asked_over, driven, place_of, read_ranges
 from tmm_cli.synthesis.optimal.quantities import QUANTITIES
 from tmm_cli.synthesis.optimal.quantities.base import Goal
 from tmm_cli.synthesis.optimal.task import Parameter, Task, near
-from tmm_cli.tape.traced_number import TracedNumber
-from tmm_cli.variants.variant import Variant
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
 MOST = 20  # parameters

@@ -3,61 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Self
+from functools import reduce
+from typing import Any
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+import numpy as np
 
+from tmm_cli.batch.task import MOST, SAME, Chosen, Range, two
+from tmm_cli.batch.variant import Variant
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.expressions import evaluate_quantity
+from tmm_cli.mechanics.linkage import Driver
+from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH, Dimension
+from tmm_cli.problem.arithmetic import evaluate_quantity
+from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.record import Problem
-from tmm_cli.problem.schema_parts import Strict, Value
-from tmm_cli.problem.tree import Path
 from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem
 from tmm_cli.problem.values import ValueReader
-from tmm_cli.quantities import KINDS
 from tmm_cli.synthesis.blocks import OfTheFile
 from tmm_cli.synthesis.optimal.task import Parameter
 
-MOST = 10_000  # values of a parameter
-SAME = 1e-9  # of a step: what is left over by rounding
-
-Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 FileWith = Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
-
-
-class Chosen(Strict):
-    """A parameter that has some values only, as numbers of teeth or lengths from a series have."""
-
-    from_: Value | None = Field(default=None, alias="from", description="the first of equal steps")
-    to: Value | None = Field(default=None, description="which they do not go beyond")
-    step: Value | None = Field(default=None, description="from one value to the next")
-    among: list[Value] | None = Field(
-        default=None, min_length=1, max_length=MOST, description="the values themselves, in the place of steps"
-    )
-
-    @model_validator(mode="after")
-    def _steps_or_values(self) -> Self:
-        missing = [value is None for value in (self.from_, self.to, self.step)]
-        if any(missing) if self.among is None else not all(missing):
-            raise _unreadable()
-        return self
-
-
-def _unreadable() -> PydanticCustomError:
-    return PydanticCustomError("range", _("[low, high], {from, to, step} or {among: [...]} is wanted"))
-
-
-def _listed(found: Any) -> Any:
-    if not isinstance(found, list | dict):
-        raise _unreadable()
-    if isinstance(found, list) and len(found) > 2:
-        raise PydanticCustomError("range", _("these are not two bounds; values to choose from: {among: [...]}"))
-    return found
-
-
-Range = Annotated[Two | Chosen, BeforeValidator(_listed)]
 
 
 def read_ranges(
@@ -107,11 +71,6 @@ def _parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Paramete
     return Parameter(name, values[0], values[-1], kind, tuple(values))
 
 
-def two(low: Any, high: Any) -> str:
-    """Two bounds as they are told in a refusal."""
-    return _("{low} and {high}").format(low=low, high=high)
-
-
 def _kinds(
     given: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
@@ -159,3 +118,92 @@ def _kind_of(source: Any, sense: ValueReader) -> str | None:
     except ProblemError:
         return None  # said when it is evaluated
     return None if found is None else found.name
+
+
+# Where the driver goes in an optimal synthesis: round a cycle, along its stroke, through the positions of the file, or
+# from one place to another.
+
+
+Ends = tuple[Any, Any] | None
+Over = str | tuple[float, float]
+
+
+def asked_over(over: Any, driver: Driver, sense: ValueReader) -> Over:
+    """What the key `over` says, with places in SI; what is usual where it is left out. Raises ProblemError."""
+    turns, stroked = driver.kind == "turn", driver.stroke is not None
+    ways = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
+    possible = [way for way, has in ways.items() if has]
+    if over is None:
+        return possible[0]
+    if isinstance(over, str):
+        if over not in possible:
+            raise ProblemError(
+                _("the driver has no {over}").format(over=over), path=("over",), found=quote(over),
+                allowed=", ".join([*possible, "[from, to]"]),
+            )  # fmt: skip
+        return over
+    low, high = (float(sense.number(value, _dimension(driver), ("over", n))) for n, value in enumerate(over))
+    if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
+        raise ProblemError(
+            _("the lower end comes first, the other one at most a turn after it"), path=("over",), found=two(*over),
+            allowed="[from, to]",
+        )  # fmt: skip
+    return low, high
+
+
+def driven(problem: Problem, over: Over) -> Variant:
+    """The linkage of a file with the way of its driver. Raises ProblemError."""
+    ends, stroke = _ends(problem, over), problem.linkage.driver.stroke
+    if ends is not None and stroke is not None and not (stroke[0] <= ends[0] and ends[1] <= stroke[1]):
+        raise _not_there(("over",), over, problem.linkage.driver, stroke, problem.units)
+    return Variant(problem.linkage, problem.request, ends)
+
+
+def _ends(problem: Problem, over: Over) -> Ends:
+    driver, places = problem.linkage.driver, problem.request.places
+    if over == "cycle":
+        return None
+    if over == "stroke" or (over == "positions" and driver.stroke is not None and not places):
+        return driver.stroke
+    if over == "positions":
+        over = (reduce(np.minimum, places), reduce(np.maximum, places)) if places else (0.0, 0.0)
+        if not over[0] < over[1]:
+            raise ProblemError(
+                _("how far the driver goes is wanted"), path=("over",),
+                allowed=_("over: [from, to]; or positions: {at: [...]}, or driver: {stroke: [from, to]}"),
+            )  # fmt: skip
+    assert not isinstance(over, str)
+    if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and places):
+        return over  # an accelerated crank comes to a place a turn farther on with another speed
+    turns = round(float(problem.linkage.sketch.at - (over[0] + over[1]) / 2) / (2 * np.pi))
+    return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # about the sketch, whose assembly it has
+
+
+def place_of(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
+    """A place on the driver's way, whole turns away where that brings it there. Raises ProblemError."""
+    driver = variant.linkage.driver
+    place: Any = sense.number(value, _dimension(driver), path)
+    if variant.ends is None:
+        return place
+    low, high = (float(end) for end in variant.ends)
+    slack = 1e-9 * (high - low)
+    if driver.kind == "turn" and not low - slack <= place <= high + slack:
+        place = place + 2 * np.pi * np.ceil(float(low - slack - place) / (2 * np.pi))
+    if not low - slack <= place <= high + slack:
+        raise _not_there(path, value, driver, (low, high), sense.units)
+    return place
+
+
+def _dimension(driver: Driver) -> Dimension:
+    return ANGLE if driver.kind == "turn" else LENGTH
+
+
+def _not_there(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem) -> ProblemError:
+    dimension = _dimension(driver)
+    low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
+    return ProblemError(
+        _("the driver does not go there"), path=path, found=quote(found) if isinstance(found, str) else None,
+        allowed=_("places of its way, {low} to {high} {unit}").format(
+            low=low, high=high, unit=units.symbol(dimension)
+        ),
+    )  # fmt: skip

@@ -9,20 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.assembly.choose import assemble
-from tmm_cli.assembly.rank import mobile
-from tmm_cli.errors import LinkageError
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import Sketch
-from tmm_cli.synthesis.optimal.checks import check, first_of, one_sense
+from tmm_cli.batch.taped import OneByOne, Taped, variants_of
+from tmm_cli.batch.variant import WANTED, Places, alike, sketch_of
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import Sketch
+from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over, Read
 from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
-from tmm_cli.synthesis.optimal.task import Constraint, Task, near
-from tmm_cli.variants.one_by_one import OneByOne, variants_of
-from tmm_cli.variants.taped import Taped
-from tmm_cli.variants.variant import WANTED, Places, alike, sketch_of
-from tmm_cli.vectors import Real
+from tmm_cli.synthesis.optimal.task import Constraint, Task, check, first_of, near, one_sense
 
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
 EACH = 24  # positions of the search in each turn of a cycle of many, at least

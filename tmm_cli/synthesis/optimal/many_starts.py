@@ -1,28 +1,219 @@
-"""Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
+"""Levenberg-Marquardt from many starts at once, within bounds and constraints.
 
-Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts, settled
-(settling.py), make few steps, and those with the least squares go on. The search ends where several of the last of two
-rounds or more ended at the same least; else the best are shaken, as often minima lie side by side.
+Each step has the least squares of the linearised residuals (K. Levenberg 1944, D. Marquardt 1963), tried with how they
+bend along it too (M. Transtrum, J. Sethna 2012), as minima lie at the ends of long bent valleys. Constraints and bounds
+that a step would break are residuals beside the others, with a weight. Slopes are differences: a start and its
+neighbours are variants of one evaluation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
-from tmm_cli.synthesis.optimal.least_squares import WEIGHT, Evaluate, Rows, descend
-from tmm_cli.synthesis.optimal.quantities.deviation import Deviation
-from tmm_cli.synthesis.optimal.settling import Settling
-from tmm_cli.vectors import Real
+from tmm_cli.mechanics.numerics.linear import solve
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
+from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, corners
+
+STEP = 1e-6  # of a difference, in shares of the ranges
+WEIGHT = 1e3  # of what is broken beside the residuals
+PASSES = 6  # until the broken ones are known
+DAMPINGS = (0.03, 1.0, 30.0)  # times the last one, tried at once
+FIRST, LEAST, LARGEST = 1e-3, 1e-12, 1e8  # damping
+AHEAD = 0.1  # of a step: where it is seen how residuals bend
+GAIN = 1e-14  # of the sum of squares: what a step must bring
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Of variants: residuals (v, n), and what is to stay above zero (v, m)."""
+
+    off: Real
+    least: Real
+
+    def cost(self) -> Real:
+        """Sum of squares, (v,); inf where something cannot be assembled."""
+        total = np.sum(self.off**2, axis=1) + WEIGHT**2 * np.sum(np.minimum(self.least, 0) ** 2, axis=1)
+        return np.where(np.isfinite(total), total, np.inf)
+
+
+Evaluate = Callable[[Real, int], Rows]  # variants (v, n) in 0..1, in sets of so many: the first leads
+
+
+def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
+    """Places (starts, n) to which starts lead, and their sums of squares."""
+    n = x.shape[1]
+    x, damping = x.copy(), np.full(len(x), FIRST)
+    cost = evaluate(x, 1).cost()
+    going = np.flatnonzero(np.isfinite(cost))
+    for _ in range(steps):
+        if not len(going):
+            break
+        at = x[going]
+        rows, slopes = _differences(evaluate, at)
+        tried = np.clip(damping[going, None] * np.array(DAMPINGS), LEAST, LARGEST)
+        ends = _ends(evaluate, rows, slopes, at, tried)
+        costs = evaluate(ends.reshape(-1, n), 1).cost().reshape(len(going), -1)
+        each, best = np.arange(len(going)), np.argmin(costs, axis=1)
+        better = costs[each, best] < cost[going] * (1 - GAIN)
+        x[going[better]], cost[going[better]] = ends[each, best][better], costs[each, best][better]
+        damping[going] = np.where(better, tried[each, best % len(DAMPINGS)], tried[:, -1])
+        going = going[better | (damping[going] < LARGEST)]
+    return x, cost
+
+
+def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real) -> Real:
+    """Where steps lead, (s, 2 d, n): one of each damping (s, d), and the same with what residuals bend along it."""
+    rows, slopes = (Rows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
+    x = x[:, None]
+    step = step_of(rows, slopes, x, dampings)
+    ahead = evaluate((x + AHEAD * step).reshape(-1, x.shape[-1]), 1).off.reshape(*dampings.shape, -1)
+    bend = ((ahead - rows.off) / AHEAD - (slopes.off @ step[..., None])[..., 0]) / AHEAD
+    known = np.all(np.isfinite(bend), axis=-1, keepdims=True)
+    bent = step_of(Rows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
+    ends: Real = np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
+    return ends
+
+
+def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
+    """Rows at places (s, n), and their slopes: (s, rows, n). A slope that is not known counts as none."""
+    s, n = x.shape
+    run = np.where(x > 0.5, -STEP, STEP)
+    ends = np.repeat(x[:, None], n + 1, axis=1)
+    ends[:, 1:] += run[:, None] * np.eye(n)
+    found = evaluate(ends.reshape(-1, n), n + 1)
+    values, slopes = [], []
+    for y in (found.off, found.least):
+        y = y.reshape(s, n + 1, -1)
+        slope = (y[:, 1:] - y[:, :1]) / run[:, :, None]
+        values.append(y[:, 0])
+        slopes.append(np.where(np.isfinite(slope), slope, 0.0).transpose(0, 2, 1))
+    return Rows(*values), Rows(*slopes)
+
+
+def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
+    """The step of each start, (..., n), within bounds 0..1."""
+    n = x.shape[-1]
+    square = slopes.off.mT @ slopes.off
+    steep = np.einsum("...ii->...i", square)
+    floor = steep + 1e-6 * np.sum(steep, axis=-1, keepdims=True)
+    square = square + np.eye(n) * (np.asarray(damping)[..., None] * floor + 1e-30)[..., None]
+    down = -slopes.off.mT @ rows.off[..., None]
+    weight = WEIGHT**2 * np.maximum(1.0, np.max(steep, axis=-1))[..., None, None]
+    broken, beyond = np.zeros((*rows.least.shape, 1), dtype=bool), np.zeros((*x.shape, 1), dtype=bool)
+    edge = np.zeros(beyond.shape)
+    for __ in range(PASSES):
+        pulled, held = (slopes.least * (weight * broken)).mT, weight * beyond
+        pull = down - pulled @ rows.least[..., None] + held * edge
+        step = solve(square + pulled @ slopes.least + np.eye(n) * held, pull[..., 0])[..., None]
+        step = np.where(np.isfinite(step), step, 0.0)  # what is lost beside the weights takes no step here
+        before, edge = (broken, beyond), np.clip(step, -x[..., None], 1 - x[..., None])
+        broken, beyond = slopes.least @ step < -rows.least[..., None], edge != step
+        if all(map(np.array_equal, before, (broken, beyond))):
+            break
+    return step[..., 0]
+
+
+# Parameters that a motion rests on linearly, as the place of a frame or of a coupler's point, found by themselves.
+#
+# With all others fixed they are a problem of linear least squares, which has one solution (G. Golub, V. Pereyra, SIAM
+# Journal on Numerical Analysis 10 (1973)). A path without given places takes for each wanted point the nearest of its
+# places, and then others, in turn (P. Besl, N. McKay, IEEE PAMI 14 (1992)).
+
+
+LINEAR = 1e-9  # of the motion: what second differences of something linear may be
+SHOWN, DRAWN = 3, 200  # candidates that show it, of so many
+TURNS = 12  # of taking nearest places anew
+DAMPING = 1e-9  # keeps what is not determined where it was
+SETTLED_AT_ONCE = 250  # candidates at once
+
+
+class Settling:
+    """Called with candidates (variants, n) in 0..1, that can be assembled; gives better ones."""
+
+    def __init__(self, candidates: Candidates) -> None:
+        self.candidates = candidates
+        assert isinstance(candidates.task.objective, Deviation)
+        self.objective = candidates.task.objective
+        self.linear = self._linear()
+
+    def __call__(self, x: Real) -> Real:
+        if not self.linear or not len(x):
+            return x
+        with np.errstate(all="ignore"):
+            return np.concatenate(
+                [self._settled(x[at : at + SETTLED_AT_ONCE]) for at in range(0, len(x), SETTLED_AT_ONCE)]
+            )
+
+    def _settled(self, x: Real) -> Real:
+        ends = np.repeat(x[None], 1 + len(self.linear), axis=0)
+        ends[:, :, self.linear] = 0
+        ends[np.arange(1, len(ends)), :, self.linear] = 1
+        curves = self._curve(ends.reshape(-1, x.shape[1])).reshape(len(ends), len(x), -1)
+        first, slopes = curves[0], np.moveaxis(curves[1:] - curves[0], 0, -1)
+        wanted, found = np.array(self.objective.wanted), x[:, self.linear]
+        for __ in range(1 if self.objective.places else TURNS):
+            off, own = first + np.einsum("vpk,vk->vp", slopes, found), slopes
+            if not self.objective.places:
+                near = corners(off.real.copy(), off.imag.copy(), wanted).T
+                off = np.take_along_axis(off, near, axis=1)
+                own = np.take_along_axis(slopes, near[..., None], axis=1)
+            rows = Rows(_real(off - wanted), np.zeros((len(x), 0)))
+            step = step_of(rows, Rows(_real(own), np.zeros((len(x), 0, len(self.linear)))), found, DAMPING)
+            found = np.clip(found + step, 0, 1)
+        settled = x.copy()
+        settled[:, self.linear] = found
+        return settled
+
+    def _curve(self, x: Real) -> Any:
+        """What is compared with what is wanted, (variants, places)."""
+        one = self.candidates
+        found = one.coarse(one.numbers(x), one.places)
+        return self.objective.curve(reader(found, 0, one.exact[0]))
+
+    def _linear(self) -> list[int]:
+        """Those whose changes add up, with one another and with themselves."""
+        x = np.random.default_rng(0).random((DRAWN, len(self.candidates.low)))
+        x = x[self.candidates.evaluate(x)[1] < LOST][:SHOWN]
+
+        def adds(k: int, m: int) -> bool:
+            ends = np.repeat(x[None], 4, axis=0)
+            ends[:, :, [k, m]] = 0.25
+            ends[1::2, :, k] += 0.25
+            ends[2:, :, m] += 0.25
+            curves = [self._curve(end) for end in ends]
+            off = np.max(np.abs(curves[3] - curves[2] - curves[1] + curves[0]))
+            return bool(off <= LINEAR * np.max(np.abs(curves)))
+
+        found: list[int] = []
+        with np.errstate(all="ignore"):
+            for k in range(x.shape[1]):
+                if len(x) and all(adds(k, m) for m in (*found, k)):
+                    found.append(k)
+        return found
+
+
+def _real(rows: Any) -> Real:
+    """Complex rows as two real ones each, (variants, rows, ...)."""
+    return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
+
+
+# Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
+#
+# Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts,
+# settled (settling.py), make few steps, and those with the least squares go on. The search ends where several of the
+# last of two rounds or more ended at the same least; else the best are shaken, as often minima lie side by side.
+
 
 SAMPLES = 20_000  # of a round, of which the best and those that evolved start
 TOURNAMENT = ((400, 6), (160, 15), (24, 40), (8, 60))  # so many of them, and their steps: ranks say little at first
 ROUNDS, AGREED = 3, 6  # at most; starts that end at the same least
 SHAKEN, DECADES = ((160, 15), (24, 40), (8, 60)), (-2.5, -0.3)  # as TOURNAMENT; sizes of shakes, shares of the ranges
-SHAKES, GAIN = 4, 1e-4  # at most, as long as one brings more than such a share
+SHAKES, SHAKE_GAIN = 4, 1e-4  # at most, as long as one brings more than such a share
 SAME, NEAR = 1e-3, 1e-2  # of an objective: the same least; as good for most uses
 ZERO = 1e-7  # of the size of what is wanted: it is met
 CLOSER, LAST = 360, 100  # places and steps of the winners
@@ -136,7 +327,7 @@ def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random
             new = _sorted(*descend(evaluate, x[:some], steps))
             x = np.array([own for __, own in new])
         before, found = found[0][0], sorted([*found, *new], key=lambda one: one[0])[:last]
-        if found[0][0] > before * (1 - GAIN):
+        if found[0][0] > before * (1 - SHAKE_GAIN):
             break
     return found
 

@@ -8,11 +8,17 @@ takes the first curvature for 1, and where pieces are steep its first steps woul
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.vectors import Real
+from tmm_cli.batch.variant import Places
+from tmm_cli.mechanics.numerics.roots import WINDOW
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.synthesis.optimal.candidates import Candidates, reader
+from tmm_cli.synthesis.optimal.evolution import Evolved
+from tmm_cli.synthesis.optimal.many_starts import Ends
+from tmm_cli.synthesis.optimal.quantities.base import Peak
 
 STEP = 2e-6  # of a derivative, in shares of the range
 DONE = 1e-11  # of the objective: what a further step may still bring
@@ -118,3 +124,140 @@ def polish(evaluate: Callable[[Real], Local], x: Real) -> Real:
     except _End:
         pass
     return min(steps, key=lambda step: step[0])[1] if steps else x
+
+
+# One candidate of an optimal synthesis, closely: quantities from windows about their peaks, and the polish on them.
+
+
+NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
+FEWER = (1.0, 0.0)  # where candidates are moved one by one
+ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
+SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less was the last
+
+
+@dataclass(frozen=True)
+class Best:
+    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
+
+    ends: of independent starts, where there were such.
+    """
+
+    x: Real
+    numbers: Real
+    values: list[float]
+    missed: float
+    evolved: Evolved
+    ends: Ends | None = None
+
+    @property
+    def agree(self) -> bool:
+        """Whether independent starts led to it."""
+        return self.ends is None or self.ends.agree
+
+
+def exactly(candidates: Candidates, x: Real) -> list[float]:
+    """Objective and constrained quantities of x in 0..1, as exactly as they will be measured; nan: it has none."""
+    with np.errstate(all="ignore"):
+        found, coarse = _pieces_near(candidates, x)(x), candidates.values(x[None])
+        values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
+        scan, two = candidates.over(candidates.scan), candidates.numbers(x[None])
+        for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
+
+            def curve(name: str, shares: Real, n: int = n) -> Real:
+                return candidates.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
+
+            if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
+                values[n] = np.nan
+            else:
+                values[n] = quantity.closest(values[n], curve, scan[candidates.along(n, candidates.scan)], over)
+        if candidates.single:
+            there = candidates.run(x[None], Places(scan, candidates.with_sketch(np.zeros(0))))
+            values[1] = -1.0 if candidates.turned_over(there, candidates.scan)[0] else values[1]
+    return values
+
+
+def polished(candidates: Candidates, x: Real) -> Real:
+    """The best place near x, whose numbers that have some values only stay as they are."""
+    whole, free = x, candidates.task.free
+
+    def all_of(some: Real) -> Real:
+        """Candidates with all their numbers."""
+        found = np.repeat(whole[None], len(some), axis=0)
+        found[:, free] = some
+        return found
+
+    for narrow in NARROWER if candidates.taped else FEWER:
+        before, pieces = x, _pieces_near(candidates, x, narrow)
+        top = float(np.max(np.abs(_objective(candidates, pieces(x)[0])))) or 1.0
+        with np.errstate(all="ignore"):
+            best = polish(lambda some: _local(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
+        x = all_of(best[None])[0]
+        if not narrow and float(np.max(np.abs(x - before))) < SETTLED:
+            break
+    return x
+
+
+def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+    """Pieces of every quantity near x, exactly: windows are where x has its peaks.
+
+    narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
+    """
+    scan = candidates.over(candidates.scan)
+    found = candidates.run(x[None], Places(scan, np.zeros(0)))
+    half = max(narrow / candidates.count, ABOUT / candidates.scan)
+    step = 2 * half / (WINDOW - 1)
+    blocks, parts = [], []
+    at = 0
+    for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
+        own = []
+        for what, k in quantity.windows(reader(found, n, candidates.along(n, candidates.scan)), over):
+            first = scan[k] - half
+            if not over.closed:
+                first = min(max(first, 0.0), 1 - 2 * half)
+            blocks.append(first + step * np.arange(WINDOW))
+            own.append((what, float(first), slice(at, at + WINDOW)))
+            at += WINDOW
+        parts.append(own)
+    places = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
+    exact = [own or slice(at, at + 1) for own in candidates.own_places(at + 1)]
+
+    def pieces(some: Real) -> list[Real]:
+        out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
+        return [
+            quantity.fine(
+                [(what, first, reader(out, n, where)) for what, first, where in parts[n]], reader(out, n, exact[n]),
+                candidates.overs[n], step,
+            )
+            for n, quantity in enumerate(candidates.quantities)
+        ]  # fmt: skip
+
+    return pieces
+
+
+def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
+    """A quantity from its pieces, (variants,)."""
+    found: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
+    return found
+
+
+def _objective(candidates: Candidates, pieces: Real) -> Real:
+    """What is made least, with derivatives where it is zero."""
+    target, objective = candidates.task.target, candidates.task.objective
+    if target is not None:
+        off = (_value(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
+        return np.hstack([off, -off])
+    return -pieces if objective.lowest else objective.smooth(pieces)
+
+
+def _local(candidates: Candidates, found: list[Real], top: float) -> Local:
+    """What the polish needs of the pieces of some candidates."""
+    least, equal = [], []
+    for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
+        low = high = _value(candidates, n, pieces)[:, None]
+        if isinstance(constraint.quantity, Peak) and not constraint.equal:  # every piece keeps the bound then
+            low, high = (pieces, high) if constraint.quantity.lowest else (low, pieces)
+        above, even = constraint.rows(low, high)
+        least += above
+        equal += even
+    none = np.zeros((len(found[0]), 0))
+    return Local(_objective(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))

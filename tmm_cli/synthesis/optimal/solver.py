@@ -9,16 +9,15 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.language import N_, _
+from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
-from tmm_cli.synthesis.optimal.choices import Choices
-from tmm_cli.synthesis.optimal.evolution import Evolved, evolve
-from tmm_cli.synthesis.optimal.exact import Best, exactly, polished
+from tmm_cli.synthesis.optimal.evolution import Choices, Evolved, evolve
 from tmm_cli.synthesis.optimal.outcome import outcome_of
+from tmm_cli.synthesis.optimal.polish import Best, exactly, polished
 from tmm_cli.synthesis.optimal.quantities.base import Goal
 from tmm_cli.synthesis.optimal.task import Task
 from tmm_cli.synthesis.record import Infeasible, Outcome
-from tmm_cli.vectors import Real
 
 PARAMETERS: Final[dict[str, str]] = {}
 SHORTER = 20  # times, where starts beside it lead farther

@@ -7,10 +7,9 @@ from typing import Final
 
 from tmm_cli.synthesis.optimal.quantities.base import Goal
 from tmm_cli.synthesis.optimal.quantities.deviation import Law, Path
-from tmm_cli.synthesis.optimal.quantities.forces import Moment, Reaction
 from tmm_cli.synthesis.optimal.quantities.sizes import Box, Length, Mass
 from tmm_cli.synthesis.optimal.quantities.strokes import K, Speed, Stroke
-from tmm_cli.synthesis.optimal.quantities.transmission import Margin, Pressure
+from tmm_cli.synthesis.optimal.quantities.transmission import Margin, Moment, Pressure, Reaction
 
 ALL: Final[tuple[type[Goal], ...]] = (
     Length, Mass, Box, Pressure, Moment, Reaction, Margin, Stroke, K, Speed, Path, Law,

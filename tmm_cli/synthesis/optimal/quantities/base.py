@@ -14,17 +14,16 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results, at_positions
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.linkage import Linkage
-from tmm_cli.roots import least, top
-from tmm_cli.structure.naming import output_link
+from tmm_cli.batch.prepare import reactions_of
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.roots import highest, least, peak, peaks_of, top
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.naming import output_link
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import highest, peak, peaks_of
-from tmm_cli.variants.batch import reactions_of
-from tmm_cli.vectors import Real
 
 MOST_PEAKS = 4  # of a curve that are looked at closely
 SCAN = 1440  # places in a turn, or in a stroke, of an analysed mechanism

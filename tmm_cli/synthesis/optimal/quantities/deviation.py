@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.output import output_place
+from tmm_cli.batch.variant import WANTED
 from tmm_cli.language import N_
-from tmm_cli.linkage import Linkage
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.strokes import output_place
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.roots import FIT, SIDE, peak, value
+from tmm_cli.mechanics.numerics.vectors import Real, dot
 from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import FIT, SIDE, peak, value
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
-from tmm_cli.variants.variant import WANTED
-from tmm_cli.vectors import Real, dot
 
 AWAY = 1e100  # where a variant cannot be assembled
 FOOT_STEPS = 3  # of Newton's method from the nearest corner: it is off by half a step at most

@@ -9,13 +9,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
 from tmm_cli.language import N_
-from tmm_cli.linkage import FRAME, Linkage
-from tmm_cli.synthesis.optimal.peaks import peak, peaks_of
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.roots import peak, peaks_of
+from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Constant, Over, Peak, Read, Windows
-from tmm_cli.vectors import Real
 
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # right, left, top, bottom
 OF_A_SIDE = 3  # points that may come to bear on a side

@@ -8,18 +8,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.output import output_place, output_slope
 from tmm_cli.language import N_
-from tmm_cli.linkage import Linkage
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.strokes import output_place, output_slope
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.roots import highest, peak, zero
+from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.mean_ratio import ratio
-from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.peaks import highest, peak, zero
+from tmm_cli.synthesis.measures import Ends, ratio_of_curve
 from tmm_cli.synthesis.optimal.quantities.base import Curve, Goal, Over, Read, Windows
-from tmm_cli.vectors import Real
 
 FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may belong to two strokes
 
@@ -110,7 +109,7 @@ class K(OfStrokes):
         return ratio_of(np.mod(forward, 1.0))[:, None]
 
     def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
-        return ratio(lambda shares: curve("slope", shares), scan)
+        return ratio_of_curve(lambda shares: curve("slope", shares), scan)
 
     def measured(self, results: Results, ends: Ends) -> float:
         k = measures.ratio(results)

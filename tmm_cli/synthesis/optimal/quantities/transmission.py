@@ -8,11 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.analysis.pipeline import Results
-from tmm_cli.forces.plan import Reactions
-from tmm_cli.kinematics.motion import Motion
-from tmm_cli.kinematics.pressure import followers, sides
 from tmm_cli.language import N_
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.pressure import followers, sides
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.quantities import BALANCING, REACTION_SIZE
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.quantities.base import Peak
@@ -66,3 +68,33 @@ class Pressure(Peak):
 
     def measured(self, results: Results, ends: Ends) -> float:
         return measures.pressure(results, ends)
+
+
+# Forces: what balances the driver, reactions.
+
+
+class Moment(Peak):
+    """On the driver, N m, or N where it slides."""
+
+    of, text, forces = "moment", N_("largest balancing moment"), True
+
+    def kind(self, linkage: Linkage, groups: Any) -> str:
+        return str(BALANCING.measures(linkage.driver.kind == "slide").name)
+
+    def title(self, linkage: Linkage) -> str:
+        return self.text if linkage.driver.kind == "turn" else N_("largest balancing force")
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        assert reactions is not None
+        return {"y": np.abs(BALANCING.value(reactions.balance))}
+
+
+class Reaction(Peak):
+    """In a pair, N; of a compound hinge the largest of its pairs."""
+
+    of, text, forces, dimension = "reaction", N_("largest reaction in the pair"), True, "force"
+    keys, named = ("pair",), "pair"
+
+    def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+        assert reactions is not None
+        return {"y": reduce(np.maximum, [REACTION_SIZE.value(r) for r in reactions.all if r.pair.name == self.name])}

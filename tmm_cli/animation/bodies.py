@@ -1,0 +1,178 @@
+"""What moves as one on the page: links, boxes of sliders, springs, with their marks in their own axes.
+
+A body is drawn once; the page puts it where it is in each frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark
+from tmm_cli.drawing.paper.sheet import DARK, Sheet
+from tmm_cli.drawing.symbols.actuators import SPRING_OF, cylinders
+from tmm_cli.drawing.symbols.forms import Form
+from tmm_cli.drawing.symbols.parts import MOVING, mass_centre
+from tmm_cli.drawing.symbols.render import BOX, render
+from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, unit
+
+
+@dataclass
+class Body:
+    """Where it is (mm on the sheet), its angle (rad, followed through turns), how much longer it is than drawn: each
+    in every frame; its marks in its own axes.
+    """
+
+    place: Vector
+    angle: Real
+    stretch: Real
+    marks: list[Mark] = field(default_factory=list)
+
+    def own(self, at: complex) -> complex:
+        """A place on the sheet in the first frame, in the body's axes."""
+        return complex((at - self.place[0]) * np.exp(-1j * self.angle[0]))
+
+    def take(self, marks: list[Mark]) -> None:
+        """Marks drawn at the first frame move with the body from now on."""
+        self.marks += [_turned(mark, self.own) for mark in marks]
+
+    def at(self, own: Any, k: int) -> Any:
+        """A place of the body on the sheet, in a frame."""
+        local = np.real(own) * self.stretch[k] + 1j * np.imag(own)
+        return self.place[k] + local * np.exp(1j * self.angle[k])
+
+
+def _turned(mark: Mark, own: Callable[[complex], complex]) -> Mark:
+    match mark:
+        case Line():
+            return replace(mark, places=tuple(map(own, mark.places)))
+        case Area():
+            return replace(mark, corners=tuple(map(own, mark.corners)))
+        case Circle():
+            return replace(mark, centre=own(mark.centre))
+    return replace(mark, at=own(mark.at))
+
+
+@dataclass
+class Picture:
+    """A mechanism taken apart into bodies by their names; links have theirs, the frame is one too."""
+
+    sheet: Sheet
+    motion: Motion
+    scene: Scene
+    bodies: dict[str, Body]
+    forms: Mapping[str, Form]
+
+    @classmethod
+    def of(cls, sheet: Sheet, motion: Motion, scene: Scene) -> Picture:
+        """A scene in its first frame, drawn on a sheet; what belongs to no body, as the touch of two wheels, is not."""
+        linkage, pairs = scene.linkage, scene.structure.pairs
+        drawn = render(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK))
+        picture = cls(sheet, motion, scene, {}, drawn.forms)
+        picture._masses()
+        parts, alike = {name for name, __ in sheet.parts}, np.ones(motion.q.shape)
+        picture.bodies[FRAME] = Body(np.zeros_like(motion.q) * 0j, np.zeros_like(motion.q), alike)
+        for link in linkage.moving:
+            pose = motion.poses[link].spread(motion.q.shape)
+            angle = pose.turned if pose.unwrapped is not None else np.unwrap(pose.turned)
+            picture.bodies[link] = Body(sheet.origin + pose.x / sheet.mu, angle, alike)
+        for slide in linkage.slides:
+            if BOX.format(slide.name) in parts:
+                angle = picture.bodies[slide.carrier].angle + float(np.angle(unit(slide.direction)))
+                picture.bodies[BOX.format(slide.name)] = Body(picture._spots(slide.runner, slide.at), angle, alike)
+        for spring in linkage.springs:
+            start, end = picture._spots(spring.i, spring.at_i), picture._spots(spring.j, spring.at_j)
+            length = np.abs(end - start)
+            if SPRING_OF.format(spring.name) in parts and length.min() > 0:
+                angle = np.unwrap(np.angle(end - start))
+                picture.bodies[SPRING_OF.format(spring.name)] = Body(start, angle, length / length[0])
+        for name, which in sheet.parts:
+            if name in picture.bodies:
+                picture.bodies[name].take(sheet.marks[which])
+        return picture
+
+    def _masses(self) -> None:
+        """Centres of mass that are no named points."""
+        for link in self.scene.linkage.moving:
+            own = self.scene.linkage.links[link]
+            if np.any(own.mass != 0) and all(abs(own.centre - local) > 0 for local in own.points.values()):
+                with self.sheet.part(link):
+                    mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(own.centre))))
+
+    def _spots(self, link: str, local: complex) -> Vector:
+        """Places of a point of a link on the sheet."""
+        if link == FRAME:
+            return np.full(self.motion.q.shape, self.sheet.on(complex(local)))
+        return self.sheet.origin + self.motion.poses[link].spread(self.motion.q.shape).at(local) / self.sheet.mu
+
+    def layers(self) -> Iterator[tuple[str, list[Mark]]]:
+        """Marks of bodies from below to above."""
+        every = [(mark.z, name, mark) for name, own in self.bodies.items() for mark in own.marks]
+        every.sort(key=lambda one: one[0])
+        for name, layer in groupby(every, key=lambda one: one[1]):
+            yield name, [mark for *__, mark in layer]
+
+
+# Names of points and numbers of links, which go with the bodies that carry them.
+
+
+OUT, BOX_SIDE = 4.0, 6.5  # mm from a hinge to its name; from the middle of a box to the number of its link
+
+
+def labels(picture: Picture, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Names of points beyond the ends of links, numbers beside links: in the axes of the bodies that carry them."""
+    linkage, found = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
+    for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
+        there = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
+        # on a link with more points there is a way out
+        carrier = FRAME if FRAME in there else max(there, key=lambda link: len(linkage.links[link].points) > 1)
+        local = complex(linkage.local(carrier, name))
+        found.setdefault((carrier, complex(round(local.real, 9), round(local.imag, 9))), []).append(name)
+    points = [
+        {"body": names.index(link), "at": pair(_beyond(picture, link, local)), "text": ", ".join(text), "kind": "point"}
+        for (link, local), text in found.items()
+    ]
+    numbers = [
+        {"body": names.index(link), "at": pair(_beside(picture, link)), "text": link, "kind": "link"}
+        for link in linkage.moving
+        if np.isfinite(picture.forms[link].middle)
+    ]
+    return [*points, *numbers]
+
+
+def _beyond(picture: Picture, link: str, local: complex) -> complex:
+    """Where the name of a point is, in its link's axes: away from the middle of the link, outside a slider's box."""
+    sheet, scene = picture.sheet, picture.scene
+    at, driven = sheet.on(scene.place(link, local)), cylinders(scene.linkage)
+    slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
+    boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
+    own = picture.bodies[link].own(at)
+    if link == FRAME:
+        return own + OUT * (-1 if at.real < sheet.origin.real else 1)
+    places = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
+    out = own - picture.bodies[link].own(sum(places) / len(places))
+    return own + (2 * OUT if boxed else OUT) * (out / abs(out) if abs(out) > 1 else complex(0.8, 0.6))
+
+
+def _beside(picture: Picture, link: str) -> complex:
+    """Where the number of a link is, in its axes: on its plate, beside its longest line, or beside its box."""
+    form, own = picture.forms[link], picture.bodies[link].own
+    if len(form.hull) > 2:
+        return own(form.middle)
+    start, end = max(form.lines, key=lambda line: abs(line[1] - line[0]), default=(0j, 0j))
+    if abs(end - start) > 1:
+        return own(form.middle + 3j * (end - start) / abs(end - start))
+    slide = next((slide for slide in picture.scene.linkage.slides if slide.runner == link), None)
+    return own(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * BOX_SIDE)
+
+
+def pair(z: complex) -> list[float]:
+    """x and y with y down."""
+    return [round(z.real, 2) + 0.0, round(-z.imag, 2) + 0.0]

@@ -1,0 +1,211 @@
+"""What a mechanism is for, by what its outputs do when it moves."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from tmm_cli.animation.gallery.turning import Turning, scheme, turning
+from tmm_cli.language import N_, _, signed, typeset
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel, output_run
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.problem.blocks.chain import build_chain
+from tmm_cli.problem.build import is_chain, problem_of
+from tmm_cli.problem.errors import Tree
+from tmm_cli.problem.reader import read_file
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.reports.properties import MET, properties_shown
+from tmm_cli.reports.table import with_unit
+from tmm_cli.synthesis.solving import count, solve
+
+QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
+STILL, DWELL = 0.01, 60  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
+
+PURPOSES: Final = {
+    "slides": N_("output slides to and fro"),
+    "swings": N_("output swings"),
+    "turns": N_("output turns round"),
+    "carried": N_("output is carried in the plane"),
+    "point": N_("a point is led along its path"),
+    "quick": N_("quick return"),
+    "strokes": N_("several strokes in a cycle"),
+    "dwell": N_("output dwells"),
+    "outputs": N_("several outputs"),
+    "drivers": N_("several drivers"),
+    "space": N_("moves in space"),
+}
+
+
+def purposes(results: Results) -> tuple[str, ...]:
+    """Keys of PURPOSES, in their order, of results that have a motion."""
+    found = set(_purposes(results))
+    return tuple(key for key in PURPOSES if key in found)
+
+
+def _purposes(results: Results) -> Iterable[str]:
+    outputs, linkage = results.mechanism.outputs, results.linkage
+    back = results.swinging
+    for link in outputs:
+        if linkage.output_point(link) is not None:
+            yield "point"
+        elif linkage.output_guide(link) is not None:
+            yield "slides"
+        elif not linkage.hinged_to_frame(link):
+            yield "carried"
+        else:
+            swings = any(one.link == link for one in back) or not results.turns
+            yield "swings" if swings else "turns"
+    for one in back:
+        if one.k >= QUICK or 0 < one.k <= 1 / QUICK:
+            yield "quick"
+        if len(one.strokes) > 2:
+            yield "strokes"
+        if any(stroke.rest for stroke in one.strokes) or _dwells(results, one.link):
+            yield "dwell"
+    if len(outputs) > 1:
+        yield "outputs"
+    if len(linkage.drivers) > 1:
+        yield "drivers"
+
+
+def _dwells(results: Results, link: str) -> bool:
+    """Whether an output hardly moves at an end of its way, while the crank goes on."""
+    motion = at_positions(results, results.closely(360 * results.turns + 1)[:-1])
+    run = output_run(motion, link)[0]
+    run = np.unwrap(run) if results.linkage.output_swings(link) else run
+    for near in (run - np.min(run), np.max(run) - run):
+        still = np.flatnonzero(np.r_[near, near] > STILL * np.ptp(run))  # twice: it may go over the seam
+        if np.max(np.diff(still), initial=0) > DWELL:
+            return True
+    return False
+
+
+# What a card says of a problem file: class, groups, purposes, properties, the mechanism that turns.
+
+
+LONGEST = 1500  # letters of what a file says of itself
+DIGITS = 4
+
+Value = tuple[str, float, Dimension]
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A property: its words, its value with the unit for people, and the number (in that unit) for searches."""
+
+    name: str
+    told: str
+    number: float
+
+
+@dataclass(frozen=True)
+class Card:
+    """A mechanism; texts are as the file has them, and may be anything.
+
+    number: of its class, empty in space; groups: with class and type, II RRR; purposes: keys of PURPOSES.
+    language: of the file. turning: of a chain given by pairs alone, which has no dimensions, its scheme.
+    """
+
+    file: str
+    language: str
+    title: str
+    reference: str
+    about: str
+    number: str
+    formula: str
+    groups: tuple[str, ...]
+    purposes: tuple[str, ...]
+    facts: tuple[Fact, ...]
+    turning: Turning
+
+
+def card(file: str) -> Card:
+    """The card of a problem file. Raises ProblemError."""
+    tree = read_file(file)
+    if is_chain(tree):
+        return _of_chain(file, tree, count(build_chain(tree)))
+    problem = problem_of(tree).whole
+    results = solve(problem, "forces" if problem.shows else "kinematics")
+    structure = results.structure
+    groups = dict.fromkeys(f"{group.roman} {group.type}" for group in structure.groups)
+    return Card(
+        file, _language(tree), problem.title, problem.reference, problem.description or remark(file),
+        structure.roman, structure.formula.replace("->", "→"), tuple(groups),
+        purposes(results), tuple(_told(_facts(results), problem.units)), turning(results),
+    )  # fmt: skip
+
+
+def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
+    problem = results.problem
+    values = list(_shown(results))
+    if all(task.of != "W" for task in problem.shows.values()):
+        values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
+    return Card(
+        file, _language(tree), problem.title, problem.reference, problem.description or remark(file), "",
+        typeset(f"W = {results.chain.chain.count}"), (), ("space",), tuple(_told(values, problem.units)),
+        scheme(results.chain.chain),
+    )  # fmt: skip
+
+
+def remark(file: str) -> str:
+    """The remark at the head of a file, where people say what it is."""
+    lines = []
+    with open(file, encoding="utf-8-sig") as stream:
+        for line in stream:
+            if not line.startswith("#"):
+                break
+            lines.append(line.lstrip("#").strip())
+    text = re.sub(r"\s+", " ", " ".join(lines)).strip()
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+
+
+def _language(tree: Tree) -> str:
+    return str(tree.data.get("lang", ""))
+
+
+def _facts(results: Results) -> Iterator[Value]:
+    """What the file shows; what every mechanism has."""
+    structure, linkage = results.structure, results.linkage
+    yield from _shown(results)
+    yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
+    if structure.redundant:
+        yield _("passive constraints"), float(structure.redundant), NUMBER
+    for one in results.swinging:
+        yield _stroke(linkage, one), one.travel, place_dimension(one.kind)
+        yield _("coefficient of change of mean speed k"), one.k, NUMBER
+    for travel in results.travels:
+        yield _stroke(linkage, travel), travel.high - travel.low, place_dimension(travel.kind)
+    if results.pressure:
+        yield _("largest pressure angle"), max(one.largest for one in results.pressure), ANGLE
+
+
+def _stroke(linkage: Linkage, found: Strokes | Travel) -> str:
+    link = found.link
+    if linkage.output_point(link) is not None:
+        return _("travel of {link}").format(link=link)
+    if linkage.output_guide(link) is not None:
+        return _("stroke H of link {link}").format(link=link)
+    return _("swing psi of link {link}").format(link=link)
+
+
+def _shown(results: Results | ChainResults) -> Iterable[Value]:
+    for one in properties_shown(results):
+        yield one.name, 0.0 if abs(one.value) <= MET else one.value, one.dimension
+
+
+def _told(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
+    """With the units of the file; of one name the first, and none that has no value."""
+    told = set[str]()
+    for name, value, dimension in values:
+        if name not in told and math.isfinite(value):
+            number = float(f"{units.from_si(value, dimension):.{DIGITS}g}") + 0.0
+            yield Fact(name, signed(with_unit(units, value, dimension, DIGITS).strip()), number)
+        told.add(name)

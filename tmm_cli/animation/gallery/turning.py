@@ -1,0 +1,161 @@
+"""A mechanism that turns on a card: its bodies as SVG, and where they are in few frames, as whole numbers.
+
+The page interpolates between frames by cubic curves, so few are enough.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.animation.bodies import Body, Picture
+from tmm_cli.animation.content import SECONDS, picture_of, view
+from tmm_cli.drawing.formats.svg import element
+from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark, Text
+from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.spatial import SpatialChain
+
+FRAMES = 48  # a turn
+MOST_FRAMES = 240  # of mechanisms that repeat after many turns
+PLACE, TURN = 100, 10_000  # steps in a mm of the picture; in a radian, and in a stretch of one
+
+Course = int | list[int]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The drawing of the first frame, its sides (mm), and the frames; none of what does not move.
+
+    bodies: x, y, turn and stretch of each, in PLACE and TURN: a number of what does not change, else the first value
+    and the difference of each next one. loops: whether the last frame is the first one again. seconds: of all frames.
+    """
+
+    svg: str
+    view: tuple[float, float, float, float]
+    bodies: tuple[tuple[Course, Course, Course, Course], ...] = ()
+    loops: bool = False
+    seconds: float = SECONDS
+
+
+def turning(results: Results) -> Turning:
+    """Of results with kinematics."""
+    turns = results.turns or 1
+    motion = _motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
+    still = len(motion.q) < 2
+    picture = picture_of(results, motion)
+    drawn = list(picture.layers())
+    moving = [] if still else [name for name in dict.fromkeys(name for name, __ in drawn) if name != FRAME]
+    svg = "".join(
+        f"<g{_attributes(picture, name, moving)}>{''.join(element(mark, 0.0) for mark in marks)}</g>"
+        for name, marks in drawn
+    )
+    bodies = tuple(_courses(picture.bodies[name]) for name in moving)
+    return Turning(svg, view(picture), bodies, results.turns > 0, SECONDS * turns)
+
+
+def _motion(results: Results, count: int) -> Motion:
+    """Where it moves over what is asked for, or else as far as its driver can go; or the sketch alone."""
+    reach = results.driver_range
+    assert reach is not None
+    for q in (results.closely(count), np.linspace(reach.start, reach.end, count)):
+        motion = at_positions(results, q, 0)
+        if np.count_nonzero(motion.moving) > 1 and np.ptp(q) > 0:
+            return motion if motion.moving.all() else at_positions(results, q[motion.moving], 0)
+    return at_positions(results, np.array([results.linkage.sketch.at]), 0)
+
+
+def _attributes(picture: Picture, name: str, moving: list[str]) -> str:
+    """Where the body is in the first frame, and its number if it moves."""
+    body = picture.bodies[name]
+    if name == FRAME:
+        return ""
+    z = np.exp(1j * body.angle[0])
+    x, y = body.place[0].real, -body.place[0].imag
+    matrix = " ".join(f"{round(float(value), 4) + 0.0:g}" for value in (z.real, -z.imag, z.imag, z.real, x, y))
+    number = f' data-body="{moving.index(name)}"' if name in moving else ""
+    return f'{number} transform="matrix({matrix})"'
+
+
+def _courses(body: Body) -> tuple[Course, Course, Course, Course]:
+    """With y down, as the page has it."""
+    return (
+        _course(body.place.real * PLACE), _course(-body.place.imag * PLACE), _course(-body.angle * TURN),
+        _course(body.stretch * TURN),
+    )  # fmt: skip
+
+
+def _course(values: Real) -> Course:
+    whole = np.rint(values).astype(int)
+    if np.all(whole == whole[0]):
+        return int(whole[0])
+    return [int(whole[0]), *np.diff(whole).tolist()]
+
+
+# A chain given by pairs alone, as a scheme: links in rows by how far they are from the frame, pairs between them.
+
+
+APART, WIDEST, ROW = 26.0, 34.0, 27.0  # mm between links of the longest row, at most, and between rows
+HIGH, LETTER = 6.4, 4.6  # mm: a link's box, its name
+SHARE = 0.6  # of a letter's size: its width
+BOW = 9.0  # mm by which a pair of two links of a row goes round those between them
+NEAR = 0.64  # of a pair's way to the link above: its circle; most links hang on few others
+EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
+
+
+def scheme(chain: SpatialChain) -> Turning:
+    """The frame below; at each pair the number of its freedoms."""
+    places = places_of(chain)
+    marks: list[Mark] = []
+    between = Counter[frozenset[str]]()
+    for pair in chain.pairs:
+        ends = frozenset((pair.i, pair.j))
+        start, end = places[pair.i], places[pair.j]
+        bow, share = (BOW, 0.5) if start.imag == end.imag else (0.0, NEAR if start.imag < end.imag else 1 - NEAR)
+        middle = start + share * (end - start) + 1j * bow + between[ends] * HIGH
+        between[ends] += 1
+        marks.append(Line((start, middle, end), DARK, 0.5))
+        marks.append(Circle(middle, 2.3, "white", DARK, 0.3))
+        marks.append(Text(middle, str(pair.freedoms), 3.2, GREY_TEXT, "center"))
+    for name, place in places.items():
+        marks += _box(name, place)
+    xs, ys = [abs(z.real) for z in places.values()], [z.imag for z in places.values()]
+    half, top = max(max(xs) + APART / 2 + EDGE, LEAST / 2), max(ys) + BOW + EDGE
+    sides = (-half, -top, 2 * half, top - min(ys) + HIGH + EDGE)
+    return Turning("".join(element(mark, 0.0) for mark in marks), sides)
+
+
+def _box(name: str, place: complex) -> list[Mark]:
+    """A link, with as much of its name as there is room for."""
+    most = int((APART - 2) / (SHARE * LETTER))
+    text = name if len(name) <= most else f"{name[: most - 1]}…"
+    half = max(SHARE * LETTER * len(text), HIGH) / 2 + 0.5 + 0.5j * HIGH
+    corners = (place - half, place + half.conjugate(), place + half, place - half.conjugate())
+    face = "#c4c4c4" if name == FRAME else "white"
+    return [Area(corners, face, DARK, 0.4), Text(place, text, LETTER, DARK, "center")]
+
+
+def places_of(chain: SpatialChain) -> dict[str, complex]:
+    """Middles of the links: row by row, each link as near to those that it hangs on as its row allows."""
+    rows = [[FRAME]]
+    known = {FRAME}
+    while rows[-1]:
+        near = [pair.other(link) for link in rows[-1] for pair in chain.pairs if link in (pair.i, pair.j)]
+        rows.append([link for link in dict.fromkeys(near) if link not in known])
+        known.update(rows[-1])
+    rows[-1] = [link for link in chain.links if link not in known]  # what does not hang on the frame
+    wide = max(map(len, rows))
+    places = {FRAME: 0j}
+    for number, row in enumerate(rows[1:], 1):
+        held = {link: [pair.other(link) for pair in chain.pairs if link in (pair.i, pair.j)] for link in row}
+        below = {link: [places[one].real for one in others if one in places] for link, others in held.items()}
+        across = {link: sum(xs) / len(xs) if xs else 0.0 for link, xs in below.items()}
+        step = min(WIDEST, APART * (wide - 1) / max(len(row) - 1, 1))
+        for k, link in enumerate(sorted(row, key=across.__getitem__)):
+            places[link] = complex((k - (len(row) - 1) / 2) * step, number * ROW)
+    return places

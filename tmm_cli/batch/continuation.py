@@ -1,0 +1,391 @@
+"""Where Newton's steps on a tape begin: tables along the driver's way, of groups that are found by iteration.
+
+A table is made once, from the trace that continuation has left: between its places the unknowns are cubic polynomials
+with the group's own rates at both ends (Hermite), which miss by some 1e-12.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.tape import record
+from tmm_cli.batch.tape.program import Program
+from tmm_cli.batch.tape.traced import TracedArray
+from tmm_cli.batch.variant import each
+from tmm_cli.mechanics.groups.base import Closed, Kernel
+from tmm_cli.mechanics.groups.branch import BranchTrace
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
+from tmm_cli.mechanics.groups.unrolled import Unrolled
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.tolerances import CONVERGED, SAME_STATE
+from tmm_cli.mechanics.numerics.vectors import Real
+
+EACH = 1440  # places of a table in a turn of the driver, or in its whole range
+STEPS = 4  # of Newton's method from the trace's own nodes to places of a table
+
+Stands = Sequence[Any]
+
+
+def unrolled(linkage: Linkage, kernels: Sequence[Kernel]) -> tuple[Kernel, ...]:
+    """The groups with those that are found by iteration as straight lines. Raises NotUnrolledError."""
+    there = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
+    geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
+    return tuple(
+        Unrolled.from_newton(kernel, there.poses, there.drives, geared) if isinstance(kernel, Newton) else kernel
+        for kernel in kernels
+    )
+
+
+def wants(kernels: Sequence[Kernel]) -> int:
+    """How many starts the groups take."""
+    return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear)
+
+
+def started(kernels: Sequence[Kernel], stands: Stands, steps: int | None = None) -> tuple[Kernel, ...]:
+    """The groups with their starts, one after another; steps: of Newton's method, if not the usual ones."""
+    found, at = [], 0
+    for kernel in kernels:
+        if isinstance(kernel, Unrolled) and not kernel.linear:
+            own = tuple(stands[at : at + len(kernel.free)])
+            kernel = replace(kernel, starts=own, steps=steps or kernel.steps)
+            at += len(own)
+        found.append(kernel)
+    return tuple(found)
+
+
+def sure(states: LinkStates) -> Any:
+    """Where the steps on a tape have closed all groups that take such."""
+    found: Any = np.ones(np.shape(states.q), dtype=bool)
+    for kernel, at in zip(states.kernels, states.placements, strict=True):
+        if isinstance(kernel, Unrolled):
+            found = found & (at.residual < 0)
+    return found
+
+
+def wound(states: LinkStates) -> Any:
+    """Where turns of wheels are those of the tables that groups in closed form have."""
+    found: Any = np.ones(np.shape(states.q), dtype=bool)
+    for kernel, at in zip(states.kernels, states.placements, strict=True):
+        if isinstance(kernel, Closed) and kernel.winding is not None:
+            found = found & kernel.winding.sure(kernel.group.links, at.poses, states.q)
+    return found
+
+
+def unknowns(states: LinkStates) -> Mapping[str, Any]:
+    """Free unknowns x and their rates v by the driver's place, numbered; and where they are `sure`."""
+    found: dict[str, Any] = {"sure": sure(states)}
+    number = 0
+    for kernel in states.kernels:
+        if isinstance(kernel, Unrolled) and not kernel.linear:
+            links = kernel.group.links
+            places = [p for link in links for p in _parts(states.poses[link].x, states.poses[link].unwrapped)]
+            rates = [p for link in links for p in _parts(states.first[link].v, states.first[link].w)]
+            for x, v in zip(kernel.values(places), kernel.values(rates), strict=True):
+                found |= {f"x{number}": x, f"v{number}": v}
+                number += 1
+    return found
+
+
+def _parts(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
+    return vector.real, vector.imag, angle
+
+
+@dataclass(frozen=True)
+class Table:
+    """Unknowns of a group at places of the driver: polynomials (4, unknowns, pieces), of equal pieces from low on.
+
+    gain: what they grow by in a cycle of that many pieces, where the way is closed; else None.
+    """
+
+    low: float
+    step: float
+    pieces: Real
+    gain: Real | None
+
+    @classmethod
+    def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> Table:
+        """From unknowns and rates (unknowns, places) at even places; nan where they are not known."""
+        h = float(q[1] - q[0])
+        a, b, one, other = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
+        pieces = np.stack([a, one, 3 * (b - a) - 2 * one - other, 2 * (a - b) + one + other])
+        return cls(float(q[0]), h, pieces, x[:, -1:] - x[:, :1] if closed else None)
+
+    def __call__(self, q: Real) -> Real:
+        """Unknowns at places, (unknowns, ...); nan beyond the ends."""
+        many = self.pieces.shape[-1]
+        share = (q - self.low) / self.step
+        number = np.floor(share)
+        if self.gain is None:
+            number = np.clip(number, 0.0, many - 1.0)
+            beyond: Any = np.where((share < 0) | (share > many), np.nan, 0.0)
+        else:
+            whole = np.floor(number / many)
+            beyond = whole * self.gain.reshape(-1, *[1] * np.ndim(q))
+        share = share - number
+        a, b, c, d = self.pieces.take((number if self.gain is None else number - whole * many).astype(np.intp), axis=2)
+        for part in (c, b, a):
+            d *= share
+            d += part
+        found: Real = d + beyond
+        return found
+
+
+class Starts:
+    """Starts of all groups of a linkage at any places of its driver."""
+
+    def __init__(self, linkage: Linkage, kernels: Sequence[Kernel]) -> None:
+        """kernels: as straight lines."""
+        own = [kernel for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear]
+        traces = [kernel.trace for kernel in own if kernel.trace is not None]
+        self.tables: list[Table] = []
+        if not own:
+            return
+        closing = _closing(linkage, kernels)
+        first = 0
+        for kernel, trace in zip(own, traces, strict=True):
+            q = _places(trace, turns=linkage.driver.kind == "turn")
+            found = closing(q, *(x for k, t in zip(own, traces, strict=True) for x in _traced(k, t, q)))
+            numbers = range(first, first + len(kernel.free))
+            lost = np.where(found["sure"], 0.0, np.nan)
+            x, v = (np.stack([found[f"{part}{k}"] + lost for k in numbers]) for part in "xv")
+            self.tables.append(Table.of(q, x, v, closed=trace.closed))
+            first += len(kernel.free)
+
+    def __call__(self, q: Real) -> list[Real]:
+        return [x for table in self.tables for x in table(q)]
+
+
+def _closing(linkage: Linkage, kernels: Sequence[Kernel]) -> Program:
+    """Unknowns by places of the driver and starts that may be far."""
+
+    def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
+        return unknowns(link_states(linkage, started(kernels, stands, STEPS), q, 1, blank=False))  # type: ignore[arg-type]
+
+    return record(stages, *[2] * (1 + wants(kernels)))
+
+
+def _places(trace: BranchTrace, *, turns: bool) -> Real:
+    """Even places along a trace."""
+    low, high = float(trace.q[0]), float(trace.q[-1])
+    count = EACH * max(1, round((high - low) / (2 * np.pi))) if turns else EACH
+    return low + (high - low) * np.arange(count + 1) / count
+
+
+def _traced(kernel: Unrolled, trace: BranchTrace, q: Real) -> list[Real]:
+    """Free unknowns near places of a trace."""
+    state, _ = trace.start(q)
+    parts = [state.x.real, state.x.imag, state.unwrapped]
+    return [parts[column % 3][:, column // 3] for column in kernel.free]
+
+
+# Where Newton's steps begin for many variants at once: each is followed from the first linkage, then along its way.
+#
+# At the place of the sketch numbers go from those of the first linkage to those of each variant; from there all
+# variants go along their driver ranges, up and down at once, predicted by their rates and these by the last two, and
+# closed on a tape. A step that corrects too much, or comes to another side of a dead position, is none: it is halved,
+# and a variant whose quarter steps lead nowhere either has come to its end.
+
+
+CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
+CORRECTION_STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
+ROUNDS = 12  # at most from the first linkage to a variant
+FIRST_SHARE = 1 / 16  # of that way, which tells where the rest leads; it is tried in one step then
+AT_NODE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
+SHORTEST = 0.25  # of a step
+EACH_TURN, LEAST_TURN = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
+STEPS_OF_VARIANTS = 2  # of Newton's method, from ways in such steps
+
+Varied = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each (variants, 1)
+
+
+@dataclass(frozen=True)
+class Ways:
+    """Unknowns of variants along their ways from `at` on: x and their rates v (unknowns, variants, 2 n + 1).
+
+    steps: their lengths down and up (variants, 1), 0 where nothing was looked at. gain: by what unknowns grow in a
+    cycle, (unknowns, variants, 1); None where there is none. nan where a variant was not followed.
+    """
+
+    at: float
+    x: Real
+    v: Real
+    steps: tuple[Real, Real]
+    gain: Real | None
+
+    def take(self, rows: Real) -> Ways:
+        """Of some variants."""
+        gain = None if self.gain is None else self.gain[:, rows]
+        down, up = self.steps
+        return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
+
+    def of(self, part: slice) -> Ways:
+        """Of some unknowns."""
+        return replace(self, x=self.x[part], v=self.v[part], gain=None if self.gain is None else self.gain[part])
+
+    def __call__(self, q: Real) -> list[Real]:
+        """Starts at places (variants, positions)."""
+        unknowns, variants, many = self.x.shape
+        n, (down, up) = many // 2, self.steps
+        q = np.broadcast_to(q, (variants, q.shape[-1])) - self.at
+        whole: Any = 0.0
+        if self.gain is not None:
+            whole = np.floor((q + n * down) / (2 * n * up))
+            q = q - whole * (2 * n * up)
+        step = np.where(q < 0, down, up)
+        share = q / np.where(step > 0, step, 1.0)
+        k = np.clip(np.floor(share + AT_NODE), -n, n - 1)
+        t = share - k
+        flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
+        x, v = (part.reshape(unknowns, -1) for part in (self.x, self.v))
+        a, b = x.take(flat, axis=1), x.take(flat + 1, axis=1)
+        # the step of the piece: the piece from -1 to 0 is one of the way down
+        one, other = (step * v.take(f, axis=1) for f in (flat, flat + 1))
+        found = a + t * (one + t * (3 * (b - a) - 2 * one - other + t * (2 * (a - b) + one + other)))
+        found = np.where(np.abs(t) <= AT_NODE, a, found)  # a node, whatever lies after it
+        if self.gain is not None:
+            found = np.where(whole == 0, found, found + whole * self.gain)
+        return list(found)
+
+
+class Marches:
+    """Of linkages of one kind; kernels: those of the first one, as straight lines; first: its numbers."""
+
+    def __init__(self, varied: Varied, first: Sequence[float], linkage: Linkage, kernels: Sequence[Kernel]) -> None:
+        self.first, self.at, many = np.array(first, dtype=float), linkage.sketch.at, len(first)
+        self.own = [kernel for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear]
+        unknown = [(kernel, column) for kernel in self.own for column in kernel.free]
+        self.x = np.array([_first(kernel, column) for kernel, column in unknown])
+        self.scale = np.array([1.0 if column % 3 == 2 else float(kernel.size) for kernel, column in unknown])
+        self.turning = np.array([column % 3 == 2 for _, column in unknown])
+
+        def stages(*data: TracedArray) -> Mapping[str, Any]:
+            other = varied(data[:many])
+            own = started([_rough(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], CORRECTION_STEPS)
+            states = link_states(other, own, data[many], 1, blank=False)  # type: ignore[arg-type]
+            dets = {
+                f"det{k}": at.det
+                for k, at in enumerate(
+                    at for kernel, at in zip(own, states.placements, strict=True)
+                    if isinstance(kernel, Unrolled) and not kernel.linear
+                )
+            }  # fmt: skip
+            return {**unknowns(states), **dets}
+
+        self.program = record(stages, *[1] * (many + 1 + wants(kernels)))
+        _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
+
+    def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
+        """Unknowns closed from x and their rates, (2, unknowns, variants); signs of determinants (groups, variants).
+
+        signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
+        """
+        data = [*each(numbers), q[:, None], *(part[:, None] for part in x)]
+        found = self.program(*data)
+        dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
+        sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
+        parts = np.stack([found.part(f"{part}{k}")[:, 0] for part in "xv" for k in range(len(x))])
+        there = parts.reshape(2, *x.shape)
+        there[0, :, ~sound] = np.nan
+        return there, dets
+
+    def _near(self, found: Real, start: Real) -> Real:
+        """Which variants closed near to their start."""
+        with np.errstate(invalid="ignore"):
+            near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < CORRECTION
+        return near
+
+    def sketched(self, numbers: Real) -> Real:
+        """Unknowns of variants (variants, n) at the place of the sketch and their rates, (2, unknowns, variants).
+
+        nan where they are lost.
+        """
+        variants = len(numbers)
+        there = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
+        gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
+        slope = np.zeros_like(there[0])
+        for _ in range(ROUNDS):
+            share = np.minimum(gone + stride, 1.0)
+            start = there[0] + slope * (share - gone)
+            between = self.first + share[:, None] * (numbers - self.first)
+            found, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
+            good = self._near(found[0], start) & (gone < 1)
+            moved = np.where(good, share - gone, 1.0)
+            slope = np.where(good, (found[0] - there[0]) / moved, slope)
+            there = np.where(good, found, there)
+            stride = np.where(good, np.where(gone > 0, 2 * stride, 1.0), stride / 2)
+            gone = np.where(good, share, gone)
+            if np.all(gone == 1):
+                break
+        return np.where(gone == 1, there, np.nan)
+
+    def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> Ways:
+        """Ways of variants over ranges (variants, 1), in so many steps up and down at most.
+
+        closed: they come round again after a range, which is then laid about the sketch.
+        """
+        if closed:
+            half = (high - low) / 2
+            low, high = self.at - half, self.at + half
+        n = -(-count // 2) if closed else count
+        ends = np.stack([low[:, 0], high[:, 0]]) - self.at
+        ends[0], ends[1] = np.minimum(ends[0], 0.0), np.maximum(ends[1], 0.0)
+        x, v = self._marched(numbers, self.sketched(numbers), ends / n, n)
+        gain = None
+        if closed:
+            gain = x[:, :, -1:] - x[:, :, :1]
+            around = np.where(self.turning[:, None, None], 2 * np.pi * np.round(gain / (2 * np.pi)), 0.0)
+            with np.errstate(invalid="ignore"):
+                other = np.any(np.abs(gain - around) > SAME_STATE * self.scale[:, None, None], axis=(0, 2))
+            x[:, other] = np.nan  # a cycle later it is assembled otherwise
+        return Ways(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
+
+    def _marched(self, numbers: Real, there: Real, steps: Real, n: int) -> Real:
+        """Unknowns and rates (2, unknowns, variants, 2 n + 1) from those at the sketch on.
+
+        steps: their lengths down and up, (2, variants).
+        """
+        variants = len(numbers)
+        sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
+        both = np.tile(numbers, (len(sides), 1))
+        h = np.concatenate([steps[side] for side in sides])
+        now = np.tile(there, (1, 1, len(sides)))
+        ways = np.full((*now.shape, n + 1), np.nan)
+        ways[..., 0] = now
+        bend = np.zeros_like(now[0])
+        gone, size = np.zeros(len(h)), np.ones(len(h))  # in steps
+        going = np.isfinite(now[0, 0])
+        while np.any(going):
+            step = h * size
+            start = now[0] + step * (now[1] + step / 2 * bend)
+            found, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
+            good = self._near(found[0], start) & going
+            with np.errstate(invalid="ignore", divide="ignore"):
+                bend = np.where(good & (step != 0), (found[1] - now[1]) / step, bend)
+            now = np.where(good, found, now)
+            gone = gone + size * good
+            whole = np.flatnonzero(good & (gone == np.floor(gone)))
+            ways[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
+            size = np.where(good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * size), size), size / 2)
+            going = going & (gone < n) & (size >= SHORTEST)
+        nowhere = np.full((*there.shape, n), np.nan)
+        side = {k: ways[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
+        down = side[0][..., :0:-1] if 0 in side else nowhere
+        up = side[1][..., 1:] if 1 in side else nowhere
+        return np.concatenate([down, there[..., None], up], axis=-1)
+
+
+def _rough(kernel: Kernel) -> Kernel:
+    """A group that is closed as well as starts need be."""
+    return replace(kernel, enough=CONVERGED) if isinstance(kernel, Unrolled) else kernel
+
+
+def _first(kernel: Unrolled, column: int) -> float:
+    """A free unknown of a group at the sketch."""
+    assert kernel.start is not None
+    x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]
+    return float((x.real, x.imag, angle)[column % 3])

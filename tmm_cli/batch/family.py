@@ -1,0 +1,280 @@
+"""Groups that are found by iteration, of many variants at once: Newton's method from the ways of all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.continuation import CORRECTION, EACH_TURN, Marches, Varied, Ways
+from tmm_cli.batch.prepare import straight
+from tmm_cli.batch.tape.traced import DependsOnData, TracedNumber
+from tmm_cli.batch.variant import Make, NoTapeError, each, stands, stood_for
+from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly.search import CLOSE, sketched_angles
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.groups.base import Closed, Kernel
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.groups.state import Drive, Drives, Pose, Poses, State
+from tmm_cli.mechanics.groups.unrolled import Unrolled
+from tmm_cli.mechanics.kinematics.driver_range import cycle_of
+from tmm_cli.mechanics.kinematics.strokes import Curve, OutputCurve, Stroke, Strokes, moving_slope, resisted, runs_of
+from tmm_cli.mechanics.linkage import Linkage, Request
+from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
+from tmm_cli.mechanics.numerics.vectors import Real, mapped, unit
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.naming import output_link
+
+
+@dataclass(frozen=True)
+class Marched(Newton):
+    """Such a group. lines: the same as straight lines; ways: of its free unknowns, nan where none was found."""
+
+    lines: Unrolled = field(kw_only=True)
+    ways: Ways = field(kw_only=True)
+
+    def rebind(self, linkage: Linkage) -> Marched:
+        lines = self.lines.rebind(linkage)
+        return replace(self, group=lines.group, size=lines.size, constraints=lines.constraints, lines=lines)
+
+    def take(self, rows: Real) -> Marched:
+        """Of some variants."""
+        return replace(self, ways=self.ways.take(rows))
+
+    def begun(self, poses: Poses, q: Real, drives: Drives) -> tuple[State, Real]:
+        posed = self.lines.posed(dict(zip(self.lines.free, self.ways(q), strict=True)), poses, drives)
+        parts = [(posed[link].x, posed[link].turned) for link in self.group.links]
+        x, turned = (np.stack(np.broadcast_arrays(*part), axis=-1) for part in zip(*parts, strict=True))
+        return State(x, turned), np.full(x.shape[:-1], -1.0)
+
+    def kept(self, found: LinkStates) -> Real:
+        """Which variants lie along their ways, far from dead positions, and as their sketch surely shows them.
+
+        found: of all variants, (variants, positions), from the place of the sketch on.
+        """
+        number = [kernel.group for kernel in found.kernels].index(self.group)
+        at, later = found.placements[number], {link for k in found.kernels[number:] for link in k.group.links}
+        start, _ = self.begun(found.poses, found.q, found.drives)
+        z = np.stack([pose.z for pose in at.poses], axis=-1)
+        known = {link: Pose(p.x[:, :1], p.z[:, :1]) for link, p in found.poses.items() if link not in later}
+        drives = {link: Drive(d.value[:, :1], d.first[:, :1], d.second[:, :1]) for link, d in found.drives.items()}
+        shown = sketched_angles(self, found.linkage, known, drives)
+        with np.errstate(invalid="ignore"):
+            followed = np.all(np.abs(z - unit(start.unwrapped)) < CORRECTION, axis=(1, 2))
+            meant = np.all(np.abs(z[:, :1] - (z[:1, :1] if shown is None else unit(shown))) < CLOSE, axis=(1, 2))
+            whole: Real = followed & meant & np.all((at.det * at.det[0, 0] > 0) & (at.margin > self.near), axis=1)
+        return whole
+
+
+def marched(varied: Varied, columns: Real, linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...]:
+    """The groups of the first variant as those of all, whose numbers are rows of columns; still to be rebound.
+
+    Raises NoTapeError, DependsOnData.
+    """
+    traces = [kernel.trace for kernel in kernels if isinstance(kernel, Newton) and not kernel.by_angle]
+    if not traces:
+        return kernels
+    lines = straight(linkage, kernels)
+    if lines is None or any(trace is None or not trace.closed or trace.dead.size for trace in traces):
+        raise NoTapeError
+    half = np.full((len(columns), 1), np.pi)
+    ways = Marches(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, EACH_TURN, closed=True)
+    found: list[Kernel] = []
+    first = 0
+    for kernel, line in zip(kernels, lines, strict=True):
+        if isinstance(kernel, Newton) and isinstance(line, Unrolled) and not line.linear:
+            last = first + len(line.free)
+            own = kernel.group, kernel.size, kernel.constraints, kernel.start, None, kernel.passive, kernel.order
+            found.append(Marched(*own, lines=line, ways=ways.of(slice(first, last))))
+            first = last
+        else:
+            found.append(kernel)
+    return tuple(found)
+
+
+# Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
+#
+# All stages then run over (variants, positions) at once. What cannot be told for all alike (groups that no tape takes,
+# several drivers, drivers with a stroke, outputs of more than two strokes) is a family of one variant, found as a file
+# of its own.
+
+
+SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one another than that are no task
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Variants that are assembled as the first one is. Their numbers are scalars or arrays (variants, 1).
+
+    q: places of the driver (variants, positions), rad or m. strokes: with arrays (variants, 1) in the place of numbers;
+    None where no output has any. sound: which variants go through all their cycle and have the strokes of the first.
+    """
+
+    linkage: Linkage
+    structure: Structure
+    kernels: tuple[Kernel, ...]
+    request: Request
+    q: Real
+    strokes: Strokes | None
+    sound: Real
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def take(self, rows: Sequence[int] | Real) -> Family:
+        """Some of the variants, or some of them again and again."""
+        rows = np.asarray(rows)
+        kernels = tuple(kernel.take(rows) if isinstance(kernel, Marched) else kernel for kernel in self.kernels)
+        new = replace(self, kernels=kernels).changed(rows_of(self.linkage, rows), self.q[rows])
+        return replace(new, strokes=rows_of(self.strokes, rows), sound=self.sound[rows])
+
+    def changed(self, linkage: Linkage, q: Real | None = None) -> Family:
+        """The same assemblies and strokes with other numbers, at other places."""
+        kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
+        structure = self.structure.rebind(linkage)
+        return replace(self, linkage=linkage, structure=structure, kernels=kernels, q=self.q if q is None else q)
+
+
+def rows_of(record: Any, rows: Real) -> Any:
+    """A record with these rows of its arrays (variants, 1)."""
+    return mapped(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
+
+
+def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
+    """Families of the variants whose numbers are the rows of columns (variants, n): which rows, and the family.
+
+    A variant that no stage takes comes with its error instead. Raises what `make` raises.
+    """
+    rows = np.arange(len(columns))
+    every = together(make, columns) if len(columns) > 1 else None
+    if every is not None and np.any(every.sound):
+        yield rows[every.sound], every.take(rows[every.sound])
+        rows = rows[~every.sound]
+    for row in rows:
+        try:
+            yield np.array([row]), _alone(make, columns[row])
+        except LinkageError as error:
+            yield np.array([row]), error
+
+
+def together(make: Make, columns: Real) -> Family | None:
+    """All at once, sound or not, assembled as the first one; None where that cannot be. Raises what `make` raises."""
+    first = columns[0].tolist()
+    try:
+        varied = make([TracedNumber(x, column) for x, column in zip(first, each(columns), strict=True)])
+        plain = make(first).linkage
+        structure = mobile(plain)
+        kernels = assemble(plain, structure)
+        if plain.others or plain.driver.kind != "turn" or plain.driver.stroke is not None or varied.ends is not None:
+            return None
+        if not all(kernel.plain if isinstance(kernel, Closed) else isinstance(kernel, Newton) for kernel in kernels):
+            return None
+        if cycle_of(plain, kernels) != 1:  # strokes are looked for in one turn
+            return None
+        kernels = marched(lambda data: stood_for(make, first, data, plain.sketch), columns, plain, kernels)
+    except (DependsOnData, NoTapeError, LinkageError):
+        return None
+    linkage = replace(stands(varied.linkage), sketch=plain.sketch)
+    structure = structure.rebind(linkage)
+    kernels = tuple(kernel.rebind(linkage) for kernel in kernels)
+    request = stands(varied.request)
+    strokes, sound = _all_strokes(linkage, kernels, len(columns))
+    if linkage.stroke_links and strokes is None:
+        return None
+    q = places_of(request, strokes, linkage.driver.sense, len(columns))
+    return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
+
+
+def _alone(make: Make, row: Real) -> Family:
+    """One variant, found as a file of its own. Raises LinkageError."""
+    variant = make(row.tolist())
+    structure = mobile(variant.linkage)
+    mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
+    q = np.asarray(mechanism.asked)[None, :]
+    sound = np.array([True])
+    return Family(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
+
+
+def _all_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple[Strokes | None, Real]:
+    """Strokes of the main output of all variants, with those of further links on which loads depend; None where one of
+    these has none. And which variants have one working and one idle stroke of each, and turn fully."""
+    link = output_link(linkage, tuple(kernel.group for kernel in kernels))
+    main, sound = _strokes(linkage, kernels, count, link)
+    others = []
+    for link in linkage.stroke_links:
+        strokes, have = _strokes(linkage, kernels, count, link)
+        if main is None or strokes is None:
+            return None, sound
+        others.append(strokes)
+        sound = sound & have
+    return main and replace(main, others=tuple(others)), sound
+
+
+def _strokes(
+    linkage: Linkage, kernels: tuple[Kernel, ...], count: int, link: str | None
+) -> tuple[Strokes | None, Real]:
+    """Strokes of one output of all variants, and which have one working and one idle stroke and turn fully."""
+    q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
+    whole = link_states(linkage, kernels, q, 1)
+    sound = np.all(whole.moving, axis=1)
+    for kernel in kernels:
+        if isinstance(kernel, Marched):
+            sound = sound & kernel.kept(whole)
+    if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
+        return None, sound
+    curve = OutputCurve(linkage, towards(kernels, [link]), link)
+    forward = np.broadcast_to(moving_slope(whole, link), q.shape) >= 0
+    turns_back = forward[:, :-1] != forward[:, 1:]
+    if not np.any(turns_back):  # it turns on and on
+        return Strokes(link, curve.kind, (), ""), sound
+    sound = sound & (np.sum(turns_back, axis=1) == 2)
+    if not np.any(sound):
+        return None, sound
+    turns_back = np.where(sound[:, None], turns_back, turns_back[np.argmax(sound)])
+    at = np.nonzero(turns_back)[1].reshape(count, 2)
+    rows = np.arange(count)[:, None]
+    ends = roots(curve.slope, q[rows, at], q[rows, at + 1])
+    return named_strokes(linkage, curve, ends, resisted(linkage, link)), sound
+
+
+def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> Strokes:
+    """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
+    sense, cycle = linkage.driver.sense, 2 * np.pi
+    ends = np.mod(ends, cycle)
+    lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
+    lows, runs = runs_of(curve, ends, sense * lengths)
+    forward = np.where(runs > 0, lengths, 0).sum(axis=1)
+    back = np.where(runs < 0, lengths, 0).sum(axis=1)
+    slower = np.sign(np.where(np.abs(forward - back) > SAME_PLACE, forward - back, 0))
+    rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
+    direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
+    asked = linkage.working_direction(curve.link)
+    if asked != "auto":
+        direction = np.full(len(ends), 1.0 if asked == "forward" else -1.0)
+    first = (np.sign(runs[:, 1]) == direction).astype(int)
+    rows = np.arange(len(ends))
+    found = []
+    for order, working in ((first, True), (1 - first, False)):
+        start, length, low, run = (part[rows, order][:, None] for part in (ends, lengths, lows, runs))
+        found.append(Stroke(start, length, low, run, working))
+    return Strokes(curve.link, curve.kind, tuple(found), "")
+
+
+def places_of(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
+    """The positions of every variant, (variants, positions); None where they need strokes that are not there."""
+    ones = np.ones((count, 1))
+    if request.places:
+        return np.concatenate([place * ones for place in request.places], axis=1)
+    start: Any = request.start
+    if isinstance(start, str):
+        if strokes is None or not strokes.strokes:
+            return None
+        start = strokes.strokes[0].start
+    places: Real = start * ones + sense * 2 * np.pi * np.arange(request.count) / request.count
+    return places

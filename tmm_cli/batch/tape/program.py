@@ -1,0 +1,301 @@
+"""What a program gives: planes of real numbers, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.tape.terms import ONE_BY_ONE, Term, axes_of
+
+Array = np.ndarray[Any, Any]
+
+
+class Outputs(Mapping[str, Array]):
+    """Results by name, (variants, positions), or (positions,) where no data are over variants.
+
+    Real and imaginary parts lie in planes of their own, `part` gives one of them; an array of complex numbers is put
+    together when it is asked for.
+    """
+
+    def __init__(
+        self, names: Mapping[str, tuple[Any, Any]], planes: Mapping[Any, Array], turned: bool, several: bool,
+        shape: tuple[int, int],
+    ) -> None:  # fmt: skip
+        self.names, self.planes, self.turned, self.several, self.shape = names, planes, turned, several, shape
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def part(self, name: str, imaginary: bool = False) -> Array:
+        """Real or imaginary part of a result."""
+        value = self.names[name][imaginary]
+        found = self.planes[value.number] if isinstance(value, Term) else np.asarray(0.0 if value is None else value)
+        if found.shape != self.shape:
+            found = np.broadcast_to(found, self.shape)
+        return (found.T if self.turned else found) if self.several else found.reshape(-1)
+
+    def without(self, name: str) -> Outputs:
+        """All but one."""
+        names = {one: parts for one, parts in self.names.items() if one != name}
+        return Outputs(names, self.planes, self.turned, self.several, self.shape)
+
+    @property
+    def several_shape(self) -> tuple[int, int]:
+        """Variants and positions."""
+        return self.shape[::-1] if self.turned else self.shape
+
+    def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> Outputs:
+        """With other values of a variant at the positions of a mask; there are as many as it has, in their order."""
+        planes = dict(self.planes)
+        for name, parts in self.names.items():
+            for imaginary, term in enumerate(parts):
+                if isinstance(term, Term):
+                    plane = planes[term.number]
+                    if plane.shape != self.shape or term.op == "input":
+                        plane = planes[term.number] = np.broadcast_to(plane, self.shape).copy()
+                    own = plane[:, variant] if self.turned else plane[variant]
+                    own[where] = values[name].imag if imaginary else values[name].real
+        return Outputs(self.names, planes, self.turned, self.several, self.shape)
+
+    def __getitem__(self, name: str) -> Array:
+        if self.names[name][1] is None:
+            return self.part(name)
+        real, imag = self.part(name), self.part(name, True)
+        found = np.empty(real.shape, dtype=complex)
+        found.real, found.imag = real, imag
+        return found
+
+
+# A tape as a program: straight-line NumPy calls on registers that are there before the data come.
+#
+# Memory is taken once, each call writes where its result is wanted, and long data go through in chunks that stay in the
+# processor's cache. Data of fewer positions than variants lie with the variants on the last axis, where NumPy is quick.
+
+
+CHUNK = 9000  # numbers in a register: shorter ones cost more calls, longer ones no fewer misses of the cache
+
+
+@dataclass(frozen=True)
+class Program:
+    """inputs: axes of each input (bit 1: variants, bit 2: positions); outputs: by name, real and imaginary terms."""
+
+    terms: tuple[Term, ...]
+    inputs: tuple[int, ...]
+    outputs: Mapping[str, tuple[Any, Any]]
+
+    def only(self, *names: str) -> Program:
+        """The program of some of its outputs alone."""
+        return replace(self, outputs={name: self.outputs[name] for name in names})
+
+    @property
+    def operations(self) -> int:
+        """How many calls of NumPy a chunk takes."""
+        return self._code.operations
+
+    @cached_property
+    def _code(self) -> _Code:
+        return _Code(self)
+
+    def __call__(self, *data: Any) -> Outputs:
+        """Outputs for data of shapes (variants, 1), (positions,) or (variants, positions), as the inputs' axes say."""
+        columns = [np.asarray(d, dtype=float) for d in data]
+        variants = positions = 1
+        for column, axes in zip(columns, self.inputs, strict=True):
+            if axes & 1:
+                variants = max(variants, len(column))
+            if axes & 2:
+                positions = max(positions, column.shape[-1])
+        several = any(axes & 1 for axes in self.inputs)
+        turned = positions < variants  # the longer axis last
+        shape = (positions, variants) if turned else (variants, positions)
+        laid = [_laid(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
+        return Outputs(self.outputs, self._code.run(laid, shape), turned, several, shape)
+
+
+def _laid(value: Array, axes: int, turned: bool) -> Array:
+    """Data with variants and positions on the axes of the registers."""
+    if axes == 3:
+        return np.ascontiguousarray(value.T if turned else value)
+    last = (axes == 1) == turned  # whether its own axis is the last one
+    return value.reshape((1, -1) if last else (-1, 1))
+
+
+class _Code:
+    """A program's two parts: what is the same in all positions (or all variants), once, and the rest chunk by chunk.
+
+    The second part is a generated function: a call of NumPy a line, on its inputs i, outputs o and registers r.
+    """
+
+    def __init__(self, program: Program) -> None:
+        used = _used(program)
+        self.everywhere = 0
+        for axes in program.inputs:
+            self.everywhere |= axes
+        self.before = [t for t in used if t.op != "input" and t.axes != self.everywhere]
+        self.inputs = {t.number: t.args[0] for t in used if t.op == "input"}
+        full = [t for t in used if t.op != "input" and t.axes == self.everywhere]
+        wanted = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
+        self.small = {t.number for t in wanted if t.op == "input" or t.axes != self.everywhere}
+        slots = {t.number: t for t in wanted if t.number not in self.small}
+        ordered = sorted(slots.values(), key=lambda t: t.truth)  # truths last
+        self.slots = {t.number: k for k, t in enumerate(ordered)}
+        self.truths = sum(t.truth for t in ordered)
+        writer = _Writer(full, self.slots)
+        self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
+        names: dict[str, Any] = {f"f_{name}": function for name, function in ONE_BY_ONE.items()}
+        names |= {"copy": np.copyto, "where": np.where, "read": _read, "call": _call} | writer.constants
+        exec(compile(writer.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
+        self.function = names["program"]
+        self.space: dict[tuple[int, int], list[Array]] = {}
+
+    def registers(self, shape: tuple[int, int]) -> list[Array]:
+        """Working memory for a chunk of a shape, kept for the next one."""
+        if shape not in self.space:
+            if len(self.space) > 4:
+                self.space.clear()
+            block = np.empty((sum(not truth for truth in self.kinds), *shape))
+            truths = np.empty((sum(self.kinds), *shape), dtype=bool)
+            floats, bools = iter(block), iter(truths)
+            self.space[shape] = [next(bools if truth else floats) for truth in self.kinds]
+        return self.space[shape]
+
+    def run(self, data: Sequence[Array], shape: tuple[int, int]) -> dict[Any, Array]:
+        """All terms that are outputs, by number."""
+        with np.errstate(all="ignore"):
+            known = {number: data[k] for number, k in self.inputs.items()}
+            for term in self.before:
+                known[term.number] = _worked_out(term, known)
+            own = [known[number] for number in self.outer]
+            floats, truths = len(self.slots) - self.truths, self.truths
+            rows, columns = shape
+            wide = -(-columns // -(-columns // CHUNK))  # chunks of equal width
+            high = max(1, min(rows, CHUNK // wide))
+            if rows <= high and columns <= wide:
+                found = [*np.empty((floats, *shape)), *np.empty((truths, *shape), dtype=bool)]
+                self.function(*own, *found, *self.registers(shape))
+            else:  # a plane each: the system hands out one large block with all its pages to be cleared, each time
+                found = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
+                for top in range(0, rows, high):
+                    for left in range(0, columns, wide):
+                        here = (slice(top, top + high), slice(left, left + wide))
+                        size = (min(high, rows - top), min(wide, columns - left))
+                        parts = [_part(d, here) for d in own]
+                        self.function(*parts, *[plane[here] for plane in found], *self.registers(size))
+        return dict(zip(self.slots, found, strict=True)) | {n: known[n] for n in self.small}
+
+
+def _part(data: Array, here: tuple[slice, slice]) -> Array:
+    """A chunk of data, where it has that axis."""
+    return data[here[0] if data.shape[0] > 1 else slice(None), here[1] if data.shape[1] > 1 else slice(None)]
+
+
+def _worked_out(term: Term, known: Mapping[int, Array]) -> Array:
+    args = [known[a.number] if isinstance(a, Term) else a for a in term.args]
+    if term.op == "where":
+        return np.where(*args)
+    if term.op == "table":
+        return np.asarray(np.interp(args[0], *args[1]))
+    (called,), given = (args[0], args[1:]) if term.op == "call" else ((ONE_BY_ONE[term.op],), args)
+    found: Array = called(*given)
+    return found
+
+
+def _call(function: tuple[Any], *operands: Any) -> None:
+    *given, out = operands
+    out[...] = function[0](*given)
+
+
+def _read(x: Array, table: tuple[Any, Any], out: Array) -> None:
+    out[...] = np.interp(x, *table)
+
+
+def _used(program: Program) -> tuple[Term, ...]:
+    """Terms that some output needs, in order."""
+    wanted: set[int] = set()
+    left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
+    while left:
+        term = left.pop()
+        if term.number not in wanted:
+            wanted.add(term.number)
+            left += [a for a in term.args if isinstance(a, Term)]
+    return tuple(t for t in program.terms if t.number in wanted)
+
+
+class _Writer:
+    """Writes the source of terms one after another; a register is free again after its last use.
+
+    slots: which terms are outputs, and where. Results of outputs are written where they are wanted.
+    """
+
+    def __init__(self, terms: Sequence[Term], slots: Mapping[int, int]) -> None:
+        self.slots = slots
+        self.constants: dict[str, Any] = {}
+        self._names: dict[tuple[str, Any], str] = {}
+        self.kinds: list[bool] = []
+        self.outer: list[int] = []
+        self.lines: list[str] = []
+        self._free: dict[bool, list[str]] = {False: [], True: []}
+        self._owned: dict[int, str] = {}
+        self._where = {number: f"o{slot}" for number, slot in slots.items()}
+        own = {t.number for t in terms}
+        uses: dict[int, list[int]] = {}
+        for k, term in enumerate(terms):
+            for arg in term.args:
+                if isinstance(arg, Term):
+                    uses.setdefault(arg.number, []).append(k)
+                    if arg.number not in own and arg.number not in self.outer:
+                        self.outer.append(arg.number)
+                        self._where[arg.number] = f"i{len(self.outer) - 1}"
+        self._last = {number: where[-1] for number, where in uses.items()}
+        for k, term in enumerate(terms):
+            self._write(k, term)
+        head = [f"i{k}" for k in range(len(self.outer))] + [f"o{k}" for k in range(len(slots))]
+        head += [f"r{k}" for k in range(len(self.kinds))]
+        body = "\n    ".join(self.lines or ["pass"])
+        self.source = f"def program({', '.join(head)}):\n    {body}\n"
+
+    def _constant(self, value: Any) -> str:
+        key = ("table", id(value)) if isinstance(value, tuple) else (type(value).__name__, value)
+        if key not in self._names:
+            self._names[key] = f"c{len(self._names)}"
+            self.constants[self._names[key]] = value if isinstance(value, tuple) else np.asarray(value)
+        return self._names[key]
+
+    def _name(self, value: Any) -> str:
+        return self._where[value.number] if isinstance(value, Term) else self._constant(value)
+
+    def _release(self, k: int, args: tuple[Any, ...]) -> None:
+        for arg in args:
+            if isinstance(arg, Term) and self._last[arg.number] == k and arg.number in self._owned:
+                self._free[arg.truth].append(self._owned.pop(arg.number))
+
+    def _write(self, k: int, term: Term) -> None:
+        op, args = term.op, term.args
+        read = [self._constant(a) if isinstance(a, tuple) else self._name(a) for a in args]
+        if op != "where":
+            self._release(k, args)
+        if term.number in self.slots:
+            to = self._where[term.number]
+        else:
+            free = self._free[term.truth]
+            if not free:
+                free.append(f"r{len(self.kinds)}")
+                self.kinds.append(term.truth)
+            to = self._owned[term.number] = self._where[term.number] = free.pop()
+        if op == "where":
+            if axes_of(args[0]) == 1:  # neighbours differ, which masked copying is slow at
+                self.lines.append(f"copy({to}, where({', '.join(read)}))")
+            else:
+                self.lines += [f"copy({to}, {read[2]})", f"copy({to}, {read[1]}, where={read[0]})"]
+            self._release(k, args)
+        else:
+            out = f"out={to}" if op in ("maximum", "minimum") else to
+            name = {"table": "read", "call": "call"}.get(op, f"f_{op}")
+            self.lines.append(f"{name}({', '.join(read)}, {out})")

@@ -1,0 +1,286 @@
+"""Stand-ins for arrays: whatever NumPy function is called on them is written on a tape instead.
+
+So the ordinary code of the groups runs once, on stand-ins, and the tape holds the straight line of real operations that
+it comes to for this linkage. A complex number is two real ones; what is known to be zero in them is not computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+from tmm_cli.batch.tape.terms import ONE_BY_ONE, Tape, Term
+
+
+class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
+    """The code asks for a number (a truth, a length) that is not there before the data are."""
+
+
+@dataclass(eq=False)
+class TracedArray(NDArrayOperatorsMixin):
+    """An array of numbers to come. re and im: terms or numbers; im is None for real numbers and truths."""
+
+    tape: Tape
+    re: Any
+    im: Any = None
+
+    __hash__ = object.__hash__
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (1,)
+
+    @property
+    def ndim(self) -> int:
+        return 1
+
+    @property
+    def dtype(self) -> Any:
+        return np.dtype(complex if self.im is not None else bool if _is_truth(self.re) else float)
+
+    @property
+    def real(self) -> TracedArray:
+        return TracedArray(self.tape, self.re)
+
+    @property
+    def imag(self) -> TracedArray:
+        return TracedArray(self.tape, 0.0 if self.im is None else self.im)
+
+    def astype(self, _: Any) -> TracedArray:
+        """All numbers of a tape are of one type."""
+        return self
+
+    def conjugate(self) -> TracedArray:
+        return self if self.im is None else TracedArray(self.tape, self.re, self.tape.apply("negative", self.im))
+
+    def __bool__(self) -> bool:
+        truth = self.tape.settled(self.re)
+        if self.im is None and not isinstance(truth, Term):
+            return bool(truth)
+        raise DependsOnData("a branch of the code depends on the data")
+
+    def __float__(self) -> float:
+        if self.im is None and not isinstance(self.re, Term):
+            return float(self.re)
+        raise DependsOnData("a number is wanted that depends on the data")
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise DependsOnData("an array is wanted that depends on the data")
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        if method != "__call__" or any(v is not None for v in more.values()):
+            raise DependsOnData(f"{ufunc.__name__}.{method} cannot be written on a tape")
+        if ufunc is np.power and isinstance(inputs[1], int) and inputs[1] == 2:
+            ufunc, inputs = np.multiply, (inputs[0], inputs[0])
+        parts = [self._of(value) for value in inputs]
+        found = COMPLEX.get(ufunc.__name__)
+        if found is not None and any(im is not None for _, im in parts):
+            return TracedArray(self.tape, *found(self.tape, *parts))
+        if ufunc.__name__ == "conjugate":
+            return inputs[0]
+        if ufunc.__name__ not in ONE_BY_ONE or any(im is not None for _, im in parts):
+            raise DependsOnData(f"{ufunc.__name__} cannot be written on a tape")
+        return TracedArray(self.tape, self.tape.apply(ufunc.__name__, *(re for re, _ in parts)))
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        known = FUNCTIONS.get(function)
+        if known is None or kwargs:
+            raise DependsOnData(f"{function.__name__} cannot be written on a tape")
+        return known(self, *args)
+
+    def _of(self, value: Any) -> tuple[Any, Any]:
+        """Real and imaginary part of an operand; an array all of one number is that number."""
+        if isinstance(value, TracedArray):
+            return value.re, value.im
+        array = np.asarray(value)
+        one = array.ravel()[0] if array.size else 0.0
+        if array.size > 1 and not np.all((array == one) | ((array != array) & (one != one))):
+            raise DependsOnData("an array of different numbers is no part of the data")
+        if array.dtype.kind == "c":
+            return one.real, one.imag
+        return (one if array.dtype.kind in "bf" else float(one)), None
+
+    def where(self, truth: Any, one: Any, other: Any) -> TracedArray:
+        truth, one, other = (self._of(v) for v in (truth, one, other))
+        re = self.tape.where(truth[0], one[0], other[0])
+        if one[1] is None and other[1] is None:
+            return TracedArray(self.tape, re)
+        return TracedArray(self.tape, re, self.tape.where(truth[0], _im(one), _im(other)))
+
+    def called(self, function: Any, *operands: Any) -> TracedArray:
+        """A function of whole real arrays, as one operation."""
+        return TracedArray(self.tape, self.tape.term("call", (function,), *(self._of(x)[0] for x in operands)))
+
+    def interp(self, x: Any, at: Any, values: Any) -> TracedArray:
+        """A piecewise linear table (np.interp)."""
+        table = (tuple(float(v) for v in at), tuple(float(v) for v in values))
+        return TracedArray(self.tape, self.tape.term("table", self._of(x)[0], table))
+
+
+def _is_truth(re: Any) -> bool:
+    return re.truth if isinstance(re, Term) else isinstance(re, (bool, np.bool_))
+
+
+def _im(part: tuple[Any, Any]) -> Any:
+    return 0.0 if part[1] is None else part[1]
+
+
+Part = tuple[Any, Any]
+
+
+def _sum(op: str) -> Callable[[Tape, Part, Part], Part]:
+    return lambda tape, a, b: (tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
+
+
+def _product(tape: Tape, a: Part, b: Part) -> Part:
+    def times(x: Any, y: Any) -> Any:
+        return tape.apply("multiply", x, y)
+
+    if a[1] is None or b[1] is None:
+        (x, _), (re, im) = (a, b) if a[1] is None else (b, a)
+        return times(x, re), times(x, im)
+    return (
+        tape.apply("subtract", times(a[0], b[0]), times(a[1], b[1])),
+        tape.apply("add", times(a[0], b[1]), times(a[1], b[0])),
+    )
+
+
+def _quotient(tape: Tape, a: Part, b: Part) -> Part:
+    if b[1] is None:
+        return tape.apply("divide", a[0], b[0]), tape.apply("divide", a[1], b[0])
+    square = _square(tape, b)
+    re, im = _product(tape, a if a[1] is not None else (a[0], 0.0), (b[0], tape.apply("negative", b[1])))
+    return tape.apply("divide", re, square), tape.apply("divide", im, square)
+
+
+def _square(tape: Tape, a: Part) -> Any:
+    return tape.apply("add", *(tape.apply("multiply", x, x) for x in a))
+
+
+def _both(tape: Tape, op: str, joined: str, a: Part, b: Part) -> Any:
+    return tape.apply(joined, tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
+
+
+COMPLEX: dict[str, Callable[..., Part]] = {
+    "add": _sum("add"),
+    "subtract": _sum("subtract"),
+    "multiply": _product,
+    "divide": _quotient,
+    "negative": lambda tape, a: (tape.apply("negative", a[0]), tape.apply("negative", a[1])),
+    "positive": lambda tape, a: a,
+    "conjugate": lambda tape, a: (a[0], tape.apply("negative", a[1])),
+    "absolute": lambda tape, a: (tape.apply("sqrt", _square(tape, a)), None),
+    "equal": lambda tape, a, b: (_both(tape, "equal", "bitwise_and", a, b), None),
+    "not_equal": lambda tape, a, b: (_both(tape, "not_equal", "bitwise_or", a, b), None),
+    "isfinite": lambda tape, a: (
+        tape.apply("bitwise_and", tape.apply("isfinite", a[0]), tape.apply("isfinite", a[1])), None,
+    ),
+}  # fmt: skip
+
+FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    np.where: TracedArray.where,
+    np.shape: lambda stand, value: value.shape,
+    np.atleast_1d: lambda stand, value: value,
+    np.real: lambda stand, value: value.real,
+    np.imag: lambda stand, value: value.imag,
+    np.angle: lambda stand, value: np.arctan2(value.imag, value.real),
+    np.interp: TracedArray.interp,
+    np.round: lambda stand, value: np.rint(value),
+    np.any: lambda stand, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
+}
+
+
+# Numbers that vary from linkage to linkage, for code that builds one: they branch like numbers, and are written down.
+#
+# Whatever is built of such numbers holds terms of a tape in their places; the checks and choices of the building code
+# are those of one linkage, the value.
+
+
+class TracedNumber(NDArrayOperatorsMixin):
+    """A real or complex number: `value` for one linkage, `stand` for all.
+
+    otherwise: where it is given, gets an array of truths for every choice of the building code: which stands would have
+    chosen otherwise than the value did.
+    """
+
+    __hash__ = object.__hash__
+
+    def __init__(self, value: Any, stand: Any, otherwise: list[Any] | None = None) -> None:
+        self.value, self.stand, self.otherwise = value, stand, otherwise
+
+    def __float__(self) -> float:
+        if self.otherwise is not None:
+            self.otherwise.append(self.stand != self.value)
+        return float(self.value)
+
+    def __bool__(self) -> bool:
+        if self.otherwise is not None:
+            self.otherwise.append((self.stand != 0) != bool(self.value))
+        return bool(self.value)
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+    def __format__(self, how: str) -> str:
+        return format(self.value, how)
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise DependsOnData("an array is wanted that depends on the data")
+
+    @property
+    def real(self) -> TracedNumber:
+        return TracedNumber(np.real(self.value), np.real(self.stand), self.otherwise)
+
+    @property
+    def imag(self) -> TracedNumber:
+        return TracedNumber(np.imag(self.value), np.imag(self.stand), self.otherwise)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: Any) -> Any:
+        if method != "__call__" or ufunc is np.floor:  # what is whole for one linkage may not be so for another
+            raise DependsOnData(f"{ufunc.__name__}, {method}, cannot be written on a tape")
+        value = ufunc(*(_value(x) for x in inputs))
+        otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)
+        if isinstance(value, bool | np.bool_):
+            if otherwise is not None:
+                otherwise.append(ufunc(*(_stand(x) for x in inputs)) != bool(value))
+            return bool(value)
+        return TracedNumber(value, WRITTEN.get(ufunc, ufunc)(*(_stand(x) for x in inputs)), otherwise)
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if function is not np.angle:
+            raise DependsOnData(f"{function.__name__} cannot be written on a tape")
+        return np.arctan2(self.imag, self.real)
+
+
+def _value(x: Any) -> Any:
+    return x.value if isinstance(x, TracedNumber) else x
+
+
+def _stand(x: Any) -> Any:
+    return x.stand if isinstance(x, TracedNumber) else x
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    """Whole powers as products, halves by roots."""
+    if isinstance(exponent, TracedArray) or 2 * exponent != int(2 * exponent):
+        raise DependsOnData("such a power cannot be written on a tape")
+    found, whole = 1.0, int(abs(exponent))
+    for _ in range(whole):
+        found = found * base
+    if abs(exponent) != whole:
+        found = found * np.sqrt(base)
+    return 1 / found if exponent < 0 else found
+
+
+WRITTEN = {
+    np.power: _power,
+    np.tan: lambda x: np.sin(x) / np.cos(x),
+    np.arcsin: lambda x: np.arctan2(x, np.sqrt(1 - x * x)),
+    np.arccos: lambda x: np.arctan2(np.sqrt(1 - x * x), x),
+    np.arctan: lambda x: np.arctan2(x, 1.0),
+    np.hypot: lambda x, y: np.sqrt(x * x + y * y),
+}

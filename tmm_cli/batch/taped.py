@@ -1,0 +1,253 @@
+"""Variants of a linkage by its tape: for loads that ask for no strokes.
+
+Unlike a Batch, whose program is for the linkages that it was made of, this one takes numbers anew at every call; which
+assembly the groups have is that of the first linkage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.continuation import EACH_TURN, LEAST_TURN, STEPS_OF_VARIANTS, Marches, Ways, started, wants
+from tmm_cli.batch.prepare import TOLD, WOUND, Wanted, solved, straight
+from tmm_cli.batch.tape import record
+from tmm_cli.batch.tape.program import Program
+from tmm_cli.batch.tape.traced import DependsOnData, TracedArray, TracedNumber
+from tmm_cli.batch.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, each, sketch_of, stood_for
+from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.errors import LinkageError
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.kinematics.driver_range import cycle_of
+from tmm_cli.mechanics.kinematics.strokes import places as places_of
+from tmm_cli.mechanics.linkage import Linkage, Sketch
+from tmm_cli.mechanics.numerics.vectors import Real
+
+
+class Taped:
+    """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
+
+    Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool = False) -> None:
+        """make: a variant for given numbers; first: those of the linkage whose assembly all have."""
+        self.make, self.first, self.variant = make, first, make(first)
+        self.linkage = self.variant.linkage
+        self.structure = mobile(self.linkage)
+        self.kernels = assemble(self.linkage, self.structure)
+        if self.linkage.friction or (forces and self.linkage.by_strokes):
+            raise NoTapeError
+        self.lines = _straight(self.linkage, self.kernels)
+        self.turns = cycle_of(self.linkage, self.kernels) or 1
+        varied = make([TracedNumber(x, x) for x in first])
+        self.start = varied.start if forces else None  # nothing else hangs on where its law begins
+        # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+        apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
+        if apart or isinstance(self.start, TracedNumber):
+            raise NoTapeError
+        own = any(isinstance(number, TracedNumber) for number in _ends(varied))
+        self.ends = record(self._ends, *[1] * len(first)) if own else None
+        self.program = self._program(wanted, forces, own)
+        self.marches = Marches(self._varied, first, self.linkage, self.lines) if wants(self.lines) else None
+        self._last: tuple[bytes, Ways] | None = None
+
+    def _varied(self, data: Sequence[Any]) -> Linkage:
+        return stood_for(self.make, self.first, data, self.linkage.sketch)
+
+    def _program(self, wanted: Wanted, forces: bool, own: bool) -> Program:
+        """Of the varying numbers, each (variants, 1), and the driver's places; own: each variant has its own."""
+
+        many = len(self.first)
+
+        def stages(*data: TracedArray) -> Mapping[str, Any]:
+            linkage, q, stands = self._varied(data[:many]), data[many], data[many + 1 :]
+            kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
+            kernels = started(kernels, stands, STEPS_OF_VARIANTS)
+            structure = self.structure.rebind(linkage)
+            return solved(linkage, structure, kernels, q, wanted, forces, None, blank=False, start=self.start)
+
+        whole = record(stages, *[1] * many, 3 if own else 2, *[3] * wants(self.lines))
+        return whole.only(*(name for name in whole.outputs if name not in TOLD), WOUND)
+
+    def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
+        """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""
+        varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
+        return {
+            str(k): place.stand if isinstance(place, TracedNumber) else place for k, place in enumerate(_ends(varied))
+        }
+
+    def driver_range(self, columns: Real) -> DriverRanges:
+        """The crank's turn, or the range of the driver."""
+        if self.ends is None:
+            return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
+        found = self.ends(*each(columns))
+        first = 0 if self.variant.ends is None else 2
+        last = first + len(self.variant.asked)
+        numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
+        variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
+        variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
+        return DriverRanges.of(variant, len(columns), self.turns, self.start)
+
+    def without(self, part: str) -> Taped:
+        """Without results whose names have such a part."""
+        new = copy(self)
+        new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
+        return new
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch."""
+        linkage = self.make([float(number) for number in numbers]).linkage
+        kernels: Sequence[Kernel] = [kernel.rebind(linkage) for kernel in self.lines]
+        if self.marches is not None:
+            kernels = started(kernels, list(self.marches.sketched(np.array([numbers]))[0]), STEPS_OF_VARIANTS)
+        return sketch_of(linkage, kernels)
+
+    def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
+        ranges = self.driver_range(columns[:1] if self.ends is None else columns)
+        q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
+        played = self.program(*each(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        found: Mapping[str, Real] = played.without(WOUND)
+        if not np.all(played[WOUND]):  # wheels have gone round otherwise than those of the first linkage
+            found = {name: np.where(played[WOUND], value, np.nan) for name, value in found.items()}
+        return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
+
+    def _ways(self, columns: Real, ranges: DriverRanges) -> Ways:
+        """Of variants through their ranges; those that are asked for again and again are kept."""
+        assert self.marches is not None
+        key = columns.tobytes()
+        if self._last is None or self._last[0] != key:
+            low = ranges.low + np.zeros((len(columns), 1))
+            turns = float(np.max(ranges.span)) / (2 * np.pi) if self.linkage.driver.kind == "turn" else 1.0
+            count = int(np.ceil(EACH_TURN * max(turns, LEAST_TURN)))
+            self._last = key, self.marches(columns, low, low + ranges.span, count, closed=ranges.closed)
+        return self._last[1]
+
+
+def _straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...]:
+    """The groups as a tape of variants can hold them. Raises NoTapeError."""
+    lines = straight(linkage, kernels)
+    if lines is None:
+        raise NoTapeError
+    for kernel in lines:
+        trace = kernel.followed
+        if trace is not None and trace.dead.size:  # on the other side of it the determinant has another sign
+            raise NoTapeError
+    return lines
+
+
+def _ends(variant: Variant) -> tuple[Any, ...]:
+    """Numbers of a variant beside its linkage."""
+    return (*(variant.ends or ()), *variant.asked, *variant.wanted)
+
+
+# Variants of a linkage one after another, each as a file of its own: for whatever no tape can be written of.
+#
+# Groups that are found by iteration are followed beside those of the variant nearest to it, or else anew: that takes a
+# hundred or a thousand times as long as by a tape.
+
+
+KEPT = 30  # variants
+
+
+class OneByOne:
+    """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
+
+    All come round again after as many turns of the crank as the first one. A variant that cannot be assembled as it is
+    sketched, or not be moved, has nothing but nan. Raises what assembly raises, for the first linkage.
+    """
+
+    def __init__(self, make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool = False) -> None:
+        self.make, self.wanted, self.forces = make, wanted, forces
+        self.variant = make(first)
+        self.linkage = self.variant.linkage
+        self.structure = mobile(self.linkage)
+        self.kernels = assemble(self.linkage, self.structure)
+        self.turns = cycle_of(self.linkage, self.kernels) or 1
+        self.by_strokes = forces and self.linkage.by_strokes
+        self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
+        self.names = tuple(self._one(tuple(first), Places(np.zeros(1), np.zeros(0))))
+
+    def driver_range(self, columns: Real) -> DriverRanges:
+        """That of the first linkage, for each."""
+        return DriverRanges.of(self.variant, len(columns), self.turns)
+
+    def without(self, part: str) -> OneByOne:
+        """The same: what is not wanted costs little here."""
+        return self
+
+    def sketch(self, numbers: Real) -> Sketch:
+        """How one variant looks at the place of the sketch. Raises what assembly raises."""
+        linkage = self.make([float(number) for number in numbers]).linkage
+        return sketch_of(linkage, assemble(linkage, self.structure.rebind(linkage)))
+
+    def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+        rows = []
+        for row in columns:
+            try:
+                rows.append(self._one(tuple(row.tolist()), places))
+            except LinkageError:
+                rows.append({})
+        lost = np.full(self.driver_range(columns[:1]).at(places).shape[1], np.nan)
+        return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
+
+    def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
+        """A variant, which is moved once though it is looked at at several places in turn."""
+        if numbers not in self.known:
+            if len(self.known) > KEPT:
+                self.known.clear()
+            variant = self.make(list(numbers))
+            structure = self.structure.rebind(variant.linkage)
+            kernels = assemble(variant.linkage, structure, like=self._nearest(numbers))
+            mechanism = Mechanism(Inputs(variant.linkage), structure).known(kernels=kernels)
+            self.known[numbers] = variant, mechanism
+        return self.known[numbers]
+
+    def _nearest(self, numbers: tuple[float, ...]) -> tuple[Kernel, ...]:
+        """The groups of that known variant whose numbers differ least, as shares of their sizes."""
+        if not self.known:
+            return self.kernels
+        here, known = np.array(numbers), np.array(list(self.known))
+        apart = np.sum(np.abs(known - here) / (np.abs(known) + np.abs(here) + 1e-300), axis=1)
+        return list(self.known.values())[int(np.argmin(apart))][1].kernels
+
+    def _one(self, numbers: tuple[float, ...], places: Places) -> dict[str, Real]:
+        variant, mechanism = self._moved(numbers)
+        linkage = variant.linkage
+        strokes = mechanism.strokes if self.by_strokes and mechanism.driver_range.full else None
+        start = None
+        if variant.accelerated:
+            begins = mechanism.strokes if isinstance(variant.request.start, str) else None
+            start = float(places_of(variant.request, mechanism.driver_range, begins, linkage.driver.sense)[0])
+        ranges = DriverRanges.of(variant, 1, self.turns, start)
+        q = ranges.at(places)[0]
+        with np.errstate(all="ignore"):
+            found = solved(
+                linkage, mechanism.structure, mechanism.kernels, q, self.wanted, self.forces, strokes, blank=True,
+                start=start,
+            )  # fmt: skip
+        if variant.wanted:
+            found = {**found, WANTED: ranges.wanted_at(places)[0]}
+        return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}
+
+
+def variants_of(
+    make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool, one_sense: bool
+) -> Taped | OneByOne:
+    """By the tape, else one after another.
+
+    one_sense: all drivers go the same way round, which a tape cannot tell. Raises what assembly raises, for the first
+    linkage.
+    """
+    if one_sense:
+        try:
+            return Taped(make, first, wanted, forces=forces)
+        except (NoTapeError, DependsOnData):
+            pass
+    return OneByOne(make, first, wanted, forces=forces)

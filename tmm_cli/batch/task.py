@@ -1,0 +1,307 @@
+"""The blocks `variants` and `grading` of a task's file: what is free in it, what is asked, and how it is marked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from tmm_cli.batch.tape.traced import DependsOnData, TracedNumber
+from tmm_cli.batch.variant import Variant
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis.named_quantities import Quantity, quantities
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.quantities import NUMBER, Dimension
+from tmm_cli.problem.arithmetic import evaluate_quantity
+from tmm_cli.problem.build import build_shape, checked_shape, early_parameters, parameters, problem_of, validated
+from tmm_cli.problem.errors import Path, ProblemError, Tree, placed_in, quote, unknown_name
+from tmm_cli.problem.reader import with_settings
+from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.refusals import in_words_of
+from tmm_cli.problem.schema_parts import Name, Strict, Value
+from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
+from tmm_cli.problem.values import ValueReader
+
+MOST = 10_000  # values of a parameter
+SAME = 1e-9  # of a step: what is left over by rounding
+
+Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
+
+
+class Chosen(Strict):
+    """A parameter that has some values only, as numbers of teeth or lengths from a series have."""
+
+    from_: Value | None = Field(default=None, alias="from", description="the first of equal steps")
+    to: Value | None = Field(default=None, description="which they do not go beyond")
+    step: Value | None = Field(default=None, description="from one value to the next")
+    among: list[Value] | None = Field(
+        default=None, min_length=1, max_length=MOST, description="the values themselves, in the place of steps"
+    )
+
+    @model_validator(mode="after")
+    def _steps_or_values(self) -> Self:
+        missing = [value is None for value in (self.from_, self.to, self.step)]
+        if any(missing) if self.among is None else not all(missing):
+            raise _unreadable()
+        return self
+
+
+def _unreadable() -> PydanticCustomError:
+    return PydanticCustomError("range", _("[low, high], {from, to, step} or {among: [...]} is wanted"))
+
+
+def _bounds_or_choices(found: Any) -> Any:
+    if not isinstance(found, list | dict):
+        raise _unreadable()
+    if isinstance(found, list) and len(found) > 2:
+        raise PydanticCustomError("range", _("these are not two bounds; values to choose from: {among: [...]}"))
+    return found
+
+
+Range = Annotated[Two | Chosen, BeforeValidator(_bounds_or_choices)]
+
+
+def two(low: Any, high: Any) -> str:
+    """Two bounds as they are told in a refusal."""
+    return _("{low} and {high}").format(low=low, high=high)
+
+
+MOST_ANSWERS = 200
+
+
+def _listed(found: object) -> object:
+    return [found] if isinstance(found, int | str) else found
+
+
+class AnswerRule(Strict):
+    """A quantity that is asked, at one position or several."""
+
+    of: str = Field(max_length=40, description="v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k")
+    at: Annotated[list[int], BeforeValidator(_listed)] = Field(
+        default_factory=list,
+        max_length=120,
+        description="positions, as the students count them; none for H, k, W, class",
+    )
+    points: Value = Field(default=1, description="for each position")
+    tolerance: Value | None = Field(default=None, description="share of the largest value in the cycle, e.g. 3 %")
+    drawn: bool | None = Field(default=None, description="measured off a drawing; else computed")
+
+
+class Grading(Strict):
+    """What students are asked, and how it is marked."""
+
+    answers: list[AnswerRule] = Field(min_length=1, max_length=MOST_ANSWERS)
+    count: int = Field(default=0, ge=0, le=1, description="number of the first position on the students' sheets")
+    from_: Literal["task", "either"] = Field(
+        default="task",
+        alias="from",
+        description="positions are counted as in the task, or from either extreme position of the output",
+    )
+    drawn: bool = Field(default=True, description="answers are measured off drawings; false: computed")
+    reveal: bool = Field(default=False, description="whether students are told the right values")
+
+
+class Blocks(Strict):
+    """The two blocks, as they stand in a file."""
+
+    variants: dict[Name, Range] = Field(default_factory=dict, max_length=20)
+    grading: Grading | None = None
+
+
+# A task: a problem file some of whose parameters every student has other values of, and what is asked of them.
+
+
+SI = UnitSystem({"length": "m", "angle": "rad", "inertia": "kg*m^2"})
+KINEMATICS, FORCES, COMPUTED = 0.03, 0.05, 0.005  # shares of the largest value: drawn, drawn, computed
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One answer that is asked: a quantity, at a position (from 0, as the product counts; None: of the whole).
+
+    number: the position as the students count it. tolerance: share of the largest value in the cycle. drawn: measured
+    off a drawing.
+    """
+
+    quantity: Quantity
+    position: int | None
+    number: int | None
+    points: float
+    tolerance: float
+    drawn: bool
+
+    @property
+    def key(self) -> tuple[str, int | None]:
+        return self.quantity.name, self.number
+
+    @property
+    def name(self) -> str:
+        """In tables: `v of E at 7`."""
+        name = self.quantity.name
+        return (
+            name if self.number is None else _("{quantity} at {position}").format(quantity=name, position=self.number)
+        )
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task's file. Every method raises ProblemError."""
+
+    tree: Tree
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """Its blocks `variants` and `grading`."""
+        own: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
+        return validated(Blocks, replace(self.tree, data=own))
+
+    @property
+    def rules(self) -> Grading:
+        """Its block `grading`."""
+        if self.blocks.grading is None:
+            raise ProblemError(
+                _("there is nothing to grade"), path=("grading",), allowed="grading: {answers: [{of: H}]}"
+            ).located(self.tree.file, self.tree)
+        return self.blocks.grading
+
+    def __reduce__(self) -> tuple[type[Task], tuple[Tree]]:
+        """What it found is found again in another process."""
+        return Task, (self.tree,)
+
+    def revealing(self) -> Task:
+        """The same, the students being told what is right."""
+        rules = {**self.tree.data["grading"], "reveal": True}
+        return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
+
+    @cached_property
+    def problem(self) -> Problem | TaskProblem:
+        """The file's own variant."""
+        return problem_of(self.tree)
+
+    @cached_property
+    def units(self) -> UnitSystem:
+        return self.problem.units
+
+    @cached_property
+    def quantities(self) -> dict[str, Quantity]:
+        """All that could be asked, by name."""
+        whole = self.problem.whole
+        with in_words_of(whole):
+            return quantities(whole.linkage, mobile(whole.linkage))
+
+    @property
+    def positions(self) -> int:
+        """How many positions a cycle has."""
+        request = self.problem.whole.request
+        return len(request.places) or request.count
+
+    @cached_property
+    def asked(self) -> tuple[Asked, ...]:
+        """What is asked, in the order of the file."""
+        rules, last = self.rules, self.positions
+        values = ValueReader(self._parameters({}), self.units)
+        with placed_in(self.tree):
+            return tuple(
+                asked for n, rule in enumerate(rules.answers)
+                for asked in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
+            )  # fmt: skip
+
+    def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Asked]:
+        quantity = self.quantities.get(rule.of)
+        if quantity is None:
+            one_of_each = {_kind(name): name for name in reversed(self.quantities)}.values()
+            some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
+            raise unknown_name(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
+        drawn = rules.drawn if rule.drawn is None else rule.drawn
+        drawn = drawn and quantity.against != "exact"
+        usual = FORCES if quantity.order >= 4 else KINEMATICS
+        tolerance = usual if drawn else COMPUTED
+        if rule.tolerance is not None:
+            tolerance = values.fraction(rule.tolerance, (*path, "tolerance"))
+        points = float(values.positive(rule.points, NUMBER, (*path, "points"), zero=True))
+        if quantity.whole == bool(rule.at):
+            why = _("{quantity} has no position") if quantity.whole else _("{quantity} is asked at a position")
+            raise ProblemError(
+                why.format(quantity=rule.of), path=(*path, "at"), found=quote(rule.at) if rule.at else None,
+                allowed=None if quantity.whole else f"at: {rules.count + 3}",
+            )  # fmt: skip
+        for k, number in enumerate(rule.at):
+            if not rules.count <= number < last + rules.count:
+                raise ProblemError(
+                    _("there is no such position"), path=(*path, "at", k), found=str(number),
+                    allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
+                )  # fmt: skip
+        if quantity.whole:
+            return [Asked(quantity, None, None, points, tolerance, drawn)]
+        return [Asked(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]
+
+    def _parameters(
+        self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
+    ) -> dict[str, PhysicalValue]:
+        """All parameters; of a file with a task of synthesis those that do not rest on what it finds."""
+        if "synthesis" in self.tree.data:
+            return {**early_parameters(self.tree), **given}
+        raw = self._shape.parameters
+        rest = {name: value for name, value in raw.items() if name not in given}
+        return {**given, **parameters(rest, units or self.units, given)}
+
+    @cached_property
+    def _shape(self) -> Any:
+        return checked_shape(self.tree)
+
+    def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
+        """The file's own values of parameters."""
+        found = self._parameters({})
+        for name in names:
+            if name not in found:
+                none = None if found else _("none: the file has no parameters")
+                raise unknown_name(name, found, _("there is no parameter of that name"), none)
+        return tuple(found[name] for name in names)
+
+    def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
+        """What the file's own values of parameters measure; None for bare numbers."""
+        return tuple(value.dimension for value in self.own(names))
+
+    def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
+        """In SI; bare where there is no dimension."""
+        return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
+
+    def value(self, text: str) -> PhysicalValue:
+        """A value of a table of variants."""
+        return evaluate_quantity(text, {}, self.units)
+
+    def make(self, names: Sequence[str], dimensions: Sequence[Dimension | None], numbers: Sequence[Any]) -> Variant:
+        """The linkage for numbers of parameters (SI, or bare), which may be TracedNumbers."""
+        traced = any(isinstance(x, TracedNumber) for x in numbers)
+        if "synthesis" in self.tree.data:
+            if traced:
+                raise DependsOnData("lengths that a synthesis finds")
+            texts = (f"{float(x)!r} {SI.symbol(d) if d else ''}" for x, d in zip(numbers, dimensions, strict=True))
+            whole = self.variant(dict(zip(names, texts, strict=True))).whole
+            return Variant(whole.linkage, whole.request)
+        given = {name: PhysicalValue(x, d) for name, d, x in zip(names, dimensions, numbers, strict=True)}
+        units = VariedUnits(self.units) if traced else self.units
+        with placed_in(self.tree):
+            found = build_shape(self._shape, self.tree, ValueReader(self._parameters(given, units), units))
+        return Variant(found.linkage, found.request)
+
+    def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
+        """One variant as a problem of its own, its values as text."""
+        return problem_of(with_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
+
+
+def read_task(tree: Tree) -> Task:
+    """The task of a file, its blocks checked. Raises ProblemError."""
+    task = Task(tree)
+    task.blocks  # noqa: B018  refuses what is wrong in them
+    return task
+
+
+def _kind(name: str) -> tuple[str, bool]:
+    """What names of the same quantity of other things have in common."""
+    kind, _of, thing = name.partition(" of ")
+    return ("R" if kind.startswith("R_") else kind), " on " in thing

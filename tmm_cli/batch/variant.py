@@ -1,0 +1,216 @@
+"""Linkages of one kind with different numbers, as one linkage whose numbers are arrays over variants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.tape.traced import TracedNumber
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.linkage import Linkage, Request, Sketch
+from tmm_cli.mechanics.numerics.tolerances import SAME_SKETCH
+from tmm_cli.mechanics.numerics.vectors import Real, leaves, mapped
+
+LEFT = ("sketch",)  # what says how a linkage is assembled, not what it is
+
+
+class NotAlikeError(ValueError):
+    """Two linkages differ in more than their numbers. path: where."""
+
+    def __init__(self, path: str) -> None:
+        super().__init__(f"the linkages differ in {path}, which is no number")
+        self.path = path
+
+
+def numbers(record: Any) -> Iterator[tuple[str, Any]]:
+    """All numbers of a record with their paths, and all else that must be equal in linkages of one kind."""
+    return leaves(record, LEFT)
+
+
+def changed(record: Any, new: Mapping[str, Any]) -> Any:
+    """A record with the numbers at some paths exchanged."""
+    return mapped(lambda path, value: new.get(path, value), record, skip=LEFT)
+
+
+def stands(record: Any) -> Any:
+    """A record built of traced numbers with the arrays that they stand for."""
+    return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
+
+
+def each(columns: Real) -> list[Real]:
+    """The columns (variants, n) one by one, (variants, 1)."""
+    return [columns[:, k : k + 1] for k in range(columns.shape[1])]
+
+
+def varying(linkages: Sequence[Linkage]) -> dict[str, Real]:
+    """Numbers that are not the same in all linkages, (variants, 1), by path. Raises NotAlikeError."""
+    first = dict(numbers(linkages[0]))
+    rows = [list(first.values())]
+    for linkage in linkages[1:]:
+        here = dict(numbers(linkage))
+        if here.keys() != first.keys():
+            raise NotAlikeError(next(iter(here.keys() ^ first.keys())))
+        rows.append([here[path] for path in first])
+    found = {}
+    for path, values in zip(first, zip(*rows, strict=True), strict=True):
+        if any(value != values[0] for value in values):
+            if not all(isinstance(value, (int, float, complex)) and not isinstance(value, bool) for value in values):
+                raise NotAlikeError(path)
+            found[path] = np.array(values)[:, None]
+    return found
+
+
+def parts(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
+    """Real columns of varying numbers, and what puts numbers together from (stand-ins for) such columns again."""
+    columns: list[Real] = []
+    places: dict[str, tuple[int | complex, ...]] = {}
+    for path, values in found.items():
+        pieces: list[int | complex] = []
+        for piece in (values.real, values.imag) if np.iscomplexobj(values) else (values,):
+            if np.all(piece == piece[0]):
+                pieces.append(complex(piece[0, 0]))  # a number for all
+            else:
+                pieces.append(len(columns))
+                columns.append(np.ascontiguousarray(piece, dtype=float))
+        places[path] = tuple(pieces)
+
+    def together(*data: Any) -> dict[str, Any]:
+        def one(piece: int | complex) -> Any:
+            return piece.real if isinstance(piece, complex) else data[piece]
+
+        return {
+            path: one(at[0]) if len(at) == 1 else one(at[0]) + 1j * one(at[1]) for path, at in places.items()
+        }  # fmt: skip
+
+    return columns, together
+
+
+# A variant of a linkage: its numbers, where its driver goes, how it looks at the place of the sketch.
+
+
+WANTED = "wanted"  # name of what is wanted at places asked about, among the outputs of variants
+
+
+class NoTapeError(ValueError):
+    """No tape holds the stages: friction, loads by strokes, passive constraints, dead positions that are passed."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A linkage, the positions that its file asks for, and where its driver goes.
+
+    ends: from and to (rad or m); None: it turns on and on, and all comes round again. asked: places of its driver that
+    a task asks about; wanted: a number for each of them that goes with the variant, as what is wanted there.
+    """
+
+    linkage: Linkage
+    request: Request = field(default_factory=Request)
+    ends: tuple[Any, Any] | None = None
+    asked: tuple[Any, ...] = ()
+    wanted: tuple[Any, ...] = ()
+
+    @property
+    def accelerated(self) -> bool:
+        """Whether its speed depends on where it started."""
+        return bool(self.linkage.driver.acceleration) and not self.linkage.others
+
+    @property
+    def start(self) -> Any:
+        """The driver's place (rad or m) at position 0, as kinematics.strokes.places has it; None: it does not count.
+
+        Raises NoTapeError where the variant must be moved first, through its strokes or its whole range.
+        """
+        if not self.accelerated:
+            return None
+        request, driver = self.request, self.linkage.driver
+        if request.places:
+            return request.places[0]
+        if self.ends is None and not isinstance(request.start, str):
+            return request.start
+        if self.ends is not None and driver.stroke is not None:
+            return driver.stroke[0] if driver.sense > 0 else driver.stroke[1]
+        raise NoTapeError
+
+
+Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be TracedNumbers
+
+
+def stood_for(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
+    """The linkage with stand-ins (of a tape, or columns) for its numbers; first, sketch: those of the first variant."""
+    varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
+    linkage: Linkage = replace(stands(varied.linkage), sketch=sketch)
+    return linkage
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where variants are wanted: at shares of their driver ranges, then at the places that each is asked about, then at
+    places of the driver (rad or m), for all.
+    """
+
+    shares: Real
+    driver: Real
+    asked: bool = False
+
+
+@dataclass(frozen=True)
+class DriverRanges:
+    """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again; asked:
+    places, and wanted: a number for each, both (variants, n).
+    """
+
+    low: Real
+    span: Real
+    closed: bool
+    asked: Real
+    wanted: Real
+
+    @classmethod
+    def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
+        """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
+        ones = np.ones((variants, 1))
+        none = np.zeros((variants, 0))
+        asked, wanted = (
+            np.hstack([none, *(np.reshape(number, (-1, 1)) * ones for number in own)])
+            for own in (variant.asked, variant.wanted)
+        )
+        if variant.ends is None:
+            sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
+            low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, asked, wanted)
+        low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
+        return cls(low, high - low, False, asked, wanted)
+
+    def at(self, places: Places) -> Real:
+        """Places of the driver, (variants, places)."""
+        fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
+        asked = self.asked if places.asked else self.asked[:, :0]
+        return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
+
+    def wanted_at(self, places: Places) -> Real:
+        """What is wanted at the places asked about, in their columns of `at`; other columns tell nothing."""
+        return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
+
+
+def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:
+    """All points and angles of the moving links where the sketch is, for groups whose assembly is known."""
+    at = linkage.sketch.at
+    poses = move(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
+    points = {
+        point: complex(poses[link].at(local)[0])
+        for link in linkage.moving for point, local in linkage.links[link].points.items()
+    }  # fmt: skip
+    driven = {driver.link for driver in linkage.cranks}
+    angles = {link: float(np.angle(poses[link].z)[0]) for link in linkage.moving if link not in driven}
+    return Sketch(at, points, angles)
+
+
+def alike(one: Sketch, other: Sketch) -> bool:
+    """Whether both show the same assembly."""
+    size = max((abs(place) for place in one.points.values()), default=1.0)
+    return all(abs(place - other.points[name]) <= SAME_SKETCH * size for name, place in one.points.items())

@@ -1,0 +1,187 @@
+"""Who does the work: this process, several of them, or a Dask cluster."""
+
+from __future__ import annotations
+
+import logging
+import re
+import signal
+import socket
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from functools import cache, partial
+from hashlib import blake2b
+from importlib import import_module
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import tmm_cli
+from tmm_cli.language import Course, _, course, speaking
+from tmm_cli.problem.errors import ProblemError, quote
+
+RETRIES = 3  # of what a cluster failed at
+ANSWERS = 10  # s within which a scheduler answers, and has a worker
+POLL = 0.02  # s
+SCHEDULER = re.compile(
+    r"(?:tcp://)?(?:\[[\da-fA-F:.%]+\]|[\w.-]+):\d{1,5}"
+)  # TLS needs certificates, which are not read
+
+Job = Callable[[], Any]  # may be pickled
+Stopped = Callable[[], bool]
+Way = Callable[[Sequence[Job], Stopped], Iterator[tuple[int, Any]]]  # numbers of jobs and what they gave, as it comes
+
+
+def here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
+    """One after the other."""
+    for number, job in enumerate(jobs):
+        if stopped():
+            return
+        yield number, job()
+
+
+def processes(count: int) -> Way:
+    """In so many processes; when stopped, what they have begun comes to its end."""
+    return partial(_processes, count)
+
+
+def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
+    count = min(count, len(jobs))
+    if count < 2:
+        yield from here(jobs, stopped)
+        return
+    with ProcessPoolExecutor(count, get_context("spawn"), begin) as pool:
+        futures = {pool.submit(speaking, course(), job): number for number, job in enumerate(jobs)}
+        for future in as_completed(futures):
+            if not future.cancelled():
+                try:
+                    yield futures[future], future.result()
+                except BrokenProcessPool:
+                    raise ProblemError(_("a process of the work was ended"), allowed="--jobs 1") from None
+            if stopped():
+                pool.shutdown(wait=False, cancel_futures=True)
+
+
+def begin() -> None:
+    """Ctrl-C reaches all processes: the first one tells the others. What has no value is told in words."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings.simplefilter("ignore", RuntimeWarning)
+
+
+def cluster(address: str) -> Way:
+    """On the workers of a Dask scheduler, which gives the work of a lost one to the others."""
+    return partial(_cluster, address)
+
+
+def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
+    try:
+        distributed: Any = import_module("distributed")  # typed in part alone
+    except ImportError:
+        raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
+    for library in ("distributed", "asyncio"):
+        logging.getLogger(library).setLevel(logging.CRITICAL)  # what fails is reported here
+    if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
+        raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
+    try:
+        _wait_for_greeting(address)
+        client = distributed.Client(address, timeout=ANSWERS, set_as_default=False)
+    except (OSError, ValueError, OverflowError):
+        raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
+    with client:
+        _refuse_other_programs(client, address)
+        futures = {
+            client.submit(_of_program, program_digest(), course(), job, retries=RETRIES, pure=False): number
+            for number, job in enumerate(jobs)
+        }
+        for future in _finished(client, distributed.as_completed(futures, loop=client.loop), len(futures), address):
+            yield futures[future], _result(client, future, address)
+            if stopped():
+                return
+
+
+def _result(client: Any, future: Any, address: str) -> Any:
+    """What a finished job gave; its worker may be lost before it is fetched. Raises ProblemError if none is left."""
+    while True:
+        try:
+            return future.result(timeout=ANSWERS)
+        except TimeoutError:
+            if not client.nthreads():
+                raise _no_workers(address) from None
+
+
+def _wait_for_greeting(address: str) -> None:
+    """Wait until a scheduler introduces itself; a client would wait for ever where none does. Raises OSError."""
+    host, __, port = address.removeprefix("tcp://").rpartition(":")
+    with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERS) as connection:
+        if not connection.recv(1):
+            raise ConnectionError
+
+
+def _finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
+    """Futures as they finish. Raises ProblemError when no worker is left for so long that none will come."""
+    worked = asked = time.monotonic()
+    while count:
+        batch = completed.next_batch(block=False)
+        count -= len(batch)
+        yield from batch
+        now = time.monotonic()
+        if batch:
+            worked = now
+            continue
+        if now - asked > ANSWERS / 10:
+            asked = now
+            worked = now if client.nthreads() else worked
+            if now - worked > ANSWERS:
+                raise _no_workers(address)
+        time.sleep(POLL)
+
+
+def _refuse_other_programs(client: Any, address: str) -> None:
+    """Refuse workers that would mark by other rules. Raises ProblemError."""
+
+    def version_there() -> tuple[str, str]:  # pickled by value: the worker may have no such function
+        try:
+            module = import_module("tmm_cli.batch.workers")
+            return import_module("tmm_cli").__version__, module.program_digest()
+        except (ImportError, AttributeError):
+            return "", ""
+
+    try:
+        client.wait_for_workers(1, timeout=ANSWERS)
+        versions = client.run(version_there)
+    except TimeoutError:
+        raise _no_workers(address) from None
+    here = (tmm_cli.__version__, program_digest())
+    other = next(((worker, there) for worker, there in versions.items() if there != here), None)
+    if other is not None:
+        worker, (version, digest) = other
+        found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or one from before this check")
+        raise ProblemError(
+            _("a worker has another version of tmm than this one"), found=f"{worker}: {found}",
+            allowed=_("{version} on each worker").format(version=f"tmm {here[0]} ({here[1][:8]})"),
+        )  # fmt: skip
+
+
+def _no_workers(address: str) -> ProblemError:
+    return ProblemError(_("the scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
+
+
+def _of_program(program: str, spoken: Course, job: Job) -> Any:
+    """What a job gives on a worker that has the same program; workers may join later. Raises ProblemError."""
+    if program_digest() != program:
+        raise ProblemError(_("a worker has another version of tmm than this one"))
+    return speaking(spoken, job)
+
+
+@cache
+def program_digest() -> str:
+    """A digest of the program and its translations: another one may give other marks."""
+    folder = Path(tmm_cli.__file__).parent
+    files = sorted(folder.rglob("*.[pm][yo]"), key=lambda file: file.relative_to(folder).as_posix())
+    digest = blake2b(digest_size=16)
+    for file in files:
+        digest.update(file.relative_to(folder).as_posix().encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,131 @@
+"""The product's own way, closed-form groups with forces walked backward through them: in float64, and other numbers.
+
+The others are float32, and double-doubles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.batch.prepare import Batch
+from tmm_cli.batch.prepare import prepare as batch_of
+from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
+from tmm_cli.mechanics.accuracy.lengths import widened
+from tmm_cli.mechanics.forces.plan import Reactions, react
+from tmm_cli.mechanics.groups.base import Kernel, Wrapped
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.numerics.double_double import DoubleDouble, exactly
+from tmm_cli.mechanics.numerics.vectors import Real, mapped
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+
+def recast(value: Any, real: type) -> Any:
+    """All numbers in records, tuples and arrays as `real` or its complex counterpart; widening is exact."""
+    if isinstance(value, (bool, int, str, Group, Pair)) or value is None:
+        return value
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fc":
+            return value
+        return value.astype(np.result_type(real, np.complex64) if value.dtype.kind == "c" else real)
+    if isinstance(value, (float, np.floating)):
+        return real(value)
+    if isinstance(value, (complex, np.complexfloating)):
+        return np.result_type(real, np.complex64).type(value)
+    if isinstance(value, Mapping):
+        return {key: recast(part, real) for key, part in value.items()}
+    if isinstance(value, tuple):
+        return tuple(recast(part, real) for part in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        names = [field.name for field in fields(value) if field.init]
+        return replace(value, **{name: recast(getattr(value, name), real) for name in names})
+    return value
+
+
+@dataclass(frozen=True)
+class Recast(Wrapped):
+    """A group whose work is done in another precision, whatever it is given."""
+
+    real: type
+
+    def passed(self, work: Callable[..., Any], *given: Any) -> Any:
+        return recast(work(*(recast(part, self.real) for part in given)), self.real)
+
+
+def double(case: Case) -> Callable[[Real], Answers]:
+    """Groups of class II are closed, those of higher classes are found by Newton's method from a track of theirs."""
+    return _at(case, np.float64)
+
+
+def single(case: Case) -> Callable[[Real], Answers]:
+    """Data, groups and forces in float32; only sums of loads and the last products with the speed are in float64."""
+    linkage = recast(case.linkage, np.float32)
+    kernels = tuple(Recast(k.group, k.size, _started(k.rebind(linkage)), np.float32) for k in case.kernels)
+    return _at(replace(case, linkage=linkage, kernels=kernels), np.float32)
+
+
+def _started(kernel: Kernel) -> Kernel:
+    """A group of a higher class starts from rounded places too."""
+    if isinstance(kernel, Newton):
+        return replace(kernel, start=recast(kernel.start, np.float32), trace=recast(kernel.trace, np.float32))
+    return kernel
+
+
+def extended(case: Case) -> Callable[[Real], Answers]:
+    """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
+    linkage = widened(case.linkage)
+    wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), exactly)
+    return lambda q: mapped(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
+
+
+def _longdouble(value: DoubleDouble) -> Any:
+    kind = np.clongdouble if value.dtype.kind == "c" else np.longdouble
+    return value.hi.astype(kind) + value.lo
+
+
+def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
+    def at(q: Real) -> Answers:
+        motion = move(case.linkage, case.kernels, real(q), case.law)
+        motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
+        return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
+
+    return at
+
+
+# The product's own way for many positions: the groups written on a tape and played back.
+
+
+def batch(case: Case, *, forces: bool = True) -> Batch:
+    """What the common form of answers holds, and nothing else: QUANTITY.NAME, and "balancing"."""
+
+    def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
+        found: dict[str, Any] = {}
+        for name in case.linkage.moving_points:
+            point = motion.named_on(case.linkage.owner(name), name)
+            found |= {f"positions.{name}": point.x, f"velocities.{name}": point.v, f"accelerations.{name}": point.a}
+        if plan is not None:
+            found |= {f"reactions.{r.pair.name}": r.onto(r.pair.j) for r in plan.all}
+            found["balancing"] = plan.balance.generalized
+        return found
+
+    return batch_of(case.linkage, asked, forces=forces, strokes=case.strokes)
+
+
+def prepare(case: Case) -> Callable[[Real], Answers]:
+    """Writes the tape. Raises Unable for what cannot be written on one."""
+    played = batch(case)
+    if played.program is None:
+        raise Unable("laws of cams, friction and passive constraints cannot be written on a tape")
+    kinds = ("positions", "velocities", "accelerations", "reactions")
+    names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
+
+    def at(q: Real) -> Answers:
+        found = played(q)
+        x, v, a, forces = ({name[len(kind) + 1 :]: found[name] for name in own} for kind, own in names.items())
+        return Answers(x, v, a, forces, found["balancing"])
+
+    return at

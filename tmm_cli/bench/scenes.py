@@ -1,0 +1,273 @@
+"""Chains of dyads of any length, for measuring how time grows with the number of links."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import Literal
+
+from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch, Slide
+
+CHAIN_CRANK, COUPLER, ROCKER, BEYOND = (
+    0.04,
+    0.3,
+    0.2,
+    0.9,
+)  # m; the next coupler hangs at that share of its rocker's length
+AT = 1.0  # rad, the crank in the sketch
+
+
+def chain(dyads: int) -> Linkage:
+    """A crank and so many RRR groups, each on the rocker of the one before it: 2 dyads + 1 moving links."""
+    links = {
+        FRAME: Link(FRAME, {"O": 0j}),
+        "1": Link("1", {"O": 0j, "P0": CHAIN_CRANK + 0j}, 0.5, 1e-4, CHAIN_CRANK / 2 + 0j),
+    }
+    hinges = [Hinge("O", (FRAME, "1"))]
+    points: dict[str, complex] = {"P0": CHAIN_CRANK * cmath.exp(1j * AT)}
+    angles = {"1": AT}
+    before, hung = "1", points["P0"]
+    for k in range(1, dyads + 1):
+        coupler, rocker = str(2 * k), str(2 * k + 1)
+        b = hung + COUPLER * cmath.exp(0.3j)
+        d = b - ROCKER * cmath.exp(1.6j)
+        links[FRAME].points[f"D{k}"] = d  # type: ignore[index]
+        links[coupler] = Link(coupler, {f"P{k - 1}": 0j, f"B{k}": COUPLER + 0j}, 1.0, 0.01, COUPLER / 2 + 0j)
+        links[rocker] = Link(
+            rocker, {f"D{k}": 0j, f"B{k}": ROCKER + 0j, f"P{k}": BEYOND * ROCKER * cmath.exp(-0.2j)}, 1.0, 0.01,
+            ROCKER / 2 + 0j,
+        )  # fmt: skip
+        hinges += [
+            Hinge(f"P{k - 1}", (before, coupler)),
+            Hinge(f"B{k}", (coupler, rocker)),
+            Hinge(f"D{k}", (FRAME, rocker)),
+        ]
+        hung = d + BEYOND * ROCKER * cmath.exp(1.4j)
+        points |= {f"B{k}": b, f"P{k}": hung}
+        angles |= {coupler: 0.3, rocker: 1.6}
+        before = rocker
+    driver = Driver("1", "turn", "O", 10.0, 0.0, 1)
+    return Linkage(links, tuple(hinges), (), driver, Sketch(AT, points, angles))
+
+
+# Scenes as they approach what kills a method: families of linkages, each by its distance from the place of failure.
+#
+# A scene is made from exact decimals (numbers of a linkage, a critical place of the driver in 50 digits, a distance);
+# what is rounded to float64 here is the data that every method is given, and that the answers in 50 digits are for
+# (tests/write_stability_references.py writes them). What a rounding does to a distance is therefore no method's error.
+
+
+Numbers = Mapping[str, Decimal]
+NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or shares of a length
+LONGER = tuple(Decimal(10) ** k for k in range(1, 13))
+SIZES = tuple(Decimal(10) ** k for k in (0, 1, -1, 3, -3, 5, -5, 7, -7, 9, -9))
+Place = tuple[Decimal, Decimal]
+CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A linkage, the place q of its driver (rad), and what is watched there: a point of a link and a pair."""
+
+    linkage: Linkage
+    q: float
+    point: str = "B"
+    pair: str = "B"
+
+
+@dataclass(frozen=True)
+class Family:
+    """Scenes of one kind. distances: from the harmless one to the worst.
+
+    unit: what the distance is; fixed: whether the linkage is the same at every distance, its driver alone moves.
+    """
+
+    name: str
+    title: str
+    scene: Callable[[Numbers, Decimal], Scene]
+    distances: tuple[Decimal, ...]
+    unit: Literal["rad", "share", "ratio", "m"] = "rad"
+    fixed: bool = False
+
+
+def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
+    """An even bar along its x axis."""
+    points = {ends[0]: 0j, ends[1]: complex(length)}
+    return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
+
+
+def _point(place: Place) -> complex:
+    return complex(float(place[0]), float(place[1]))
+
+
+def meeting(A: complex, b: float, D: complex, c: float, side: float) -> complex:
+    """Where circles about A and D meet, on the left of AD for side 1; for sketches, so nothing is gained by care."""
+    base = D - A
+    d = abs(base)
+    x = (d * d + b * b - c * c) / (2 * d)
+    return A + base / d * complex(x, side * math.sqrt(max(b * b - x * x, 0.0)))
+
+
+def shape(A: complex, b: float, D: complex, c: float) -> float:
+    """Sine of the transmission angle, 0 where the circles do not meet."""
+    cosine = (b * b + c * c - abs(D - A) ** 2) / (2 * b * c)
+    return math.sqrt(max(1 - cosine * cosine, 0.0))
+
+
+def four_bar(a: Decimal, b: Decimal, c: Decimal, pivots: tuple[Place, Place], side: float, at: float) -> Linkage:
+    """Crank OA = a, coupler AB = b, rocker DB = c under a moment; B is on the left of AD for side 1; at: the sketch."""
+    la, lb, lc = float(a), float(b), float(c)
+    o, d = (_point(place) for place in pivots)
+    A = o + la * complex(math.cos(at), math.sin(at))
+    links = {
+        FRAME: Link(FRAME, {"O": o, "D": d}), "1": _bar("1", ("O", "A"), la, 1.0), "2": _bar("2", ("A", "B"), lb, 3.0),
+        "3": _bar("3", ("D", "B"), lc, 2.0),
+    }  # fmt: skip
+    hinges = (
+        Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")), Hinge("D", (FRAME, "3")),
+    )  # fmt: skip
+    sketch = Sketch(at, {"A": A, "B": meeting(A, lb, d, lc, side)})
+    return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "3", moment=-40 * lc),))
+
+
+def slider(r: Decimal, length: Decimal, pivot: Place, at: float) -> Linkage:
+    """Crank OA = r, rod AB, piston on the level of O with a force on it."""
+    lr, ll = float(r), float(length)
+    o = _point(pivot)
+    A = o + lr * complex(math.cos(at), math.sin(at))
+    B = o + (A - o).real + math.sqrt(ll * ll - (A - o).imag ** 2)
+    links = {
+        FRAME: Link(FRAME, {"O": o}), "1": _bar("1", ("O", "A"), lr, 1.0), "2": _bar("2", ("A", "B"), ll, 3.0),
+        "3": Link("3", {"B": 0j}, 2.0),
+    }  # fmt: skip
+    hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")))
+    slide = Slide("x", FRAME, "3", o, 0.0, 0j, 0.0, "B")
+    load = Load("F", "3", force=-200 + 0j)
+    return Linkage(links, hinges, (slide,), CRANK, Sketch(at, {"A": A, "B": B}), (load,))
+
+
+def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) -> Linkage:
+    """Crank OA = a, stone at A, slotted link on pivot C with a point K at `far` from it, on A's side, and a moment."""
+    la, lk = float(a), float(far)
+    o, c = (_point(place) for place in pivots)
+    A = o + la * complex(math.cos(at), math.sin(at))
+    u = (A - c) / abs(A - c)
+    links = {
+        FRAME: Link(FRAME, {"O": o, "C": c}), "1": _bar("1", ("O", "A"), la, 1.0), "2": Link("2", {"A": 0j}, 0.5, 1e-3),
+        "3": _bar("3", ("C", "K"), lk, 3.0),
+    }  # fmt: skip
+    hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("C", (FRAME, "3")))
+    slide = Slide("s", "3", "2", 0j, 0.0, 0j, 0.0, "A")
+    sketch = Sketch(at, {"A": A, "K": c + lk * u}, {"3": math.atan2(u.imag, u.real)})
+    return Linkage(links, hinges, (slide,), CRANK, sketch, (Load("M", "3", moment=-20.0),), keep_side=True)
+
+
+def triad(n: Numbers) -> Linkage:
+    """Crank OA, ternary link PQR on three legs AP, CQ, DR; a moment on leg CQ."""
+    at = float(n["at"])
+    z = {key: complex(float(n[key + "x"]), float(n[key + "y"])) for key in "OCDQRPqr"}
+    la, leg = float(n["a"]), float(n["leg"])
+    links = {
+        FRAME: Link(FRAME, {"O": z["O"], "C": z["C"], "D": z["D"]}),
+        "1": _bar("1", ("O", "A"), la, 0.8),
+        "2": Link("2", {"P": 0j, "Q": z["Q"], "R": z["R"]}, 4.0, 0.02, complex(0.123, 0.05)),
+        "3": _bar("3", ("A", "P"), leg, 1.1),
+        "4": _bar("4", ("C", "Q"), leg, 1.1), "5": _bar("5", ("D", "R"), leg, 1.1),
+    }  # fmt: skip
+    hinges = (
+        Hinge("O", (FRAME, "1")), Hinge("A", ("1", "3")), Hinge("P", ("2", "3")), Hinge("C", (FRAME, "4")),
+        Hinge("Q", ("2", "4")), Hinge("D", (FRAME, "5")), Hinge("R", ("2", "5")),
+    )  # fmt: skip
+    A = z["O"] + la * complex(math.cos(at), math.sin(at))
+    sketch = Sketch(at, {"A": A, "P": z["P"], "Q": z["q"], "R": z["r"]})
+    return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "4", moment=-20.0),))
+
+
+# families
+
+
+def _pivots(n: Numbers) -> tuple[Place, Place]:
+    return (n["Ox"], n["Oy"]), (n["Dx"], n["Dy"])
+
+
+def _dead(n: Numbers, distance: Decimal) -> Scene:
+    """The driven link comes to where coupler and rocker are in line: the distance is the driver's, rad."""
+    sense = n["sense"]
+    at = float(n["critical"] + sense * n["back"])
+    linkage = four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
+    return Scene(linkage, float(n["critical"] + sense * distance))
+
+
+def _line(n: Numbers, distance: Decimal) -> Scene:
+    """The crank starts, and is sketched, near where three of its points are in line."""
+    q = float(n["critical"] + n["sense"] * distance)
+    return Scene(four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
+
+
+def _outer(n: Numbers, share: Decimal) -> Scene:
+    """D is nearer to A than b + c by a share of it."""
+    return _tangent(n, (n["b"] + n["c"]) * (1 - share))
+
+
+def _inner(n: Numbers, share: Decimal) -> Scene:
+    """D is farther from A than |b - c| by a share of it."""
+    return _tangent(n, abs(n["b"] - n["c"]) * (1 + share))
+
+
+def _tangent(n: Numbers, base: Decimal) -> Scene:
+    """D lies from A along (ux, uy), at this distance."""
+    pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
+    o, d = (_point(place) for place in pivots)
+    a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
+    places = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
+    shapes = {at: shape(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
+    return Scene(four_bar(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(places, key=shapes.__getitem__)), q)
+
+
+def _stone(n: Numbers, share: Decimal) -> Scene:
+    """The stone comes near the pivot of its slotted link, along (ux, uy), to a share of the crank's length."""
+    C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
+    q = float(n["q"])
+    return Scene(slotted(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
+
+
+def _short(n: Numbers, share: Decimal) -> Scene:
+    """A rod longer than its crank by a share of it, and the crank as near to upright as that makes it matter."""
+    q = float(n["critical"] + n["lean"] * share.sqrt())
+    return Scene(slider(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
+
+
+def _long(n: Numbers, ratio: Decimal) -> Scene:
+    return Scene(slider(n["r"], n["r"] * ratio, (n["Ox"], n["Oy"]), 0.7), float(n["q"]), "B", "A")
+
+
+def _size(n: Numbers, size: Decimal) -> Scene:
+    """A four-bar or a crank-slider of so many metres."""
+    q, pivot = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
+    if "r" in n:
+        return Scene(slider(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
+    pivots = pivot, (n["Dx"] * size, n["Dy"] * size)
+    return Scene(four_bar(n["a"] * size, n["b"] * size, n["c"] * size, pivots, float(n["side"]), 0.7), q)
+
+
+def _fold(n: Numbers, distance: Decimal) -> Scene:
+    """A group of class III near where it loses two of its assemblies."""
+    return Scene(triad(n), float(n["critical"] + n["sense"] * distance), "Q", "C")
+
+
+FAMILIES: tuple[Family, ...] = (
+    Family("dead-position", "Dead position of the driven four-bar", _dead, NEAR, fixed=True),
+    Family("change-point", "Change point of a parallelogram", _dead, NEAR, fixed=True),
+    Family("outer-tangent", "Circles touching from outside, d → b + c", _outer, NEAR, "share"),
+    Family("inner-tangent", "Circles touching from inside, d → |b - c|", _inner, NEAR, "share"),
+    Family("stone-over-pivot", "Stone over the pivot of its slotted link", _stone, NEAR, "share"),
+    Family("short-rod", "Rod hardly longer than its crank", _short, NEAR[:12], "share"),
+    Family("long-rod", "Rod much longer than its crank", _long, LONGER, "ratio"),
+    Family("size", "Size", _size, SIZES, "m"),
+    Family("three-in-line", "Start with three points in line", _line, NEAR),
+    Family("two-assemblies-lost", "Class III group losing two assemblies", _fold, NEAR, fixed=True),
+)
+BY_NAME = {family.name: family for family in FAMILIES}

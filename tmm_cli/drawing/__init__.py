@@ -1,0 +1,1 @@
+"""Drawings: recorded in millimetres of paper, then written in any format."""

@@ -1,0 +1,111 @@
+"""Drawings for CAD programs: DXF in millimetres, a layer for each kind of line; written by ezdxf (extra `cad`)."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING, get_args
+
+from tmm_cli.drawing.paper.record import DASHES, Area, Circle, Drawing, Layer, Line, Style, Text
+
+if TYPE_CHECKING:
+    from ezdxf.layouts import Modelspace
+
+
+CAPITALS = 0.729  # height of the capital letters of DejaVu Sans, which DXF counts, of its size
+LINETYPES: dict[Style, str] = {"-": "CONTINUOUS", "--": "TMM_DASHED", ":": "TMM_DOTTED", "-.": "TMM_DASHDOT"}
+FONTS = {  # bold, italic: style and file
+    (False, False): ("TMM", "DejaVuSans.ttf"),
+    (True, False): ("TMM_BOLD", "DejaVuSans-Bold.ttf"),
+    (False, True): ("TMM_ITALIC", "DejaVuSans-Oblique.ttf"),
+    (True, True): ("TMM_BOLD_ITALIC", "DejaVuSans-BoldOblique.ttf"),
+}
+FOREGROUND = 7  # black on paper, white on a dark screen
+DARKEST = 0x30  # of each part of a colour that is meant as black
+WIDTHS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
+MILLIMETRES = 4
+APART = "\N{HAIR SPACE}"
+
+
+def dxf(drawing: Drawing) -> bytes:
+    """The same drawing gives the same bytes: no date, no random numbers."""
+    import ezdxf
+    from ezdxf.enums import TextEntityAlignment
+
+    ezdxf.options.write_fixed_meta_data_for_testing = True
+    document = ezdxf.new("R2010", units=MILLIMETRES)
+    document.header["$LIMMAX"] = drawing.paper
+    for layer in get_args(Layer):
+        document.layers.add(layer)
+    for style, dashes in DASHES.items():
+        if dashes:
+            signed = [length if n % 2 == 0 else -length for n, length in enumerate(dashes)]
+            document.linetypes.add(LINETYPES[style], [sum(dashes), *signed])
+    for name, font in FONTS.values():
+        document.styles.add(name, font=font)
+    aligned = {"left": TextEntityAlignment.MIDDLE_LEFT, "center": TextEntityAlignment.MIDDLE_CENTER,
+               "right": TextEntityAlignment.MIDDLE_RIGHT}  # fmt: skip
+    space = document.modelspace()
+    for mark in drawing.marks:
+        if isinstance(mark, Text):
+            about = {
+                "layer": mark.layer,
+                **_colour(mark.colour),
+                "style": FONTS[mark.bold, mark.italic][0],
+                "rotation": mark.turn,
+            }
+            text = space.add_text(plain(mark.text), height=CAPITALS * mark.size, dxfattribs=about)
+            text.set_placement(_xy(mark.at), align=aligned[mark.align])
+        else:
+            _add(space, mark)
+    document.set_modelspace_vport(height=drawing.paper[1], center=(drawing.paper[0] / 2, drawing.paper[1] / 2))
+    for kind in sorted(document.entitydb.dxf_types_in_use()):  # ezdxf itself takes them in the order of a set
+        document.classes.add_class(kind)
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue().encode("utf-8", "replace")
+
+
+def plain(text: str) -> str:
+    """A text in which no code of DXF is read: %%c, ^I, \\U+0416 and their like."""
+    text = "".join(letter if letter.isprintable() else " " for letter in text)
+    return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + APART, text).replace("^", "^ ")
+
+
+def _add(space: Modelspace, mark: Line | Area | Circle) -> None:
+    """A line, or a filled figure and its outline."""
+    about = {"layer": mark.layer}
+    if isinstance(mark, Line):
+        pen = about | _pen(mark.colour, mark.width)
+        if mark.dashes:
+            pen |= {"linetype": LINETYPES[mark.style], "ltscale": mark.width}
+        if len(mark.places) == 2:
+            space.add_line(_xy(mark.places[0]), _xy(mark.places[1]), dxfattribs=pen)
+        else:
+            space.add_lwpolyline([_xy(place) for place in mark.places], dxfattribs=pen)
+        return
+    fill = space.add_hatch(dxfattribs=about | _colour(mark.face))
+    if isinstance(mark, Area):
+        corners = [_xy(corner) for corner in mark.corners]
+        fill.paths.add_polyline_path(corners, is_closed=True)
+        if mark.edge:
+            space.add_lwpolyline(corners, close=True, dxfattribs=about | _pen(mark.edge, mark.width))
+    else:
+        left, right = mark.centre - mark.radius, mark.centre + mark.radius
+        fill.paths.add_polyline_path([(*_xy(left), 1.0), (*_xy(right), 1.0)], is_closed=True)
+        space.add_circle(_xy(mark.centre), mark.radius, dxfattribs=about | _pen(mark.edge, mark.width))
+
+
+def _pen(colour: str, width: float) -> dict[str, object]:
+    return {**_colour(colour), "lineweight": min(WIDTHS, key=lambda known: abs(known - 100 * width))}
+
+
+def _colour(colour: str) -> dict[str, object]:
+    value = int(colour[1:], 16) if colour.startswith("#") else 0xFFFFFF
+    if max(value >> 16, value >> 8 & 0xFF, value & 0xFF) < DARKEST:
+        return {"color": FOREGROUND}
+    return {"color": FOREGROUND, "true_color": value}
+
+
+def _xy(place: complex) -> tuple[float, float]:
+    return place.real, place.imag

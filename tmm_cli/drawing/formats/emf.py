@@ -1,0 +1,155 @@
+"""Drawings for word processors: Enhanced Metafiles, vectors that every version of them shows; texts are outlines.
+
+The records are those of Microsoft's [MS-EMF]; a logical unit is a hundredth of a millimetre.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
+from numpy.typing import NDArray
+
+from tmm_cli.drawing.paper.fonts import foot, outline
+from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.mechanics.numerics.vectors import Vector
+
+UNIT = 100  # a millimetre
+DEVICE = 30000  # of pixels, over DEVICE / UNIT millimetres
+NO_PEN, NO_BRUSH = 0x80000008, 0x80000005  # stock objects
+HEADER, END, BACKGROUND, FILL, SELECT, BRUSH, ELLIPSE = 1, 14, 18, 19, 37, 39, 42
+POLYGON, POLYLINE, POLYGONS, PEN = 86, 87, 91, 95
+TRANSPARENT, WINDING, GEOMETRIC = 1, 2, 0x10000
+
+
+def emf(drawing: Drawing) -> bytes:
+    """Places are rounded to a hundredth of a millimetre."""
+    pen = _Pens(drawing.paper[1])
+    body = [_record(BACKGROUND, "I", TRANSPARENT), _record(FILL, "I", WINDING)]
+    for mark in drawing.marks:
+        body += pen.mark(mark)
+    records = [*body, _record(END, "3I", 0, 16, 20)]
+    width, height = (round(side * UNIT) for side in drawing.paper)
+    size = 108 + sum(map(len, records))
+    box = (0, 0, width, height)
+    header = _record(
+        HEADER, "8i4I2H3I4i3I2I", *box, *box, 0x464D4520, 0x10000, size, len(records) + 1, len(pen.handles) + 1, 0,
+        0, 0, 0, DEVICE, DEVICE, DEVICE // UNIT, DEVICE // UNIT, 0, 0, 0, *[1000 * DEVICE // UNIT] * 2,
+    )  # fmt: skip
+    return b"".join((header, *records))
+
+
+class _Pens:
+    """Records of marks on a paper of this height; pens and brushes are made once each."""
+
+    def __init__(self, height: float) -> None:
+        self.height = height
+        self.handles: dict[tuple[str, float], int] = {}
+        self.selected: dict[bool, int] = {}
+
+    def mark(self, mark: Mark) -> Iterable[bytes]:
+        match mark:
+            case Line():
+                yield from self._pen(mark.colour, mark.width)
+                yield from self._polylines(_dashed(np.array(mark.places), mark.dashes))
+            case Area():
+                yield from self._brush(mark.face)
+                yield from self._pen(mark.edge, mark.width)
+                yield _points(POLYGON, self._places(np.array(mark.corners)))
+            case Circle():
+                yield from self._brush(mark.face)
+                yield from self._pen(mark.edge, mark.width)
+                corner = mark.radius * (1 + 1j)
+                (x0, y1), (x1, y0) = self._places(np.array([mark.centre - corner, mark.centre + corner])).tolist()
+                yield _record(ELLIPSE, "4i", x0, y0, x1, y1)
+            case Text():
+                yield from self._brush(mark.colour)
+                yield from self._pen(None, 0.0)
+                yield from self._letters(mark)
+
+    def _places(self, places: Vector) -> NDArray[np.int16]:
+        return _rounded(np.column_stack([places.real, self.height - places.imag]) * UNIT)
+
+    def _polylines(self, lines: Iterable[Vector]) -> Iterable[bytes]:
+        return (_points(POLYLINE, self._places(line)) for line in lines)
+
+    def _letters(self, mark: Text) -> Iterable[bytes]:
+        places, codes = outline(mark.text, bold=mark.bold, italic=mark.italic)
+        if not len(places):
+            return
+        start, along = foot(mark)
+        placed = start + mark.size * along * places
+        path = Path(np.column_stack([placed.real, placed.imag]), codes)
+        turned = Affine2D().scale(UNIT, -UNIT).translate(0, UNIT * self.height)
+        polygons = [np.asarray(polygon) for polygon in path.to_polygons(turned)]
+        if polygons:
+            counts = [len(p) for p in polygons]
+            points = _rounded(np.concatenate(polygons))
+            yield _record(POLYGONS, f"4iII{len(counts)}I", *_box(points), len(counts), len(points), *counts,
+                          data=points.tobytes())  # fmt: skip
+
+    def _pen(self, colour: str | None, width: float) -> Iterable[bytes]:
+        if colour is None:
+            yield from self._select(True, NO_PEN)
+            return
+        key = (colour, max(width, 0.01))
+        if key not in self.handles:
+            self.handles[key] = len(self.handles) + 1
+            style = (GEOMETRIC, round(key[1] * UNIT), 0, _colour(colour), 0, 0)
+            yield _record(PEN, "5I6I", self.handles[key], 0, 0, 0, 0, *style)
+        yield from self._select(True, self.handles[key])
+
+    def _brush(self, colour: str) -> Iterable[bytes]:
+        key = (colour, 0.0)
+        if key not in self.handles:
+            self.handles[key] = len(self.handles) + 1
+            yield _record(BRUSH, "4I", self.handles[key], 0, _colour(colour), 0)
+        yield from self._select(False, self.handles[key])
+
+    def _select(self, pen: bool, handle: int) -> Iterable[bytes]:
+        if self.selected.get(pen) != handle:
+            self.selected[pen] = handle
+            yield _record(SELECT, "I", handle)
+
+
+def _dashed(places: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
+    """A polyline, or what of it is drawn where it is dashed; dashes: lengths drawn and left out by turns, mm."""
+    if not dashes or len(places) < 2:
+        yield places
+        return
+    lengths = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(places)))])
+    turns = int(np.ceil(lengths[-1] / sum(dashes)))
+    ends = np.concatenate([[0.0], np.cumsum(np.tile(dashes, turns))])
+    for start, end in zip(ends[:-1:2], ends[1::2], strict=True):
+        if start < lengths[-1]:
+            inner = (lengths > start) & (lengths < end)
+            at = np.concatenate([[start], lengths[inner], [min(end, lengths[-1])]])
+            yield np.interp(at, lengths, places.real) + 1j * np.interp(at, lengths, places.imag)
+
+
+def _rounded(places: NDArray[Any]) -> NDArray[np.int16]:
+    return np.asarray(np.clip(np.rint(places), -32768, 32767), "<i2")
+
+
+def _colour(name: str) -> int:
+    red, green, blue = (round(255 * part) for part in to_rgb(name))
+    return red | green << 8 | blue << 16
+
+
+def _points(kind: int, points: NDArray[np.int16]) -> bytes:
+    return _record(kind, "4iI", *_box(points), len(points), data=points.tobytes())
+
+
+def _box(points: NDArray[np.int16]) -> tuple[int, int, int, int]:
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return x0, y0, x1, y1
+
+
+def _record(kind: int, form: str, *values: int, data: bytes = b"") -> bytes:
+    content = struct.pack(f"<{form}", *values) + data
+    return struct.pack("<II", kind, 8 + len(content)) + content

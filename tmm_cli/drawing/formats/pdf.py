@@ -1,0 +1,270 @@
+"""A TrueType font cut down to some letters, as PDF embeds it."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache, lru_cache
+from itertools import accumulate
+from pathlib import Path
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from tmm_cli.drawing.paper.fonts import advance, drawable, font, foot
+from tmm_cli.drawing.paper.record import POINT, Area, Circle, Drawing, Line, Mark, Text
+
+AS_THEY_ARE = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
+WORDS, SCALED, MORE, TWO_SCALES, TWO_BY_TWO = 0x01, 0x08, 0x20, 0x40, 0x80  # of a part of a composite letter
+HEAD, MAXP = 54, 32  # bytes
+MAGIC = 0xB1B0AFBA  # what the sum of a font is subtracted from
+
+
+def cut(path: str, wanted: Sequence[int]) -> bytes:
+    """The font with these glyphs alone, in this order; parts of which they are composed come after them."""
+    tables = _tables(path)
+    offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
+    offsets *= 1 if tables["head"][51] else 2
+    order, shapes = list(wanted), list[bytes]()
+    for glyph in order:  # grows while its parts are met
+        shape = bytearray(tables["glyf"][offsets[glyph] : offsets[glyph + 1]])
+        for at in _parts(shape):
+            order.append(struct.unpack_from(">H", shape, at)[0])
+            struct.pack_into(">H", shape, at, len(order) - 1)
+        shapes.append(bytes(shape) + bytes(-len(shape) % 4))
+    (measured,) = struct.unpack_from(">H", tables["hhea"], 34)
+    measures = [tables["hmtx"][4 * k : 4 * k + 4] for k in (min(glyph, measured - 1) for glyph in order)]
+    count = struct.pack(">H", len(order))
+    return _joined({
+        **{name: tables[name] for name in AS_THEY_ARE if name in tables},
+        "glyf": b"".join(shapes),
+        "head": tables["head"][:8] + bytes(4) + tables["head"][12:50] + b"\x00\x01" + tables["head"][52:HEAD],
+        "hhea": tables["hhea"][:34] + count,
+        "hmtx": b"".join(measures),
+        "loca": np.cumsum([0, *map(len, shapes)]).astype(">u4").tobytes(),
+        "maxp": tables["maxp"][:4] + count + tables["maxp"][6:MAXP],
+    })  # fmt: skip
+
+
+@lru_cache(4)
+def _tables(path: str) -> dict[str, bytes]:
+    data = Path(path).read_bytes()
+    (count,) = struct.unpack_from(">H", data, 4)
+    entries = (struct.unpack_from(">4s4xII", data, 12 + 16 * k) for k in range(count))
+    return {name.decode("latin-1"): data[start : start + length] for name, start, length in entries}
+
+
+def _parts(shape: bytearray) -> Iterator[int]:
+    """Where a composite glyph says the numbers of its parts."""
+    if len(shape) < 10 or shape[0] < 0x80:  # its number of contours is not negative
+        return
+    at, more = 10, True
+    while more:
+        (flags,) = struct.unpack_from(">H", shape, at)
+        yield at + 2
+        at += 8 if flags & WORDS else 6
+        at += 2 if flags & SCALED else 4 if flags & TWO_SCALES else 8 if flags & TWO_BY_TWO else 0
+        more = bool(flags & MORE)
+
+
+def _joined(tables: dict[str, bytes]) -> bytes:
+    """A font of these tables."""
+    power = len(tables).bit_length() - 1
+    head = struct.pack(">IHHHH", 0x10000, len(tables), 16 << power, power, 16 * (len(tables) - (1 << power)))
+    entries, body = [head], list[bytes]()
+    start = place = len(head) + 16 * len(tables)
+    for name, table in sorted(tables.items()):
+        padded = table + bytes(-len(table) % 4)
+        entries.append(struct.pack(">4sIII", name.encode(), _sum(padded), start, len(table)))
+        place = start if name == "head" else place
+        body.append(padded)
+        start += len(padded)
+    font = bytearray(b"".join(entries + body))
+    struct.pack_into(">I", font, place + 8, (MAGIC - _sum(font)) % 2**32)
+    return bytes(font)
+
+
+def _sum(data: bytes | bytearray) -> int:
+    return int(np.frombuffer(data, ">u4").sum(dtype=np.uint64)) % 2**32
+
+
+# Pages of drawings: PDF with vectors; texts can be searched, the letters of their fonts are in the file.
+
+
+ARC = 0.5522847498  # of the radius: how long the handles of a quarter of a circle are
+ROUND = "1 J 1 j\n"  # ends and corners of lines
+SYMBOLIC, ITALIC = 4, 64
+CAPITALS, STEM = 729, 100  # thousandths of the size: height of capital letters, and about the width of a stroke
+Slant = tuple[bool, bool]  # bold, italic
+
+
+def pdf(*drawings: Drawing) -> bytes:
+    """A page for each drawing, without a date: the same drawings give the same bytes."""
+    file, fonts = _File(), _Fonts()
+    contents = [file.add(_stream(_page(drawing, fonts))) for drawing in drawings]
+    used = "".join(f"/F{n} {_font(file, slant, codes)} 0 R" for n, (slant, codes) in enumerate(fonts.codes.items()))
+    parent = file.count + len(drawings) + 1
+    pages = [
+        file.add(
+            f"<</Type/Page/Parent {parent} 0 R/MediaBox[0 0 {_number(drawing.paper[0])} {_number(drawing.paper[1])}]"
+            f"/Resources<</Font<<{used}>>>>/Contents {content} 0 R>>"
+        )
+        for drawing, content in zip(drawings, contents, strict=True)
+    ]
+    kids = " ".join(f"{page} 0 R" for page in pages)
+    file.add(f"<</Type/Pages/Count {len(pages)}/Kids[{kids}]>>")
+    return file.closed(file.add(f"<</Type/Catalog/Pages {parent} 0 R>>"))
+
+
+class _File:
+    """Objects in their order, numbered from one on."""
+
+    def __init__(self) -> None:
+        self.parts = [b"%PDF-1.4\n%\xb5\xb6\xb7\xb8\n"]
+
+    @property
+    def count(self) -> int:
+        return len(self.parts) - 1
+
+    def add(self, content: str | bytes) -> int:
+        self.parts.append(b"%d 0 obj\n%b\nendobj\n" % (len(self.parts), _bytes(content)))
+        return self.count
+
+    def closed(self, root: int) -> bytes:
+        """The file with the places of its objects, `root` the outermost of them."""
+        *places, end = accumulate(map(len, self.parts))
+        table = b"".join(b"%010d 00000 n \n" % place for place in places)
+        form = b"xref\n0 %d\n0000000000 65535 f \n%btrailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%d\n%%%%EOF\n"
+        return b"".join([*self.parts, form % (len(self.parts), table, len(self.parts), root, end)])
+
+
+class _Fonts:
+    """Codes of the letters of each font, as they are met; characters of one shape have two."""
+
+    def __init__(self) -> None:
+        self.codes: dict[Slant, dict[str, int]] = {}
+
+    def told(self, text: str, slant: Slant) -> tuple[int, str]:
+        """The number of the font, and the codes of the letters as hexadecimals."""
+        own = self.codes.setdefault(slant, {})
+        return list(self.codes).index(slant), "".join(f"{own.setdefault(x, len(own) + 1):04x}" for x in drawable(text))
+
+
+def _font(file: _File, slant: Slant, codes: Iterable[str]) -> int:
+    """A font of these letters, which have the codes from one on: outlines, widths, and which characters they are."""
+    face, letters = font(*slant), list(codes)
+    outlines = cut(str(face.fname), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
+    tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
+    name = "".join(chr(ord("A") + tag // 26**k % 26) for k in range(6)) + f"+{face.postscript_name}"
+    box = " ".join(f"{per * side:.0f}" for side in face.bbox)
+    embedded = file.add(_stream(outlines, f"/Length1 {len(outlines)}"))
+    descriptor = file.add(
+        f"<</Type/FontDescriptor/FontName/{name}/Flags {SYMBOLIC + ITALIC * slant[1]}/FontBBox[{box}]"
+        f"/ItalicAngle {-11 * slant[1]}/Ascent {per * face.ascender:.0f}/Descent {per * face.descender:.0f}"
+        f"/CapHeight {CAPITALS}/StemV {STEM}/FontFile2 {embedded} 0 R>>"
+    )
+    widths = " ".join(f"{1000 * advance(letter, *slant):.2f}" for letter in letters)
+    own = file.add(
+        f"<</Type/Font/Subtype/CIDFontType2/BaseFont/{name}/CIDToGIDMap/Identity/W[1[{widths}]]"
+        f"/CIDSystemInfo<</Registry(Adobe)/Ordering(Identity)/Supplement 0>>/FontDescriptor {descriptor} 0 R>>"
+    )
+    characters = file.add(_stream(_characters(letters)))
+    return file.add(
+        f"<</Type/Font/Subtype/Type0/BaseFont/{name}/Encoding/Identity-H/DescendantFonts[{own} 0 R]"
+        f"/ToUnicode {characters} 0 R>>"
+    )
+
+
+def _characters(letters: Sequence[str]) -> str:
+    """Which characters the codes from one on are, a block of at most a hundred after the other."""
+    lines = [f"<{code:04x}><{letter.encode('utf-16-be').hex()}>\n" for code, letter in enumerate(letters, 1)]
+    blocks = [lines[k : k + 100] for k in range(0, len(lines), 100)]
+    return (
+        "/CIDInit /ProcSet findresource begin 12 dict begin begincmap\n"
+        "/CIDSystemInfo<</Registry(Adobe)/Ordering(UCS)/Supplement 0>>def\n"
+        "/CMapName/Adobe-Identity-UCS def/CMapType 2 def\n1 begincodespacerange\n<0000><ffff>\nendcodespacerange\n"
+        + "".join(f"{len(block)} beginbfchar\n{''.join(block)}endbfchar\n" for block in blocks)
+        + "endcmap CMapName currentdict/CMap defineresource pop end end"
+    )
+
+
+def _stream(content: str | bytes, about: str = "") -> bytes:
+    packed = zlib.compress(_bytes(content))
+    return b"<</Length %d/Filter/FlateDecode%b>>stream\n%b\nendstream" % (len(packed), _bytes(about), packed)
+
+
+def _bytes(content: str | bytes) -> bytes:
+    return content.encode("ascii") if isinstance(content, str) else content
+
+
+def _page(drawing: Drawing, fonts: _Fonts) -> str:
+    """What draws the marks, one after the other; a pen or a colour is told where it is another one."""
+    told: dict[str, str] = {}
+    lines = [ROUND]
+    for mark in drawing.marks:
+        states, shape = _shape(mark, fonts)
+        for kind, state in states:
+            if told.get(kind) != state:
+                told[kind] = state
+                lines.append(f"{state}\n")
+        lines.append(shape)
+    return "".join(lines)
+
+
+def _shape(mark: Mark, fonts: _Fonts) -> tuple[list[tuple[str, str]], str]:
+    """The states of the page that a mark needs, each of its kind, and what draws it."""
+    match mark:
+        case Line():
+            dashes = f"[{' '.join(map(_number, mark.dashes))}] 0 d"
+            return [*_pen(mark.colour, mark.width), ("dashes", dashes)], f"{_way(mark.places)}S\n"
+        case Area():
+            states = [*(_pen(mark.edge, mark.width) if mark.edge else ()), ("dashes", "[] 0 d"), _face(mark.face)]
+            return states, f"{_way(mark.corners)}{'b' if mark.edge else 'f'}\n"
+        case Circle():
+            states = [*_pen(mark.edge, mark.width), ("dashes", "[] 0 d"), _face(mark.face)]
+            return states, f"{_round(mark.centre, mark.radius)}b\n"
+        case Text():
+            name, codes = fonts.told(mark.text, (mark.bold, mark.italic))
+            start, along = foot(mark)
+            turned = f"{along.real:.6f} {along.imag:.6f} {-along.imag:.6f} {along.real:.6f}"
+            return [_face(mark.colour)], (
+                f"BT /F{name} {_number(mark.size)} Tf {turned} {_place(start)} Tm <{codes}> Tj ET\n"
+            )
+
+
+def _pen(colour: str, width: float) -> list[tuple[str, str]]:
+    return [("colour", f"{_rgb(colour)} RG"), ("width", f"{_number(width)} w")]
+
+
+def _face(colour: str) -> tuple[str, str]:
+    return "face", f"{_rgb(colour)} rg"
+
+
+@cache
+def _rgb(colour: str) -> str:
+    return " ".join(f"{part:.4g}" for part in to_rgb(colour))
+
+
+def _way(places: Sequence[complex]) -> str:
+    first, *others = map(_place, places)
+    return f"{first} m\n" + "".join(f"{place} l\n" for place in others)
+
+
+def _round(centre: complex, radius: float) -> str:
+    """A circle of four curves."""
+    lines = [f"{_place(centre + radius)} m\n"]
+    for k in range(4):
+        way = radius * 1j**k
+        handles = (way * (1 + ARC * 1j), way * (ARC + 1j), way * 1j)
+        lines.append(" ".join(_place(centre + handle) for handle in handles) + " c\n")
+    return "".join(lines)
+
+
+def _place(place: complex) -> str:
+    return f"{place.real / POINT:.3f} {place.imag / POINT:.3f}"
+
+
+def _number(length: float) -> str:
+    """Millimetres in points."""
+    return f"{length / POINT:.4f}".rstrip("0").rstrip(".")

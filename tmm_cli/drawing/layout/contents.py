@@ -1,0 +1,132 @@
+"""Which drawings stand on which large sheet, and how large they usually are; a further one is a line in CONTENTS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from tmm_cli.drawing.formats import Drawn
+from tmm_cli.drawing.layout.values import balance_table, forces_table, law_tables, motion_tables, structure_tables
+from tmm_cli.drawing.sheets.centres import sheets as centres
+from tmm_cli.drawing.sheets.diagrams import diagrams
+from tmm_cli.drawing.sheets.force_plans import forces
+from tmm_cli.drawing.sheets.group_loads import group_loads
+from tmm_cli.drawing.sheets.hodographs import balancing
+from tmm_cli.drawing.sheets.law_of_motion import law_of_motion
+from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.mechanism import Position, detailed, position
+from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.positions import all_positions
+from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
+from tmm_cli.drawing.sheets.synthesis import synthesised
+from tmm_cli.language import N_
+from tmm_cli.mechanics.analysis.pipeline import Results
+
+SUBJECTS = (
+    ("structure", N_("Structure")), ("kinematics", N_("Kinematics")), ("forces", N_("Forces")),
+    ("law-of-motion", N_("Law of motion")),
+)  # fmt: skip
+SYNTHESIS = N_("Structure and synthesis")  # where there is one
+STRUCTURE, FORCES = 0, 2
+FURTHER = "-sheet-"  # in the name of a drawing that goes on with another one
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is drawn: the results, the positions of the motion plans and those of the forces."""
+
+    results: Results
+    plans: tuple[Position, ...]
+    detail: tuple[Position, ...]
+
+    @property
+    def moves(self) -> bool:
+        """Whether there is a position in which the mechanism can be drawn."""
+        motion = self.results.motion
+        return motion is not None and bool(motion.placed.any())
+
+    @property
+    def loaded(self) -> bool:
+        """Whether there are forces to draw: without any load a sheet of them would say zero throughout."""
+        reactions = self.results.reactions
+        return reactions is None or reactions.loaded
+
+    def shows(self, sheet: int) -> bool:
+        """Whether there is something to draw on this one."""
+        return sheet == STRUCTURE or (self.moves and (sheet != FORCES or self.loaded))
+
+    def title(self, sheet: int) -> str:
+        """What it is about, to be translated."""
+        return SYNTHESIS if sheet == STRUCTURE and self.results.problem.synthesis is not None else SUBJECTS[sheet][1]
+
+
+@dataclass(frozen=True)
+class Source:
+    """What draws some of the drawings of a sheet, from the results or from each of some positions.
+
+    usual: longest side on A1, mm; None: as it comes (tables). over: for which positions of the choice it draws.
+    about: how the names of its drawings begin; of sources that say it, drawings whose names go on alike are neighbours.
+    """
+
+    sheet: int
+    draw: Callable[[Any], Drawn]
+    usual: float | None = None
+    over: Literal["", "plans", "detail"] = ""
+    about: str = ""
+
+    def drawings(self, choice: Choice) -> Drawn:
+        """They are drawn one after the other, as they are taken."""
+        if not choice.shows(self.sheet):
+            return ()
+        if self.over:
+            return (found for here in getattr(choice, self.over) for found in self.draw(here))
+        return self.draw(choice.results)
+
+
+def neighbours(drawings: Iterable[tuple[Source, str]]) -> list[int]:
+    """In which order drawings stand, by their numbers: those about one thing (a group) one beside the other.
+
+    drawings: what draws each, and its name.
+    """
+    first: dict[str, int] = {}
+    keys: list[tuple[int, int]] = []
+    for number, (source, name) in enumerate(drawings):
+        thing = name.removeprefix(source.about).partition(FURTHER)[0]
+        keys.append((first.setdefault(thing, number) if source.about else number, number))
+    return [number for __, number in sorted(keys)]
+
+
+def chosen(results: Results, *, every: bool) -> Choice:
+    """The positions in detail; with `every` the motion plans of all positions that could be computed."""
+    motion = results.motion
+    if motion is None:
+        return Choice(results, (), ())
+    detail = tuple(detailed(results))
+    moving = motion.moving & ~results.locked
+    plans = [Position(results, motion, k) for k in range(len(results.numbers)) if moving[k]] if every else detail
+    return Choice(results, tuple(plans), detail)
+
+
+CONTENTS = (
+    Source(0, whole_scheme, 240),
+    Source(0, all_groups, 150),
+    Source(0, synthesised, 200),
+    Source(0, structure_tables),
+    Source(1, all_positions, 240),
+    Source(1, motion_plans, 300, over="plans"),
+    Source(1, centres, 200),
+    Source(1, diagrams, 240),
+    Source(1, motion_tables),
+    Source(2, position, 200, over="detail"),
+    Source(2, group_loads, 160, over="detail", about="group-loads"),
+    Source(2, forces, 100, over="detail", about="forces"),
+    Source(2, lever, 200, over="detail"),
+    Source(2, forces_table, over="detail"),
+    Source(2, balance_table),
+    Source(2, balancing, 100),
+    Source(2, single_run, 240),
+    Source(3, law_of_motion, 240),
+    Source(3, law_tables),
+)

@@ -1,0 +1,56 @@
+"""Large sheets as files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from importlib.util import find_spec
+
+from tmm_cli.drawing.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
+from tmm_cli.drawing.layout.contents import chosen
+from tmm_cli.drawing.layout.large import large_sheets
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.problem.errors import ProblemError, chosen_names
+
+MOST = 24  # positions of which plans are drawn
+
+
+def formats_of(text: str) -> list[str]:
+    """Formats from their names with commas. Raises ProblemError."""
+    wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of drawings"))
+    if "dxf" in wanted and find_spec("ezdxf") is None:
+        raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
+    return wanted
+
+
+def refuse_plans(count: int) -> None:
+    """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
+    if count > MOST:
+        raise ProblemError(
+            _("plans of so many positions fill no sheet that is read"), found=str(count),
+            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
+        )  # fmt: skip
+
+
+def files_of_sheets(
+    results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], way: Way = here, *, every: bool
+) -> Iterator[tuple[str, bytes]]:
+    """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
+
+    way: who draws and who writes. every: whether motion plans are drawn of all positions.
+    """
+    choice = chosen(results, every=every)
+    refuse_plans(len(choice.plans))
+    if choice.moves and not choice.loaded:
+        say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
+    sheets = dict(large_sheets(choice, paper, way))
+    jobs: list[tuple[str, Callable[[], bytes]]] = []
+    for name in formats:
+        if name in WITH_PAGES:
+            jobs.append((f"sheets.{name}", partial(WITH_PAGES[name], *sheets.values())))
+        else:
+            jobs += [(f"{stem}.{name}", partial(FORMATS[name], sheet)) for stem, sheet in sheets.items()]
+    yield from zip((file for file, __ in jobs), way([job for __, job in jobs]), strict=True)
+    for note in lacking_in(text for sheet in sheets.values() for text in sheet.texts()):
+        say(note)

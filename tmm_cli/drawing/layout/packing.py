@@ -1,0 +1,274 @@
+"""Boxes put beside and below one another on a field, one corner of which is taken; sizes and places in mm."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, islice
+from random import Random
+
+from tmm_cli.drawing.paper.record import Line, Mark
+from tmm_cli.drawing.paper.writing import DARK, written
+from tmm_cli.language import _
+from tmm_cli.problem.schema import SheetTexts
+
+Size = tuple[float, float]
+Step = tuple[float, float, float]  # of a skyline: from, to, down to
+MIXED = 30  # orders by chance that are tried too, always the same ones
+NEAR = 3.0  # places by which boxes that are to stay about in their order change it, at most
+MANY = 300  # where the best of all arrangements is looked for
+
+
+@dataclass(frozen=True)
+class Field:
+    """Width and height; `taken` is what the title block has in the lower right corner."""
+
+    width: float
+    height: float
+    taken: Size = (0.0, 0.0)
+
+    @property
+    def area(self) -> float:
+        """What is free for boxes."""
+        return self.width * self.height - self.taken[0] * self.taken[1]
+
+    def depth(self, start: float, end: float) -> float:
+        """How far down from the upper edge a box between these distances from the left edge may reach."""
+        return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
+
+    def holds(self, at: Size, size: Size) -> bool:
+        """Whether a box fits there; `at`: its upper left corner, from the left and down from the upper edge."""
+        right, low = at[0] + size[0], at[1] + size[1]
+        return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
+
+
+def pack(sizes: Sequence[Size], field: Field, *, led: bool = False, tidy: bool = False) -> list[Size] | None:
+    """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted.
+
+    led: the first box is in the upper left corner. tidy: none stands before an earlier one.
+    """
+    found = _packed(sizes, field, MIXED, led=led, tidy=tidy)
+    return next((places for places in found if not tidy or not _broken(places)), None)
+
+
+def arranged(sizes: Sequence[Size], field: Field) -> list[Size] | None:
+    """The same, so that a reader who goes right and down meets the boxes about as they come."""
+    for led in (True, False):
+        found = [places for tidy in (True, False) for places in _packed(sizes, field, MANY, led=led, tidy=tidy)]
+        if found:
+            return min(found, key=lambda places: (_broken(places), _disorder(places, sizes, field)))
+    return None
+
+
+def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
+    """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too; tidy: orders near theirs."""
+    if sum(width * height for width, height in sizes) > field.area:
+        return
+    turned = Field(field.height, field.width, field.taken[::-1])
+    for order in _orders(sizes, mixed, 1 if led else 0, tidy=tidy):
+        places = _in_order(sizes, order, field)
+        if places is not None:
+            yield places
+        places = _in_order([(height, width) for width, height in sizes], order, turned)
+        if places is not None:
+            yield [(x, y) for y, x in places]
+
+
+def _broken(places: Sequence[Size]) -> int:
+    """How many boxes begin both farther up and farther to the left than one that comes earlier."""
+    return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(places, 2))
+
+
+def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> float:
+    """By how much boxes stand before those that come earlier, the more so the earlier, on the way right and down."""
+    middles = [
+        (x + width / 2) / field.width + (y + height / 2) / field.height
+        for (x, y), (width, height) in zip(places, sizes, strict=True)
+    ]
+    return sum(
+        (late - early) * max(middles[early] - middles[late], 0.0) for early, late in combinations(range(len(sizes)), 2)
+    )
+
+
+def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
+    """Orders in which boxes are put down: as they come, then the large ones first; `kept`: that many stay first."""
+    every = range(len(sizes))
+    first, rest, chance = every[:kept], every[kept:], Random(len(sizes))
+    yield every
+    if tidy:
+        for __ in range(mixed):
+            near = {k: k + NEAR * chance.random() for k in rest}
+            yield [*first, *sorted(rest, key=near.__getitem__)]
+        return
+    keys = (
+        lambda k: -sizes[k][1],
+        lambda k: -sizes[k][0] * sizes[k][1],
+        lambda k: -sizes[k][0],
+        lambda k: -sum(sizes[k]),
+    )
+    for key in keys:
+        yield [*first, *sorted(rest, key=key)]
+    yield from ([*first, *chance.sample(rest, len(rest))] for __ in range(mixed))
+
+
+def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:
+    """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
+    skyline: list[Step] = [(0.0, field.width, 0.0)]
+    places = [(0.0, 0.0)] * len(sizes)
+    for k in order:
+        width, height = sizes[k]
+        highest, place = math.inf, 0.0
+        for number, (start, __, ___) in enumerate(skyline):
+            end = start + width
+            if end > field.width + 1e-9:
+                break
+            top = _top(skyline, number, end, highest)
+            if top < highest and top + height <= field.depth(start, end) + 1e-9:
+                highest, place = top, start
+        if highest == math.inf:
+            return None
+        places[k] = (place, highest)
+        skyline = _lowered(skyline, place, place + width, highest + height)
+    return places
+
+
+def _top(skyline: Sequence[Step], number: int, end: float, most: float) -> float:
+    """How far down a box begins that stands from the left end of a step to here; what is not less than most is most."""
+    begin, top = skyline[number][0] + 1e-9, 0.0
+    for left, right, down in islice(skyline, number, None):
+        if left >= end - 1e-9:
+            break
+        if down > top and right > begin:
+            if down >= most:
+                return most
+            top = down
+    return top
+
+
+def _lowered(skyline: Sequence[Step], start: float, end: float, down: float) -> list[Step]:
+    """The skyline with a box under which it goes down to here."""
+    found: list[Step] = []
+    for left, right, depth in skyline:
+        if left < start - 1e-9:
+            found.append((left, min(right, start), depth))
+        if left <= start + 1e-9 < right:
+            found.append((start, end, down))
+        if right > end + 1e-9:
+            found.append((max(left, end), right, depth))
+    return found
+
+
+def spread(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> list[Size]:
+    """The same arrangement with the free room shared out: first across, then down.
+
+    Distances of the corners grow all by one factor, so boxes that did not overlap do not afterwards.
+    """
+    for axis in (0, 1):
+        low, high = 1.0, 4.0
+        while high - low > 1e-4:
+            factor = (low + high) / 2
+            if all(field.holds(_stretched(at, axis, factor), size) for at, size in zip(places, sizes, strict=True)):
+                low = factor
+            else:
+                high = factor
+        places = [_stretched(at, axis, low) for at in places]
+    return list(places)
+
+
+def _stretched(at: Size, axis: int, factor: float) -> Size:
+    return (at[0] * factor, at[1]) if axis == 0 else (at[0], at[1] * factor)
+
+
+# The frame of a sheet and its title block: GOST 2.104, form 1 (185 x 55 mm), or a plain one.
+
+
+LEFT, EDGE = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others
+BOLD, FINE = 0.6, 0.25  # mm: main and thin lines
+SIZES = {"gost": (185.0, 55.0), "plain": (140.0, 32.0)}
+SMALL, USUAL, LARGE = 2.8, 3.5, 5.0  # mm: sizes of letters' bodies
+
+
+@dataclass(frozen=True)
+class Titles:
+    """What is written into the block of one sheet; number: which of `count` it is."""
+
+    texts: SheetTexts
+    title: str
+    subject: str
+    number: int
+    count: int
+
+
+def frame(paper: tuple[float, float]) -> Line:
+    """The frame of the field."""
+    low, high = inner(paper)
+    return _rectangle(low, high)
+
+
+def inner(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of the field within the frame."""
+    return complex(LEFT, EDGE), complex(paper[0] - EDGE, paper[1] - EDGE)
+
+
+def title_block(titles: Titles, corner: complex) -> Iterable[Mark]:
+    """The block, its lower right corner here."""
+    kind = titles.texts.block
+    low = corner - SIZES[kind][0]
+    marks = _gost(titles) if kind == "gost" else _plain(titles)
+    return [mark.moved(low) for mark in marks]
+
+
+def _gost(titles: Titles) -> list[Mark]:
+    texts = titles.texts
+    marks: list[Mark] = [_rectangle(0j, 185 + 55j)]
+    marks += _lines("x", ((17, 0, 55), (40, 0, 55), (55, 0, 55), (65, 0, 55), (7, 30, 55), (135, 0, 40)), BOLD)
+    marks += _lines("x", ((150, 20, 40), (167, 20, 40), (155, 15, 20)), BOLD)
+    marks += _lines("x", ((140, 20, 35), (145, 20, 35)), FINE)
+    marks += _lines("y", ((30, 0, 65), (35, 0, 65), (40, 65, 185), (15, 65, 185), (35, 135, 185), (20, 135, 185)), BOLD)
+    marks += _lines("y", [(y, 0, 65) for y in (5, 10, 15, 20, 25, 40, 45, 50)], FINE)
+    heads = ((0, 7, _("Rev.")), (7, 17, _("Sheet")), (17, 40, _("Doc. No.")), (40, 55, _("Sign.")), (55, 65, _("Date")))
+    for start, end, word in heads:
+        marks += written(word, complex(start, 30), complex(end, 35), SMALL)
+    roles = ((25, _("Drawn"), texts.student), (20, _("Checked"), texts.teacher), (15, _("Techn."), ""),
+             (5, _("Norms"), ""), (0, _("Approved"), ""))  # fmt: skip
+    for low, role, name in roles:
+        marks += written(role, complex(0, low), complex(17, low + 5), SMALL, "left")
+        marks += written(name, complex(17, low), complex(40, low + 5), SMALL, "left")
+    marks += written(texts.code, 65 + 40j, 185 + 55j, 1.4 * LARGE)
+    marks += written(titles.title, 65 + 26j, 135 + 40j, LARGE, lines=2)
+    marks += written(titles.subject, 65 + 15j, 135 + 26j, USUAL, lines=2)
+    for start, end, word in ((135, 150, _("Stage")), (150, 167, _("Mass")), (167, 185, _("Scale"))):
+        marks += written(word, complex(start, 35), complex(end, 40), SMALL)
+    marks += written(_("Sheet {number}").format(number=titles.number), 135 + 15j, 155 + 20j, SMALL)
+    marks += written(_("Sheets {count}").format(count=titles.count), 155 + 15j, 185 + 20j, SMALL)
+    institution = " ".join(part for part in (texts.department, texts.group) if part)
+    return [*marks, *written(institution, 135 + 0j, 185 + 15j, USUAL, lines=3)]
+
+
+def _plain(titles: Titles) -> list[Mark]:
+    texts = titles.texts
+    marks: list[Mark] = [_rectangle(0j, 140 + 32j)]
+    marks += _lines("y", ((8, 0, 140), (16, 0, 140), (24, 0, 140)), FINE)
+    marks += _lines("x", ((105, 16, 32), (85, 0, 16), (20, 0, 16), (105, 0, 16)), FINE)
+    cells = (
+        (0, 24, 105, titles.title), (105, 24, 140, texts.code), (0, 16, 105, titles.subject),
+        (105, 16, 140, _("sheet {number} of {count}").format(number=titles.number, count=titles.count)),
+        (0, 8, 20, _("Student")), (20, 8, 85, texts.student), (85, 8, 105, _("Group")), (105, 8, 140, texts.group),
+        (0, 0, 20, _("Teacher")), (20, 0, 85, texts.teacher), (85, 0, 105, _("Department")),
+        (105, 0, 140, texts.department),
+    )  # fmt: skip
+    for left, low, right, text in cells:
+        marks += written(text, complex(left, low), complex(right, low + 8), USUAL, "left", lines=2)
+    return marks
+
+
+def _rectangle(low: complex, high: complex) -> Line:
+    across = (high - low).real
+    return Line((low, low + across, high, high - across, low), DARK, BOLD, layer="frame", z=8.0)
+
+
+def _lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[Line]:
+    """Lines at a distance along one axis, from and to along the other."""
+    ends = [(complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in every]
+    return [Line(pair, DARK, width, layer="frame", z=8.0) for pair in ends]

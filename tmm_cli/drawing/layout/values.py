@@ -1,0 +1,241 @@
+"""Tables as drawings: words and numbers in ruled cells, folded into parts beside one another where they are long."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.drawing.paper.picture import Picture, longest_for, picture
+from tmm_cli.drawing.paper.record import Drawing, Line, Mark, Text
+from tmm_cli.drawing.paper.script import Words, pieces, width
+from tmm_cli.drawing.paper.writing import DARK, cut
+from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver
+from tmm_cli.language import _, numeral, translated
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.free_bodies import Lettered, Loaded, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+)
+from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.reports.register import walk
+from tmm_cli.reports.terminal import cells
+
+SIZE = 3.2  # mm: letters of a table as it comes
+BOLD, FINE = 0.5, 0.2  # mm: lines
+AIR, ROW = 1.4, 1.7  # of the size: room beside a text, height of a row
+FOLDED = 28  # rows, beyond which a table goes on beside itself
+APART = 3.0  # of the size, between two parts
+WIDEST = 24.0  # of the size: a longer text is cut
+
+
+def table(title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()) -> Picture:
+    """A table, its letters as large as the room lets them be."""
+    cells = [[cut(one, 1.0, WIDEST) if isinstance(one, str) else one for one in row] for row in (heads, *rows)]
+    columns = [max(width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
+    parts = max(math.ceil(len(rows) / FOLDED), 1)
+    most = math.ceil(len(rows) / parts)
+    step = sum(columns) + APART
+    across, up = parts * step - APART, ROW * (most + 1)
+    longest = longest_for(SIZE * max(across, up))
+    size = longest / max(across, up)
+    marks: list[Mark] = []
+    for part in range(parts):
+        here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
+        marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
+    return picture(marks, title, longest, notes=notes)
+
+
+def _part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
+    """Rows below one another, the heads first; words begin at the left, numbers end at the right."""
+    row, wide = ROW * size, sum(columns)
+    edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
+    high = [-row * k for k in range(len(cells) + 1)]
+    marks: list[Mark] = [
+        Line((1j * y, wide + 1j * y), DARK, BOLD if k in (0, 1, len(cells)) else FINE, layer="text")
+        for k, y in enumerate(high)
+    ]
+    marks += [
+        Line((complex(x, high[-1]), complex(x, 0)), DARK, BOLD if x in (0.0, edges[-1]) else FINE, layer="text")
+        for x in edges
+    ]
+    for k, (start, end) in enumerate(pairwise(edges)):
+        numbers = all(_number(line[k]) for line in cells[1:])
+        for line, y in zip(cells, high, strict=False):
+            at = complex(start + AIR / 2 * size, y - row / 2)
+            if numbers:
+                at = complex(end - AIR / 2 * size - width(line[k], size), y - row / 2)
+            for off, letters, own in pieces(line[k], size):
+                if letters:
+                    marks.append(Text(at + off, letters, own, DARK))
+    return marks
+
+
+def _number(text: Words) -> bool:
+    return isinstance(text, str) and (not text or text == "-" or text.lstrip("+-−")[:1].isdigit())
+
+
+# Tables of values on large sheets: structure, motion in all positions, forces of a position.
+
+
+FIGURES = 4  # of each number
+NOTHING = 1e-9  # of the largest number of a column: less is written as zero
+DECIMALS = 6  # at most; what would need more is written with a power of ten
+BESIDE = 8  # quantities beside one another in a table
+POSITIONS = 36  # rows of a table at most: of more positions only some have one
+
+Quantity = tuple[str | Symbol, Any, Dimension]
+
+
+def structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """Links and kinematic pairs."""
+    for found in walk(results, ("links", "pairs")):
+        rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
+        yield f"table-{found.name}", table(found.title, [translated(column.header) for column in found.columns], rows)
+
+
+def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """Speeds, then accelerations, of all points and links in all positions."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    points = {name: motion.named(name) for name in linkage.moving_points}
+    links = {name: motion.link(name) for name in linkage.moving}
+    speeds = [(Symbol("v", name), np.abs(point.v), SPEED) for name, point in points.items()]
+    speeds += [(Symbol("ω", name), link.omega, ANGULAR_SPEED) for name, link in links.items()]
+    more = [(Symbol("a", name), np.abs(point.a), ACCELERATION) for name, point in points.items()]
+    more += [(Symbol("ε", name), link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
+    for stem, title, every in (
+        ("speeds", _("Speeds of points, angular speeds of links"), speeds),
+        ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
+    ):
+        moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
+        each = math.ceil(len(moving) / math.ceil(len(moving) / BESIDE)) if moving else 1
+        for start in range(0, len(moving), each):
+            yield f"table-{stem}", over_positions(results, title, moving[start : start + each])
+
+
+def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """What balances the drivers in all positions, by both ways."""
+    reactions, lever = results.reactions, results.lever
+    if reactions is None or lever is None:
+        return
+    several = len(reactions.balances) > 1
+    columns: list[Quantity] = []
+    for balance in reactions.balances:
+        turns = balance.moment is not None if several else balance.kind == "moment"
+        name = balance_symbol(balance.driver.link, several, turns=turns)
+        values = balance.generalized if several or turns else balance.force
+        columns.append((name, values, MOMENT if turns else FORCE))
+    if not several:
+        __, ___, dimension = columns[0]
+        checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
+        columns.append((_("by the lever"), checked, dimension))
+    yield "table-balance", over_positions(results, _("What balances the driver"), columns)
+
+
+def over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
+    """A row a position, angles of the driver first."""
+    units, motion = results.problem.units, results.motion
+    assert motion is not None
+    crank = results.linkage.driver.kind == "turn"
+    cycle = 2 * np.pi * motion.linkage.turns
+    place: Quantity = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
+    every = [place, *columns]
+    heads: list[Words] = [_("No.")]
+    heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
+    chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
+    cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
+    rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
+    return table(title, heads, rows)
+
+
+def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
+    """Sizes of all forces with their angles from x, and moments, at a position."""
+    results, k = here.results, here.k
+    reactions, units = results.reactions, results.problem.units
+    if reactions is None:
+        return
+    given = Loaded.at(here.motion, reactions, k).given()
+    forces = [(one.symbol, one.force) for one in given if not one.couple]
+    forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
+    moments = [(one.symbol, one.moment) for one in given if one.couple]
+    largest = max((abs(force) for __, force in forces), default=0.0)
+    rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
+    rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]
+    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))), _("angle from x, °"),
+             _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT)))]  # fmt: skip
+    place = place_of_driver(results, float(here.motion.q[k]))
+    title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
+    notes = [_("R with the indices of two links: from the first one on the second")]
+    yield here.stem("table-forces"), table(title, heads, rows, notes)
+
+
+def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
+    """Size, and angle within a turn; a force that is only rounding has none."""
+    if not abs(force) > NO_FORCE * largest:
+        return "0", "-"
+    angle = round(math.degrees(math.atan2(force.imag, force.real)), 1) % 360
+    return numeral(units.from_si(abs(force), FORCE), f".{FIGURES}g"), numeral(angle, ".1f")
+
+
+def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
+    """Values (SI) in the units of the file, all with the decimals that the largest one needs; a dash where none is."""
+    shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
+    picked = np.array([shown[k if len(shown) > 1 else 0] for k in rows])
+    known = shown[np.isfinite(shown)]
+    largest = float(np.max(np.abs(known), initial=0.0))
+    decimals = FIGURES - 1 - math.floor(math.log10(largest)) if largest else 0
+    form = f".{FIGURES}g"
+    if -DECIMALS < decimals <= DECIMALS:
+        needed = (
+            n for n in range(decimals) if np.allclose(np.round(known, n), known, rtol=0, atol=10.0**-decimals / 2)
+        )
+        decimals = next(needed, max(decimals, 0))
+        form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no zero with a sign
+    least = NOTHING * largest
+    return ["-" if not math.isfinite(v) else numeral(v, form) if abs(v) > least else "0" for v in picked.tolist()]
+
+
+# Tables of values on the large sheet of the law of motion.
+
+
+def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """What was found, then the machine reduced to its driver and its law of motion in all positions."""
+    running = results.steady
+    if running is None or results.motion is None:
+        return
+    units = results.problem.units
+    for found in walk(results, ("dynamics",)):
+        columns = [cells(replace(column, digits=FIGURES), units, range(found.rows)) for column in found.columns]
+        heads = [translated(column.header) for column in found.columns]
+        rows = [[*told, on_paper(unit)] for *told, unit in zip(*columns, strict=True)]
+        yield "table-dynamics", table(found.title, heads, rows)
+    yield "table-law", over_positions(results, _("Law of motion of the driver"), _columns(results))
+
+
+def _columns(results: Results) -> list[Quantity]:
+    running, motion = results.steady, results.motion
+    assert running is not None and motion is not None
+    law, way = running.steady.law, running.way(motion.q)
+    machine, sense = running.steady.machine, running.sense
+    return [
+        (Symbol("J"), machine.inertia(way), INERTIA), (Symbol("M"), sense * machine.moment(way), MOMENT),
+        (Lettered("M_d"), sense * law.driving(way), MOMENT), (_("A, J"), running.steady.work(way), NUMBER),
+        (Symbol("ω"), motion.rate, ANGULAR_SPEED), (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),
+        (_("t, s"), motion.time, NUMBER),
+    ]  # fmt: skip

@@ -1,0 +1,271 @@
+"""Blocks of notes and tables on a sheet, and where there is room for them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+
+import numpy as np
+
+from tmm_cli.drawing.paper.picture import longest_for, on_large_sheet
+from tmm_cli.drawing.paper.record import POINT
+from tmm_cli.drawing.paper.script import Words, width
+from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
+
+NOTE, CELL = 9.0, 8.0  # points
+BLOCK_LINE, ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next
+EDGE, GUTTER, APART = 2.0, 3.0, 6.0  # mm: inside the frame, between columns, between parts side by side
+CLEAR = 4.0  # mm about a block that are free
+STEPS = 12  # places along an edge that are tried for a block
+PARTS = 4  # of one table side by side, at most
+
+
+@dataclass(frozen=True)
+class Row:
+    """Cells of a row of a table; `head`: they are titles of columns."""
+
+    cells: tuple[Words, ...]
+    head: bool = False
+
+
+@dataclass(frozen=True)
+class Written:
+    """A text of a block; `at`: its left or right end, off the block's lower left corner, mm."""
+
+    at: complex
+    words: Words
+    size: float
+    right: bool = False
+    head: bool = False
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A block in one of its shapes: its size, texts and lines, mm."""
+
+    size: complex
+    texts: tuple[Written, ...]
+    lines: tuple[tuple[complex, complex], ...]
+
+
+@dataclass
+class Block:
+    """Notes, and a table under them; `numbers`: its last columns, which stand flush right."""
+
+    notes: list[Words] = field(default_factory=list)
+    rows: list[Row] = field(default_factory=list)
+    numbers: int = 1
+
+    def shapes(self) -> Iterator[Shape]:
+        """From the highest on; in others the table goes on beside itself."""
+        for parts in range(1, 1 + min(PARTS, max(1, len(self.rows) // 4))):
+            yield self._shape(parts)
+
+    def _shape(self, parts: int) -> Shape:
+        columns = [
+            max(width(cell, CELL * POINT) for cell in column)
+            for column in zip(*(r.cells for r in self.rows), strict=True)
+        ]
+        across = sum(columns) + GUTTER * max(len(columns) - 1, 0)
+        beside = list(split(self.rows, parts))
+        wide = max([width(note, NOTE * POINT) for note in self.notes] + [len(beside) * (across + APART) - APART])
+        rows = max((len(part) for part in beside), default=0)
+        under = BLOCK_LINE * len(self.notes)
+        size = complex(wide + 2 * EDGE, EDGE + under + ROW * rows + (1.0 if rows and under else 0.0))
+        texts = [
+            Written(complex(EDGE, size.imag - 3.5 - BLOCK_LINE * k), note, NOTE) for k, note in enumerate(self.notes)
+        ]
+        lines = []
+        for number, part in enumerate(beside):
+            left = EDGE + number * (across + APART)
+            for k, row in enumerate(part):
+                y = ROW * (rows - k - 0.5) + EDGE / 2
+                texts += list(self._cells(row, complex(left, y), columns))
+                if row.head:
+                    lines.append((complex(left, y - ROW / 2), complex(left + across, y - ROW / 2)))
+        return Shape(size, tuple(texts), tuple(lines))
+
+    def _cells(self, row: Row, at: complex, columns: Sequence[float]) -> Iterator[Written]:
+        first = len(columns) - self.numbers
+        for number, (cell, wide) in enumerate(zip(row.cells, columns, strict=True)):
+            right = number >= first
+            yield Written(at + wide if right else at, cell, CELL, right, row.head)
+            at += wide + GUTTER
+
+
+def split(rows: Sequence[Row], parts: int) -> Iterator[list[Row]]:
+    """Rows in parts about equally long; titles are repeated above what goes on beside."""
+    each = math.ceil(len(rows) / parts)
+    head: list[Row] = []
+    for start in range(0, len(rows), each or 1):
+        part = list(rows[start : start + each])
+        yield part if part[0].head else [*head, *part]
+        head = [row for row in (*head, *part) if row.head][-1:]
+
+
+def corners(low: complex, high: complex, size: complex) -> Vector:
+    """Places for a block in a field, of its lower left corner: corners of the field, then along its edges."""
+    room = high - low - size
+    if min(room.real, room.imag) < 0:
+        return np.zeros(0, complex)
+    steps = np.linspace(1, 0, STEPS)
+    return low + np.concatenate([
+        room.real * np.array([1, 0, 1, 0]) + 1j * room.imag * np.array([0, 0, 1, 1]),
+        *(room.real * steps + 1j * y for y in (0, room.imag)),
+        *(x + 1j * room.imag * steps for x in (room.real, 0)),
+    ])  # fmt: skip
+
+
+def covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = CLEAR) -> Vector:
+    """How many points of what is drawn a block would cover, or come near (mm), at each place."""
+    off = crowd[None, :] - at[:, None] - size / 2
+    near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
+    found: Vector = np.count_nonzero(near, axis=1)
+    return found
+
+
+def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[Shape, complex]:
+    """The shape and the place of a block in a field in which it covers the least."""
+    best: tuple[int, Shape, complex] | None = None
+    for shape in block.shapes():
+        places = corners(low, high, shape.size)
+        counts = covered(crowd, places, shape.size)
+        if len(places) and (best is None or counts.min() < best[0]):
+            best = int(counts.min()), shape, complex(places[counts.argmin()])
+    if best is None:  # larger than the field in each of its shapes
+        return next(block.shapes()), low
+    return best[1:]
+
+
+def nearest_free(
+    block: Block, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
+) -> tuple[Shape, complex]:  # fmt: skip
+    """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it.
+
+    fits: whether there is room for a drawing of this width and height (mm).
+    """
+    found: list[tuple[bool, float, Shape, complex]] = []
+    for shape in block.shapes():
+        places = corners(low, high, shape.size)
+        free = places[covered(crowd, places, shape.size) == 0] if len(places) else places
+        size = high - low
+        if len(free):
+            return shape, complex(free[0])
+        below = complex(max(size.real, shape.size.real), size.imag + CLEAR + shape.size.imag)
+        found.append(
+            (not fits(below.real, below.imag), below.real * below.imag, shape, low - 1j * (CLEAR + shape.size.imag))
+        )
+        beside = complex(size.real + CLEAR + shape.size.real, max(size.imag, shape.size.imag))
+        at = complex(high.real + CLEAR, high.imag - shape.size.imag)
+        found.append((not fits(beside.real, beside.imag), beside.real * beside.imag, shape, at))
+    *__, shape, at = min(found, key=lambda one: one[:2])
+    return shape, at
+
+
+# The paper, the scale and the place at which a figure is largest and leaves room for a block of notes and tables.
+
+
+ALONG = (0.5, 0.0, 1.0, 0.25, 0.75)  # of what is free beside the figure, across and up: where it is put
+SHIFTS = [complex(x, y) for x in ALONG for y in ALONG]
+SMALLER = 4.0  # times smaller a figure may become for the sake of a block
+SPOTS = 40  # points that stand for a line
+
+
+@dataclass
+class Figure:
+    """What goes on a sheet: places (SI), how far (mm) it is off them, and the room (mm) that it needs about it."""
+
+    places: list[Vector] = field(default_factory=list)
+    off: list[Vector] = field(default_factory=list)
+    about: list[Vector] = field(default_factory=list)
+
+    def spots(self, places: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
+        """Places (SI), those that are finite."""
+        found = np.asarray(places, complex)
+        found = found[np.isfinite(found)]
+        self.places.append(found)
+        self.off.append(np.full(len(found), off))
+        self.about.append(np.full(len(found), about))
+
+    def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
+        """A straight line between places (SI)."""
+        self.spots(start + (end - start) * np.linspace(0, 1, SPOTS), about, off)
+
+
+@dataclass(frozen=True)
+class Room:
+    """paper (mm), SI a millimetre, where zero is on the paper (mm).
+
+    figure: width and height of what is to scale there, mm; free: it is there without a scale.
+    """
+
+    paper: tuple[float, float]
+    mu: float
+    origin: complex
+    figure: tuple[float, float] = (0.0, 0.0)
+    free: bool = False
+
+
+def room(figure: Figure, block: Block, also: Sequence[float] = ()) -> Room:
+    """The largest round scale, or one of `also`, at which the figure fits and the block covers nothing of it."""
+    places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
+    if on_large_sheet():
+        return _tight(places, off, about)
+    sizes = [shape.size for shape in block.shapes()]
+    alone: Room | None = None
+    for mu in scales(extent(places.tolist())[0], also):
+        at = places / mu + off
+        low = complex((at.real - about).min(), (at.imag - about).min())
+        size = complex((at.real + about).max(), (at.imag + about).max()) - low
+        for paper in (LANDSCAPE, PORTRAIT) if size.real > size.imag else (PORTRAIT, LANDSCAPE):
+            start, end = ground_of(paper)
+            free = end - start - size
+            if min(free.real, free.imag) < 0:
+                continue
+            alone = alone or Room(paper, mu, start - low + free / 2)
+            for shift in SHIFTS:
+                origin = start - low + complex(shift.real * free.real, shift.imag * free.imag)
+                for one in sizes:
+                    spots = corners(start, end, one)
+                    if len(spots) and not covered(at + origin, spots, one, about).all():
+                        return Room(paper, mu, origin)
+        if alone is not None and mu > SMALLER * alone.mu:
+            return alone
+    raise AssertionError("some scale is large enough")
+
+
+def _tight(places: Vector, off: Vector, about: Vector) -> Room:
+    """At the scale that a large sheet gives, on a paper no larger than the figure; blocks find their place there."""
+    longest = longest_for(max(LANDSCAPE))
+    __, across, up, ___ = extent(places.tolist())
+    mu = round_scale(across, up, longest, longest)
+    at = places / mu + off
+    low = complex((at.real - about).min(), (at.imag - about).min())
+    size = complex((at.real + about).max(), (at.imag + about).max()) - low
+    start, end = ground_of((0.0, 0.0))
+    paper = size + start - end
+    return Room((paper.real, paper.imag), mu, start - low, (across / mu, up / mu))
+
+
+def snug(
+    places: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
+) -> Room:
+    """For places (SI) that are put on a large sheet without a scale; below: what (mm) is free there at its width."""
+    size, across, up, __ = extent(list(places) or [0j])
+    factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
+    low, high = ground_of((0.0, 0.0))
+    figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too
+    paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
+    return Room((paper.real, paper.imag), 1.0, 0j, figure, free=True)
+
+
+def scales(size: float, also: Sequence[float]) -> Iterator[float]:
+    """Round scales (SI a millimetre) for a figure of this size (SI), from one at which it fits on no sheet on."""
+    least = size / max(LANDSCAPE)
+    power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
+    for n in count(power):
+        decade = 10.0**n
+        yield from sorted([f * decade for f in ROUND[:-1]] + [mu for mu in also if decade <= mu < 10 * decade])

@@ -1,0 +1,159 @@
+"""The convex hull of places on paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def outline(places: list[complex]) -> list[complex]:
+    """The convex hull; the two ends when all lie on a line."""
+    places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
+    if len(places) < 3:
+        return places or [complex(np.nan, np.nan)]
+    ordered = sorted(places, key=lambda p: (p.real, p.imag))
+
+    def half(points: list[complex]) -> list[complex]:
+        chain: list[complex] = []
+        for p in points:
+            while len(chain) > 1 and ((chain[-1] - chain[-2]).conjugate() * (p - chain[-1])).imag <= 1e-3:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return half(ordered) + half(ordered[::-1])
+
+
+# Boxes along the axes of the paper, many at once (an array of left, right, low, high; mm), and what is in them.
+
+
+Box = tuple[float, float, float, float]  # left, right, low, high
+Boxes = NDArray[Any]  # (number, 4)
+TINY = 1e-12  # mm, in the place of no way at all along an axis
+
+
+def about(middle: complex, width: float, height: float) -> Box:
+    """The box about its middle."""
+    return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
+
+
+def around(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
+    """Boxes about their middles, of one size or each of its own."""
+    x, y = middles.real, middles.imag
+    return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
+
+
+def wider(boxes: Boxes, air: float) -> Boxes:
+    """Boxes with so much air about them."""
+    return boxes + air * np.array([-1, 1, -1, 1])
+
+
+def row(middle: complex, along: complex, width: float, height: float) -> list[complex]:
+    """Middles of squares that hold a text along a unit vector, side by side, as large as it is high."""
+    reach = max(width - height, 0.0) / 2
+    return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
+
+
+def nearest(boxes: Boxes, places: NDArray[Any]) -> NDArray[Any]:
+    """The place of each box that is nearest to its own one of other places."""
+    left, right, low, high = boxes.T
+    found: NDArray[Any] = np.clip(places.real, left, right) + 1j * np.clip(places.imag, low, high)
+    return found
+
+
+def gaps(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
+    """How far each place is from each box: (box, place)."""
+    z, (left, right, low, high) = np.asarray(places, complex), boxes.T[:, :, None]
+    across = np.maximum(np.maximum(left - z.real, z.real - right), 0)
+    found: NDArray[Any] = np.hypot(across, np.maximum(np.maximum(low - z.imag, z.imag - high), 0))
+    return found
+
+
+def runs(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+    """How long each straight line is inside each box: (box, line)."""
+    if not len(boxes) or not len(starts):
+        return np.zeros((len(boxes), len(starts)))
+    first, last = inside(boxes, starts, ends)
+    found: NDArray[Any] = np.maximum(last - first, 0) * np.abs(ends - starts)
+    return found
+
+
+def inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Shares of each straight line at which it comes into each box and leaves it (before, where it never does)."""
+    way = ends - starts
+    left, right, low, high = boxes.T[:, :, None]
+    first: Any = 0.0
+    last: Any = 1.0
+    for least, most, at, step in ((left, right, starts.real, way.real), (low, high, starts.imag, way.imag)):
+        per = 1 / np.where(np.abs(step) < TINY, TINY, step)
+        one, other = (least - at) * per, (most - at) * per
+        first, last = np.maximum(first, np.minimum(one, other)), np.minimum(last, np.maximum(one, other))
+    return first, last
+
+
+def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
+    """Stretches of a polyline that are in none of the boxes."""
+    z = np.asarray(places, complex)
+    left, right, low, high = boxes.T
+    across, up = (left < z.real.max()) & (right > z.real.min()), (low < z.imag.max()) & (high > z.imag.min())
+    boxes = boxes[across & up]
+    if not len(boxes):
+        yield tuple(places)
+        return
+    starts, ways = z[:-1], np.diff(z)
+    firsts, lasts = inside(boxes, starts, starts + ways)
+    stretch: list[complex] = []
+    for k, (start, way) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):
+        met, free = np.flatnonzero(lasts[:, k] > firsts[:, k]), 0.0
+        for first, last in sorted(zip(firsts[met, k].tolist(), lasts[met, k].tolist(), strict=True)):
+            if first > free:
+                yield (*(stretch or [start + free * way]), start + first * way)
+            elif len(stretch) > 1:
+                yield tuple(stretch)
+            stretch, free = [], max(free, last)
+        if free < 1:
+            stretch = [*(stretch or [start + free * way]), start + way]
+    if stretch:
+        yield tuple(stretch)
+
+
+def crossing(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
+    """Whether each straight line crosses each of others: (line, other)."""
+    way, other = (ends - starts)[:, None], lasts - firsts
+
+    def side(along: NDArray[Any], off: NDArray[Any]) -> NDArray[Any]:
+        found: NDArray[Any] = (along.conj() * off).imag
+        return found
+
+    parted = side(way, firsts - starts[:, None]) * side(way, lasts - starts[:, None]) < 0
+    back = side(other, starts[:, None] - firsts) * side(other, ends[:, None] - firsts) < 0
+    found: NDArray[Any] = parted & back
+    return found
+
+
+def shared(boxes: Boxes, others: Boxes) -> NDArray[Any]:
+    """The area that each box shares with each other one, mm²."""
+    left, right, low, high = boxes.T[:, :, None]
+    across = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
+    up = np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2])
+    found: NDArray[Any] = np.maximum(across, 0) * np.maximum(up, 0)
+    return found
+
+
+def aside(place: complex, start: complex, end: complex) -> float:
+    """How far a place is from a stretch of a line."""
+    span = end - start
+    share = ((place - start) * span.conjugate()).real / (abs(span) ** 2 or 1.0)
+    return abs(place - start - min(max(share, 0.0), 1.0) * span)
+
+
+def asides(places: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+    """How far each place is from each stretch of a line: (place, line)."""
+    span, off = ends - starts, places[:, None] - starts
+    share = np.clip((off * span.conj()).real / np.maximum(np.abs(span) ** 2, TINY), 0, 1)
+    found: NDArray[Any] = np.abs(off - share * span)
+    return found

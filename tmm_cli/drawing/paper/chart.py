@@ -1,0 +1,417 @@
+"""Axes of charts: from values to millimetres of paper at a round scale, and the round numbers that stand on them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_cli.drawing.paper.fonts import width as width_of
+from tmm_cli.drawing.paper.record import POINT, Align, Style
+from tmm_cli.drawing.paper.script import Words, parts
+from tmm_cli.drawing.paper.script import width as width_of_words
+from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet
+from tmm_cli.language import numeral
+
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
+OF_DEGREES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+TICKS = (1.0, 2.0, 5.0, 10.0)  # between numbers on an axis, times a power of ten
+ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)  # the same in degrees, from a degree on
+FLAT = 1e-9  # of the values: what differs by less does not change
+DECADES = 12  # most of them on a logarithmic axis; what is smaller stands at its end
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values from `low` on, `mu` of them a millimetre, `length` mm from `start` on; of a logarithmic one powers of ten.
+
+    degrees: its round numbers are those of angles.
+    """
+
+    low: float
+    mu: float
+    start: float
+    length: float
+    logarithmic: bool = False
+    degrees: bool = False
+
+    @property
+    def high(self) -> float:
+        return self.low + self.mu * self.length
+
+    @property
+    def end(self) -> float:
+        """Where it ends, mm."""
+        return self.start + self.length
+
+    def on(self, values: Any) -> NDArray[Any]:
+        """Where values stand, mm; values of a logarithmic axis below its end stand at its end."""
+        found = np.asarray(values, dtype=float)
+        if self.logarithmic:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                found = np.maximum(np.log10(found), self.low)
+        return self.start + (found - self.low) / self.mu
+
+    def ticks(self, apart: float) -> list[tuple[float, str]]:
+        """Round values on the axis that stand at least so far apart (mm), and how they are written."""
+        step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
+        first, last = math.ceil(self.low / step - FLAT), math.floor(self.high / step + FLAT)
+        values = [k * step for k in range(first, last + 1)]
+        if self.logarithmic:
+            return [(10.0**value, f"1e{value:.0f}" if value else "1") for value in values]
+        return [(value, numeral(value, ".10g")) for value in values]
+
+    def _step(self, least: float) -> float:
+        if self.degrees and 1 <= least <= ANGLES[-1]:
+            return next(step for step in ANGLES if step >= least * (1 - FLAT))
+        return round_up(least, TICKS)
+
+
+def round_up(least: float, steps: Sequence[float] = ROUND) -> float:
+    """The smallest round number that is no smaller."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step for step in steps if step * power >= least * (1 - FLAT)) * power
+
+
+def limits(values: Sequence[Any]) -> tuple[float, float]:
+    """The least and the largest of all values that are finite; 0 and 1 where there are none."""
+    every = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
+    every = every[np.isfinite(every)]
+    return (float(every.min()), float(every.max())) if every.size else (0.0, 1.0)
+
+
+def filling(low: float, high: float, start: float, length: float) -> Axis:
+    """An axis from a value to another, whatever its scale."""
+    return Axis(low, (high - low) / length, start, length)
+
+
+def across(low: float, high: float, start: float, most: float, *, degrees: bool = False) -> Axis:
+    """An axis that ends where the values end, at the largest round scale at which it is no longer than `most` mm."""
+    low, high = _apart(low, high)
+    mu = round_up((high - low) / most, OF_DEGREES if degrees else ROUND)
+    return Axis(low, mu, start, (high - low) / mu, degrees=degrees)
+
+
+def upwards(low: float, high: float, start: float, length: float, *, degrees: bool = False, air: float = 2.0) -> Axis:
+    """An axis of this length at a round scale, with the values in it and `air` mm above and below them.
+
+    Zero is on it unless the values lie far from it; where all of them lie on one side it begins, or ends, there.
+    """
+    low, high = _apart(low, high)
+    if max(abs(low), abs(high)) < 2 * (high - low):
+        low, high = min(low, 0.0), max(high, 0.0)
+    mu = round_up((high - low) / (length - 2 * air), ROUND)
+    spare = mu * length - (high - low)
+    below = 0.0 if low == 0 else spare if high == 0 else spare / 2
+    return Axis(low - below, mu, start, length, degrees=degrees)
+
+
+def decades(low: float, high: float, start: float, length: float) -> Axis:
+    """A logarithmic axis of whole powers of ten."""
+    most = math.ceil(math.log10(high)) if high > 0 else 0
+    least = math.floor(math.log10(low)) if low > 0 else most - DECADES
+    least = max(min(least, most - 1), most - DECADES)
+    return Axis(least, (most - least) / length, start, length, logarithmic=True)
+
+
+def equal(axes: tuple[Axis, Axis], ends: Sequence[tuple[float, float]]) -> tuple[Axis, Axis]:
+    """The two at one round scale at which what lies between these ends stands in the middle of both."""
+    spans = [_apart(*own) for own in ends]
+    mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
+    one, other = (
+        replace(axis, low=(low + high - mu * axis.length) / 2, mu=mu)
+        for axis, (low, high) in zip(axes, spans, strict=True)
+    )
+    return one, other
+
+
+def _apart(low: float, high: float) -> tuple[float, float]:
+    """The same, or round about it where both are one."""
+    if high - low > FLAT * max(abs(low), abs(high)):
+        return low, high
+    half = abs(low) / 2 or 0.5
+    return low - half, high + half
+
+
+# Charts on a sheet: panels one above another over one axis, with grids, curves, numbers of positions, legends.
+
+
+FINE = "#dcdcdc"  # of grids
+SOFT = "#505050"  # of scales and numbers of positions
+SMALL, PLAIN = 8.0, 9.0  # points
+LEFT, RIGHT = 17.0, 6.0  # mm beside the panels, for numbers on their axes
+ROW = 4.5  # mm from a line of text to the next
+SAMPLE = 8.0  # mm of a curve in a legend
+APART = 5.0  # mm between entries of a legend
+EVERY = (11.0, 6.0)  # mm between numbers on an axis, across and upwards
+DOT = 0.55  # mm: radius
+LOWEST = 12.0  # mm: least height of a panel
+KEPT = 8  # of so many places of a curve one keeps labels off it
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Values over those of the common axis; those that are not finite interrupt it. dots: drawn as single points."""
+
+    xs: Any
+    ys: Any
+    label: str = ""
+    colour: str = DARK
+    style: Style = "-"
+    width: float = 1.3
+    dots: bool = False
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A place of the common axis at which a curve leaps from a value to another, as they are written."""
+
+    at: float
+    values: tuple[float, float]
+    texts: tuple[str, str]
+    colour: str = DARK
+
+
+@dataclass(frozen=True)
+class Plot:
+    """What a panel shows. scale: how the scale of its axis is written, from mu; share: of the height."""
+
+    words: str
+    curves: Sequence[Curve]
+    jumps: Sequence[Jump] = ()
+    scale: Callable[[float], Words] | None = None
+    share: float = 1.0
+    degrees: bool = False
+    logarithmic: bool = False
+
+    @property
+    def legend(self) -> list[Curve]:
+        """Curves that have a name, where it tells anything."""
+        named = [curve for curve in self.curves if curve.label]
+        return named if len(self.curves) > 1 else []
+
+
+@dataclass(frozen=True)
+class Across:
+    """The common axis. numbers: of positions, by their places; spans: stretches that have a name."""
+
+    axis: Axis
+    words: Words
+    numbers: Sequence[tuple[float, str]] = ()
+    spans: Sequence[tuple[float, float, str]] = ()
+
+
+def room(sheet: Sheet) -> tuple[float, float]:
+    """Where the common axis may begin, and how long it may be, mm."""
+    start = sheet.ground.low.real + LEFT
+    return start, sheet.ground.high.real - RIGHT - start
+
+
+def count_fitting(sheet: Sheet, plots: Sequence[Plot], over: Across) -> int:
+    """Return how many of the panels, from the first one on, fit on the sheet with a height of at least LOWEST mm."""
+    needed = np.cumsum([ROW * len(_head(plot, over.axis.length)) for plot in plots])
+    free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
+    return max(1, int(np.count_nonzero(needed <= free)))
+
+
+def _height_for_panels(sheet: Sheet, over: Across, count: int) -> float:
+    """The height (mm) that so many panels of LOWEST mm leave for their heads."""
+    beside = (2 + bool(over.spans)) * ROW
+    return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_between(over) + LOWEST))
+
+
+def _between(over: Across) -> float:
+    """The height (mm) between a panel and the head of the next one."""
+    return 0.3 * ROW + (ROW if over.numbers else 0.6 * ROW)
+
+
+def chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool = False) -> list[Panel]:
+    """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes.
+
+    Entries of legends for which the sheet is too low are left out.
+    """
+    start, most = room(sheet)
+    x = replace(over.axis, start=start + (most - over.axis.length) / 2)
+    top = sheet.ground.high.imag - (ROW if over.spans else 0.0)
+    under = _between(over) - 0.3 * ROW
+    low = sheet.ground.low.imag + 2 * ROW
+    heads = [_head(plot, x.length) for plot in plots]
+    allowed = _height_for_panels(sheet, over, len(plots)) / ROW
+    if sum(map(len, heads)) > allowed:
+        heads = [rows[: max(1, int(allowed / len(plots)))] for rows in heads]
+    free = top - low - sum(ROW * (len(rows) + 0.3) + under for rows in heads)
+    panels = []
+    for plot, rows in zip(plots, heads, strict=True):
+        height = free * plot.share / sum(p.share for p in plots)
+        bottom = top - ROW * (len(rows) + 0.3) - height
+        axes = x, _axis(plot, bottom, height)
+        if same_scale:
+            axes = equal(axes, [limits([getattr(c, way) for c in plot.curves]) for way in ("xs", "ys")])
+        panel = Panel(sheet, *axes)
+        panel.grid()
+        _write_head(panel, plot, rows, top)
+        panel.fill(plot)
+        panel.positions(over.numbers)
+        panels.append(panel)
+        top = bottom - under
+    last = panels[-1]
+    last.numbers_across(under)
+    middle = complex(last.x.start + last.x.length / 2, sheet.ground.low.imag + 1.5)
+    sheet.text(middle, over.words, PLAIN, ha="center")
+    _spans(panels, over.spans, sheet.ground.high.imag - 1.5)
+    return panels
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A field of a sheet with its two axes."""
+
+    sheet: Sheet
+    x: Axis
+    y: Axis
+
+    def at(self, x: Any, y: Any) -> NDArray[Any]:
+        """Places of values on paper, mm."""
+        return self.x.on(x) + 1j * self.y.on(y)
+
+    def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
+        """A line; one that lies above the grid keeps labels off, others are interrupted under them."""
+        self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
+
+    def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
+        """A line from below to above at a place across, mm."""
+        self.line(complex(place, self.y.start), complex(place, self.y.end), colour, width, style, z)
+
+    def level(self, place: float, colour: str, width: float, z: float) -> None:
+        """A line from side to side at a height, mm."""
+        self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
+
+    def text(self, at: complex, text: Words, ha: Align = "left", size: float = SMALL, colour: str = DARK) -> None:
+        self.sheet.text(at, text, size, ha=ha, colour=colour)
+
+    def grid(self, across: bool = True) -> None:
+        """Lines at round numbers, those of the axis upwards beside it, the border, the line of zero."""
+        for value, __ in self.x.ticks(EVERY[0]) if across else ():
+            self.upright(float(self.x.on(value)), FINE, 0.5, z=0.5)
+        for value, text in self.y.ticks(EVERY[1]):
+            height = float(self.y.on(value))
+            self.level(height, FINE, 0.5, z=0.5)
+            self.text(complex(self.x.start - 1.5, height), text, "right")
+        for place in (self.x.start, self.x.end):
+            self.upright(place, THIN, 0.6)
+        for place in (self.y.start, self.y.end):
+            self.level(place, THIN, 0.6, 1)
+        if not self.y.logarithmic and self.y.low <= 0 <= self.y.high:
+            self.level(float(self.y.on(0.0)), DARK, 0.7, z=1.5)
+
+    def numbers_across(self, under: float) -> None:
+        """Round numbers below the panel, so far under it (mm)."""
+        for value, text in self.x.ticks(EVERY[0]):
+            self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * ROW), text, "center")
+
+    def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
+        """Short lines at positions and their numbers, a round share of them where all are too many."""
+        widest = max((width_of(text, SMALL * POINT) for __, text in numbers), default=0.0)
+        crowd = len(numbers) * (widest + 2) / self.x.length
+        for value, text in numbers[:: max(1, round(round_up(crowd, TICKS)))] if numbers else ():
+            place = float(self.x.on(value))
+            self.line(complex(place, self.y.start), complex(place, self.y.start - 0.8), DARK, 0.6)
+            self.text(complex(place, self.y.start - 0.65 * ROW), text, "center", SMALL, SOFT)
+
+    def fill(self, plot: Plot) -> None:
+        """Its curves, and where they leap."""
+        for curve in plot.curves:
+            places = self.at(curve.xs, curve.ys)
+            if curve.dots:
+                for place in np.atleast_1d(places):
+                    self.sheet.circle(complex(place), DOT, curve.colour, curve.colour, 0.3, 4)
+                continue
+            self.sheet.line(places.tolist(), curve.colour, curve.width, curve.style, blocks=False)
+            if plot.jumps:
+                kept = places[np.isfinite(places)][::KEPT].tolist()
+                for start, end in pairwise(kept):
+                    self.sheet.ground.line(start, end)
+        for jump in plot.jumps:
+            for value, text in zip(jump.values, jump.texts, strict=True):
+                place = complex(self.at(jump.at, value))
+                self.sheet.circle(place, DOT, "white", jump.colour, 0.7, 4.5)
+                if text:
+                    self.sheet.label(text, place, SMALL, jump.colour)
+
+
+def _axis(plot: Plot, bottom: float, height: float) -> Axis:
+    values = [curve.ys for curve in plot.curves]
+    if not plot.logarithmic:
+        return upwards(*limits(values), bottom, height, degrees=plot.degrees)
+    above_zero = [np.where(np.asarray(v) > 0, v, np.nan) for v in values]
+    return decades(*limits(above_zero), bottom, height)
+
+
+def _entry(curve: Curve) -> float:
+    return SAMPLE + 1 + width_of(curve.label, SMALL * POINT) + APART
+
+
+def _head(plot: Plot, most: float) -> list[list[Curve]]:
+    """Rows above a panel with the entries of its legend in each; the first one begins with its words."""
+    words = (plot.words, *(parts(plot.scale(0.00025)) if plot.scale else ()))
+    rows: list[list[Curve]] = [[]]
+    if sum(map(_entry, plot.legend)) < most - width_of_words(words, PLAIN * POINT) - 2 * APART:
+        return [list(plot.legend)]
+    left = 0.0
+    for curve in plot.legend:
+        if _entry(curve) > left:
+            rows.append([])
+            left = most
+        rows[-1].append(curve)
+        left -= _entry(curve)
+    return rows
+
+
+def _write_head(panel: Panel, plot: Plot, rows: Sequence[Iterable[Curve]], top: float) -> None:
+    """What the panel shows and at which scale, and its legend."""
+    at = complex(panel.x.start, top - ROW / 2)
+    panel.text(at, plot.words, size=PLAIN)
+    if plot.scale is not None:
+        after = at + width_of(plot.words, PLAIN * POINT) + APART
+        panel.text(after, plot.scale(panel.y.mu), colour=SOFT)
+    for number, row in enumerate(rows):
+        entries = list(row)
+        place = complex(panel.x.end - sum(map(_entry, entries)) + APART, top - ROW * (number + 0.5))
+        place = place if number == 0 else complex(panel.x.start, place.imag)
+        for curve in entries:
+            if curve.dots:
+                panel.sheet.circle(place + SAMPLE - 2, DOT, curve.colour, curve.colour, 0.3, 4)
+            else:
+                panel.line(place, place + SAMPLE, curve.colour, curve.width, curve.style)
+            panel.text(place + SAMPLE + 1, curve.label)
+            place += _entry(curve)
+
+
+def _spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:
+    """Borders of stretches through all panels, their names between arrows above the first one."""
+    if not spans:
+        return
+    first = panels[0]
+    for panel in panels:
+        for value in {end for span in spans for end in span[:2]}:
+            place = float(panel.x.on(value))
+            if panel.x.start + 0.1 < place < panel.x.end - 0.1:
+                panel.upright(place, DARK, 0.6, "-.", 2)
+    for start, end, text in spans:
+        low, high = float(first.x.on(start)), float(first.x.on(end))
+        half = width_of(text, SMALL * POINT) / 2 + 1
+        if high - low < 2 * half:
+            continue
+        middle = complex((low + high) / 2, height)
+        first.text(middle, text, "center")
+        for way, place in ((-1, low), (1, high)):
+            first.line(complex(place, height - 1.2), complex(place, height + 1.2), DARK, 0.6)
+            if abs(place - middle.real) - half > 3:
+                tip = complex(place, height)
+                first.line(middle + way * half, tip, THIN, 0.6)
+                first.sheet.area([tip, tip - way * 2 + 0.4j, tip - way * 2 - 0.4j], THIN, "none", z=1, blocks=False)

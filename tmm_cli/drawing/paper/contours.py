@@ -1,0 +1,119 @@
+"""Lines of equal value on a grid, and regions of it with their hatching."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from contourpy import contour_generator
+from numpy.typing import NDArray
+
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
+
+CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
+Share = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
+
+
+def contour(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
+    """Lines on which values (columns, rows) have a level, as places column + i row; none in cells that lack a value."""
+    lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
+    return [places[:, 0] + 1j * places[:, 1] for places in map(np.asarray, lines)]
+
+
+def borders(inside: NDArray[Any], share: Share) -> list[NDArray[Any]]:
+    """Outlines of a region of the nodes (columns, rows), inside the grid."""
+    pieces = []
+    for i, j in _mixed(inside):
+        crossed = [place for _, _, place in _crossings(inside, i, j, share)]
+        pieces += [(crossed[k], crossed[k + 1]) for k in range(0, len(crossed), 2)]
+    return _joined(pieces)
+
+
+def region(inside: NDArray[Any], share: Share) -> Iterator[list[complex]]:
+    """The region in pieces, as corners column + i row: rows of whole cells, and parts of those that its border cuts."""
+    whole = inside[:-1, :-1] & inside[1:, :-1] & inside[1:, 1:] & inside[:-1, 1:]
+    for j in range(whole.shape[1]):
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], whole[:, j], [False]])))
+        for first, last in ends.reshape(-1, 2).tolist():
+            yield [complex(first, j), complex(last, j), complex(last, j + 1), complex(first, j + 1)]
+    for i, j in _mixed(inside):
+        crossed = {one: place for one, _, place in _crossings(inside, i, j, share)}
+        corners: list[complex] = []
+        for a, b in CORNERS:
+            node = (i + a, j + b)
+            corners += [complex(*node)] if inside[node] else []
+            corners += [crossed[node]] if node in crossed else []
+        yield corners
+
+
+def hatching(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
+    """Slanted lines through polygons (mm), so far apart; lines that go on from piece to piece are one."""
+    along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
+    spans: dict[int, list[tuple[float, float]]] = {}
+    for piece in pieces:
+        corners = np.asarray(piece) / along  # lines are level there
+        heights = corners.imag
+        for k in range(int(np.ceil(heights.min() / pitch)), int(np.floor(heights.max() / pitch)) + 1):
+            places = []
+            for one, other in zip(corners, np.roll(corners, -1), strict=True):
+                if (one.imag <= k * pitch) != (other.imag <= k * pitch):
+                    places.append(float(one.real + (other - one).real * (k * pitch - one.imag) / (other - one).imag))
+            places.sort()
+            spans.setdefault(k, []).extend(zip(places[::2], places[1::2], strict=True))
+    found = []
+    for k, own in spans.items():
+        last: list[float] = []
+        for start, end in sorted(own):
+            if last and start <= last[1] + SAME_PLACES * pitch:
+                last[1] = max(last[1], end)
+                continue
+            if last:
+                found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+            last = [start, end]
+        if last:
+            found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+    return found
+
+
+def _mixed(inside: NDArray[Any]) -> list[list[int]]:
+    """Cells through which a border goes."""
+    corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
+    return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
+
+
+def _crossings(
+    above: NDArray[Any], i: int, j: int, share: Share
+) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
+    """Sides of a cell that a border crosses, round it: from which node to which, and where."""
+    for k, (a, b) in enumerate(CORNERS):
+        c, d = CORNERS[(k + 1) % 4]
+        one, other = (i + a, j + b), (i + c, j + d)
+        if above[one] != above[other]:
+            low, high = min(one, other), max(one, other)
+            yield one, other, complex(*low) + share(low, high) * (complex(*high) - complex(*low))
+
+
+def _joined(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
+    """Pieces that have an end in common as one line."""
+    at: dict[complex, list[int]] = {}
+    for n, piece in enumerate(pieces):
+        for end in piece:
+            at.setdefault(end, []).append(n)
+    left, found = set(range(len(pieces))), []
+    starts = [n for own in at.values() if len(own) == 1 for n in own]
+    for first in [*starts, *range(len(pieces))]:
+        if first not in left:
+            continue
+        left.discard(first)
+        one, other = pieces[first]
+        line = [other, one] if len(at[other]) == 1 else [one, other]
+        while True:
+            after = next((n for n in at[line[-1]] if n in left), None)
+            if after is None:
+                break
+            left.discard(after)
+            a, b = pieces[after]
+            line.append(b if a == line[-1] else a)
+        found.append(np.array(line))
+    return found

@@ -1,0 +1,140 @@
+"""What is drawn already, and is in the way of labels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_cli.drawing.paper.boxes import Box, Boxes, runs, shared, wider
+
+STEP = 1.2  # mm between the points that stand for a line
+LONGEST = 5000.0  # mm: longer lines are no part of a sheet
+CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a small circle
+AIR = 0.35  # mm about a text that are free
+LINE, A_LINE, A_FAINT = 14.0, 2.0, 0.3  # price of covering lines, of each mm of them, of each mm of faint ones
+TEXT, A_TEXT = 40.0, 2.0  # of a text, and of each mm² of it
+HEAD = 1.0  # mm: half the width of the head of an arrow
+OUTSIDE = 200.0  # of a place beyond the edge
+
+
+@dataclass
+class Pieces:
+    """Straight lines, gathered one by one, and looked at all at once."""
+
+    fresh: list[tuple[complex, complex]] = field(default_factory=list)
+    found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
+    reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
+
+    def path(self, places: Sequence[complex]) -> None:
+        """A polyline, or the outline of a figure."""
+        self.fresh += [
+            (start, end)
+            for start, end in pairwise(places)
+            if abs(end - start) < LONGEST  # of what is not finite it is not
+        ]
+
+    @property
+    def all(self) -> NDArray[Any]:
+        """Their ends: (number, 2)."""
+        if self.fresh:
+            self.found = np.concatenate([self.found, np.array(self.fresh, complex)])
+            self.fresh.clear()
+            xs, ys = self.found.real, self.found.imag
+            self.reach = np.stack([xs.min(axis=1), xs.max(axis=1), ys.min(axis=1), ys.max(axis=1)])
+        return self.found
+
+    def near(self, field: Box) -> NDArray[Any]:
+        """Ends of those that may come into a field."""
+        every, (left, right, low, high) = self.all, field
+        first, last, under, over = self.reach
+        found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
+        return found
+
+    def points(self, step: float = STEP) -> NDArray[Any]:
+        """Points on them, about so far (mm) apart."""
+        starts, ends = self.all.T
+        counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
+        whose = np.repeat(np.arange(len(counts)), counts)
+        number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
+        found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
+        return found
+
+
+@dataclass
+class Ground:
+    """Lines and texts on a field of the paper, mm.
+
+    rivals: lettered places; no label stands nearer to one of them than to its own; likewise lines that have names.
+    solid, faint: lines that no label may cover, and thin ones that are interrupted where a label stands.
+    """
+
+    low: complex
+    high: complex
+    boxes: list[Box] = field(default_factory=list)
+    rivals: list[complex] = field(default_factory=list)
+    lines: list[tuple[complex, complex]] = field(default_factory=list)
+    solid: Pieces = field(default_factory=Pieces)
+    faint: Pieces = field(default_factory=Pieces)
+
+    @property
+    def crowd(self) -> NDArray[Any]:
+        """Points on solid lines."""
+        return self.solid.points()
+
+    @property
+    def written(self) -> NDArray[Any]:
+        """Points in all texts."""
+        left, right, low, high = np.reshape(np.array(self.boxes), (-1, 4)).T
+        found: NDArray[Any] = np.linspace(left, right, 5)[:, None] + 1j * np.linspace(low, high, 2)
+        return found.ravel()
+
+    def line(self, start: complex, end: complex) -> None:
+        """A line is in the way."""
+        self.solid.path([start, end])
+
+    def path(self, places: Sequence[complex]) -> None:
+        """A polyline, or the outline of a figure, is in the way."""
+        self.solid.path(places)
+
+    def spot(self, place: complex, radius: float = 1.0) -> None:
+        """A circle is in the way."""
+        turns = CORNERS if radius < 4 * STEP else np.exp(1j * np.linspace(0, 2 * np.pi, int(6 * radius / STEP)))
+        self.path([complex(corner) for corner in place + radius * turns])
+
+    def free(self, box: Box) -> bool:
+        """Whether a text there covers nothing."""
+        return bool(self.price(np.array([box]))[0] < LINE)
+
+    def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
+        """The price of texts that these straight lines, or heads of arrows on them, would cover."""
+        if not self.boxes:
+            return 0.0
+        return TEXT * float(np.count_nonzero(runs(wider(np.array(self.boxes), HEAD), *np.array(lines).T)))
+
+    def price(self, boxes: Boxes) -> NDArray[Any]:
+        """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
+        wide = wider(boxes, AIR)
+        room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
+        solid, faint = self.solid.near(room), self.faint.near(room)
+        lengths = runs(wide, *np.concatenate([solid, faint]).T)
+        inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
+        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * thin
+        found += over(boxes, np.array(self.boxes))
+        left, right, low, high = boxes.T
+        beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)
+        found += OUTSIDE * beyond
+        return found
+
+
+def over(boxes: Boxes, others: Boxes) -> NDArray[Any]:
+    """The price of the texts (their boxes) that texts in these boxes cover."""
+    if not len(others):
+        return np.zeros(len(boxes))
+    areas = shared(wider(boxes, AIR), others)
+    found: NDArray[Any] = (TEXT * (areas > 0) + A_TEXT * areas).sum(axis=1)
+    return found

@@ -1,0 +1,296 @@
+"""A sheet of paper: millimetres, true scales; lines, arrows, labels, a title strip. What is drawn is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+
+from tmm_cli.drawing.paper import script
+from tmm_cli.drawing.paper.blocks import Block, Room, Row, nearest_free, roomiest
+from tmm_cli.drawing.paper.boxes import about, outside, row, wider
+from tmm_cli.drawing.paper.fonts import SHARE
+from tmm_cli.drawing.paper.ground import AIR, Ground
+from tmm_cli.drawing.paper.labels import Label, place
+from tmm_cli.drawing.paper.labels import extent as label_extent
+from tmm_cli.drawing.paper.picture import covering, extremes, fits, longest_for, on_large_sheet, paper_for, picture
+from tmm_cli.drawing.paper.record import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
+from tmm_cli.drawing.paper.writing import in_a_line
+from tmm_cli.language import numeral, spelt
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.numerics.vectors import unit
+from tmm_cli.mechanics.plans.record import MARGIN, PAD, STRIP, extent, ground_of
+from tmm_cli.mechanics.quantities import Dimension
+from tmm_cli.problem.units import UnitSystem, on_paper
+
+DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
+NAMES = "#7a3d99"  # of links, lines and angles
+COLOURS = {
+    "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
+    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": NAMES,
+}  # fmt: skip
+GREY_TEXT = "#505050"  # of titles of columns
+HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
+EDGE = 4.0  # mm inside the field where curves are cut
+
+
+class Sheet:
+    """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
+
+    def __init__(
+        self, title: str, caption: str, points: Iterable[complex] = (), *, pad: float = PAD,
+        paper: tuple[float, float] | None = None, room: Room | None = None,
+    ) -> None:  # fmt: skip
+        """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
+        found = [p for p in points if np.isfinite(p)] or [0j]
+        __, across, up, middle = extent(found)
+        self.caption, self.remarks = caption, list[str]()
+        self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
+        self.free = room.free if room else paper is not None
+        self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
+        self.ground = Ground(*ground_of(self.paper))
+        self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
+        if room is not None:
+            self.origin = room.origin
+        self.marks: list[Mark] = []
+        self.faint: list[int] = []  # marks that are interrupted where texts stand
+        self.parts: list[tuple[str, slice]] = []  # which marks belong to which body, of those that belong to one
+        self.layer: Layer = "frame"
+        self.labels: list[Label] = []
+        self.block = Block()
+        if not on_large_sheet():
+            self._strip(title)
+        self.layer = "construction"
+
+    def _strip(self, title: str) -> None:
+        """The title above the drawing."""
+        width, height = self.paper
+        edge = 1j * (height - MARGIN - STRIP + 5)
+        self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
+        told, size = in_a_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
+        self.text(complex(MARGIN, height - MARGIN - 2), told, size / POINT, weight="bold")
+        told, size = in_a_line(self.caption, 9 * POINT, width - 2 * MARGIN)
+        self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
+
+    def on(self, value: complex) -> complex:
+        """A value (SI) as a place on paper (mm)."""
+        return self.origin + value / self.mu
+
+    @property
+    def field(self) -> tuple[complex, complex]:
+        """Corners of the field in which curves and guides are drawn, mm."""
+        return self.ground.low + EDGE * (1 + 1j), self.ground.high - EDGE * (1 + 1j)
+
+    @contextmanager
+    def on_layer(self, layer: Layer) -> Iterator[None]:
+        """What is drawn meanwhile belongs to this layer."""
+        before, self.layer = self.layer, layer
+        yield
+        self.layer = before
+
+    @contextmanager
+    def part(self, name: str) -> Iterator[None]:
+        """What is drawn meanwhile belongs to a body: a link, or what moves by itself, as a slider's box does."""
+        first = len(self.marks)
+        yield
+        self.parts.append((name, slice(first, len(self.marks))))
+
+    def text(
+        self, at: complex, text: script.Words, size: float, *, colour: str = DARK, weight: str = "normal",
+        ha: Align = "left", style: str = "normal", turn: float = 0.0,
+    ) -> None:  # fmt: skip
+        """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
+        bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
+        one = isinstance(text, str)
+        start = complex(at) if one else at - SHARE[ha] * script.width(text, size * POINT) * along
+        for off, letters, own in script.pieces(text, size * POINT):
+            line = "".join(letter if letter.isprintable() else " " for letter in letters)
+            if line.strip():
+                align: Align = ha if one else "left"
+                self.marks.append(Text(start + off * along, line, own, colour, align, bold, italic, turn))
+        wide, high = label_extent(text, size)
+        middle = complex(at) + (0.5 - SHARE[ha]) * (wide - 0.6) * along
+        places = row(middle, along, wide, high) if turn else []
+        self.ground.boxes += [about(place, high, high) for place in places] or [about(middle, wide, high)]
+
+    def label(
+        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal"
+    ) -> None:
+        """A text beside a place (mm); where exactly is decided when all is drawn."""
+        if np.isfinite(anchor):
+            self.labels.append(Label(text, anchor, size, colour, style))
+
+    def line(
+        self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: Style = "-", z: float = 3, *,
+        blocks: bool = True, faint: bool = False,
+    ) -> None:  # fmt: skip
+        """A polyline through places (mm), of this width (points); places that are not finite interrupt it.
+
+        faint: it is interrupted where texts stand.
+        """
+        for stretch in whole_stretches(places):
+            if faint:
+                self.faint.append(len(self.marks))
+            self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
+            if faint or blocks:
+                (self.ground.faint if faint else self.ground.solid).path(stretch)
+
+    def area(
+        self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
+        blocks: bool = True,
+    ) -> None:  # fmt: skip
+        """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
+        outline = None if edge == "none" else edge
+        self.marks.append(Area(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
+        if blocks:
+            self.ground.path([*corners, corners[0]])
+
+    def circle(
+        self, at: complex, radius: float, face: str = "white", edge: str = DARK, width: float = 1.0, z: float = 6
+    ) -> None:
+        """A circle about a place (mm)."""
+        if np.isfinite(at):
+            self.marks.append(Circle(complex(at), radius, face, edge, width * POINT, self.layer, z))
+            self.ground.spot(at, radius)
+
+    def arrow(self, start: complex, end: complex, colour: str = DARK, width: float = 1.2, z: float = 5) -> None:
+        """An arrow; its head shrinks with a short shaft so that it stays an arrow."""
+        length = abs(end - start)
+        if not np.isfinite(length) or length < 0.15:
+            self.circle(end, 0.5, colour, colour, 0.3, z)
+            return
+        along = (end - start) / length
+        head = min(3.4, 0.6 * length)
+        neck = end - head * along
+        side = 1j * along * head * 0.27
+        with self.on_layer("vectors" if self.layer == "construction" else self.layer):
+            self.line([start, neck + 0.3 * head * along], colour, width, z=z)
+            self.area([end, neck + side, neck - side], colour, "none", z=z)
+
+    def note(self, text: script.Words) -> None:
+        """A line of the corner box: scale factors and remarks."""
+        self.block.notes.append(text)
+
+    def table(self, rows: Iterable[Row], numbers: int) -> None:
+        """A table under the notes; numbers: how many of its columns, the last ones, are flush right."""
+        self.block.rows, self.block.numbers = list(rows), numbers
+
+    def finish(self) -> Drawing:
+        """Put the notes into the emptiest corner, place the labels; on a large sheet, cut it out below its caption."""
+        self.corner()
+        self.settle()
+        self._interrupt()
+        if on_large_sheet():
+            longest = max(self.figure or self.paper)
+            if self.free and self.figure:
+                longest = longest_for(longest)
+            mu = None if self.free else self.mu
+            return picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
+        return Drawing.of(self.paper, self.marks)
+
+    def _interrupt(self) -> None:
+        """Leave out of faint lines what is under texts."""
+        boxes = wider(np.array(self.ground.boxes), AIR)
+        for number in reversed(self.faint):
+            mark = self.marks[number]
+            assert isinstance(mark, Line)
+            self.marks[number : number + 1] = [replace(mark, places=part) for part in outside(mark.places, boxes)]
+        self.faint.clear()
+
+    def settle(self) -> None:
+        """Place the labels that are waiting, in the field that the ground has now."""
+        for placed in place(self.ground, self.labels):
+            label = placed.label
+            self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
+            if placed.leader:
+                self.line(placed.leader, THIN, 0.5, z=1.1, faint=True)
+        self.labels.clear()
+
+    def along(self, at: complex, text: str, size: float, along: complex) -> None:
+        """A text along a unit vector, its middle at a place (mm); it is in the way of labels."""
+        turn = float(np.degrees(np.angle(along)))
+        turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
+        self.text(at, text, size, ha="center", turn=turn)
+
+    def corner(self) -> None:
+        """Put notes and table where they cover the least of the drawing."""
+        if not self.block.notes and not self.block.rows:
+            return
+        if on_large_sheet():
+            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks), fits)
+        else:
+            crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
+            shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
+        wide, high = complex(shape.size.real), 1j * shape.size.imag
+        self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
+        for start, end in shape.lines:
+            self.line([at + start, at + end], THIN, 0.5, z=8.5, blocks=False)
+        for one in shape.texts:
+            colour = GREY_TEXT if one.head else DARK
+            self.text(at + one.at, one.words, one.size, colour=colour, ha="right" if one.right else "left")
+        self.ground.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
+        self.block = Block()
+
+
+def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
+    """Stretches of a polyline between places that are not finite."""
+    array = np.asarray(places, complex)
+    finite = np.isfinite(array)
+    for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
+        found = stretch[np.isfinite(stretch)]
+        if len(found) > 1:
+            yield tuple(found.tolist())
+
+
+def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
+    """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
+    along = (end - start) / abs(end - start)
+    number = int(abs(end - start) / 2.0)
+    with sheet.on_layer("supports"):
+        for k in range(number):
+            foot = start + along * (k + 0.5) * abs(end - start) / number
+            sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
+    for depth in HATCH:
+        sheet.ground.line(start + depth * outward, end + depth * outward)
+
+
+def cells(
+    low: complex, high: complex, columns: int, rows: int, gap: float
+) -> tuple[complex, list[tuple[complex, complex]]]:
+    """Width and height of equal cells in a field, and two corners of each, row by row from above, mm."""
+    size = complex(((high - low).real + gap) / columns - gap, ((high - low).imag + gap) / rows - gap)
+    step = size + gap * (1 + 1j)
+    starts = [
+        complex(low.real + column * step.real, high.imag + gap - (row + 1) * step.imag)
+        for row in range(rows)
+        for column in range(columns)
+    ]
+    return size, [(start, start + size) for start in starts]
+
+
+def border(inner: complex, outer: complex, low: complex, high: complex) -> complex:
+    """Where the way from a place in a field to another one leaves it."""
+    way, share = outer - inner, 1.0
+    for at, step, least, most in (
+        (inner.real, way.real, low.real, high.real), (inner.imag, way.imag, low.imag, high.imag),
+    ):  # fmt: skip
+        if abs(step) > 1e-12:
+            share = min(share, ((most if step > 0 else least) - at) / step)
+    return inner + max(share, 0.0) * way
+
+
+def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
+    """μ_l = 0.005 m/mm."""
+    return Symbol("μ", symbol), f" = {numeral(mu, '.10g')} {spelt(unit)}"
+
+
+def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
+    """A title of an axis."""
+    return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
+
+
+def safe(name: str) -> str:
+    """A name that a file may have."""
+    return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

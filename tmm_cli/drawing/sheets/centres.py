@@ -1,0 +1,100 @@
+"""Instantaneous centres of a position, with the lines on which they lie in threes by Kennedy's theorem."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, Sheet, border, scale_words
+from tmm_cli.drawing.sheets.mechanism import Position, measured
+from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.kinematics.centres import Centre, Line, Links
+from tmm_cli.mechanics.numerics.vectors import dot
+from tmm_cli.reports.cycle_tables import name
+
+ROOM = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
+SPOT = 0.9  # mm: radius of a centre
+BEYOND = 1e4  # mm: beyond every sheet
+
+
+def sheets(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """A sheet a position."""
+    motion = results.motion
+    assert motion is not None
+    for k, found in (results.centres or {}).items():
+        here = Position(results, motion, k)
+        yield here.stem("centres"), _sheet(here, Scene(results.linkage, results.structure, motion.poses, k), found)
+
+
+def _sheet(here: Position, scene: Scene, found: Sequence[Centre]) -> Drawing:
+    linkage = here.results.linkage
+    places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
+    size = max(abs(p - places[0]) for p in places)
+    middle = sum(places) / len(places)
+    near = {c.links: c.place for c in found if c.place is not None and abs(c.place - middle) < ROOM * size}
+    every = to_scale(scene, [*places, *near.values()])
+    sheet = here.sheet(_("Instantaneous centres. {caption}"), every)
+    measured(sheet, scene)
+    known = {centre.links: centre for centre in found}
+    for centre in found:
+        for line in centre.lines:
+            _line(sheet, line, centre, known, near)
+    for at, links in gathered((sheet.on(place), links) for links, place in near.items()):
+        sheet.circle(at, SPOT, LOAD, LOAD, 0.3, 7)
+        sheet.label(_names(links), at, 9, LOAD)
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
+    for text in _away(found, near):
+        sheet.note(text)
+    return sheet.finish()
+
+
+def _names(links: Iterable[Links]) -> tuple[Symbol | str, ...]:
+    told: list[Symbol | str] = []
+    for pair in links:
+        told += [", "] * bool(told) + [Symbol("P", name(pair)[1:])]
+    return tuple(told)
+
+
+def _line(
+    sheet: Sheet, line: Line, centre: Centre, known: Mapping[Links, Centre], near: Mapping[Links, complex]
+) -> None:
+    """Through two centres and the one that they show, or to the border where one of them is beyond it."""
+    through = [known[links] for links in line]
+    three = (*through, centre)
+    along = _direction(through)
+    ends = [sheet.on(near[one.links]) for one in three if one.links in near]
+    if not ends:
+        return
+    first = ends[0]
+    for one in three:
+        if one.links not in near:
+            behind = one.place is not None and dot(sheet.on(one.place) - first, along) < 0
+            ends.append(border(first, first + (-BEYOND if behind else BEYOND) * along, *sheet.field))
+    low, high = (end(ends, key=lambda p: float(dot(p, along))) for end in (min, max))
+    if abs(high - low) > SPOT:
+        sheet.line([low, high], INERTIA, 0.7, "-.", 1.5, faint=True)
+
+
+def _direction(through: Sequence[Centre]) -> complex:
+    one, other = through
+    if one.place is not None and other.place is not None:
+        way = other.place - one.place
+        return way / abs(way) if way else 1 + 0j
+    return complex(one.direction or other.direction or 1)
+
+
+def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
+    """Centres that are not on the sheet."""
+    for centre in found:
+        symbol = Symbol("P", name(centre.links)[1:]).name
+        if centre.place is None and centre.direction is not None:
+            angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
+            yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
+        elif centre.place is not None and centre.links not in near:
+            yield _("{centre} is beyond the sheet: see the table").format(centre=symbol)

@@ -1,0 +1,149 @@
+"""Wittenbauer's energy-mass diagram with its two tangents: their angles, and the segment that tells the flywheel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_cli.drawing.paper.chart import PLAIN, ROW, TICKS, Across, Curve, Panel, Plot, across, chart, room, round_up
+from tmm_cli.drawing.paper.ground import Ground
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.script import Words
+from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, scale_words, with_unit
+from tmm_cli.language import _, numeral, spelt, symbol
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.quantities import INERTIA as MOMENT_OF_INERTIA
+from tmm_cli.problem.units import UnitSystem, on_paper
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.dynamics.flywheel import Tangent
+    from tmm_cli.mechanics.dynamics.steady import Running, Steady
+
+
+FAR = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet
+NARROW = 0.1  # of the largest inertia: the diagram is taken for so wide at least
+BEYOND, ON = 0.08, 0.3  # of the axis: so far it goes on beyond the diagram, and tangents beyond where they touch
+ARCS = (26.0, 16.0)  # mm: radii of the angles
+LEVEL = 6.0  # mm of the line beyond an arc from which an angle is counted
+NUMBERED = 24  # positions at most that have their numbers
+COLOURS, ANGLES, ENDS = (LOAD, INERTIA), (Symbol("ψ", "max"), Symbol("ψ", "min")), ("a", "b")
+
+
+@dataclass(frozen=True)
+class OnPaper:
+    """A tangent as it is drawn, mm and rad: where it begins on the axis of energy, where it touches, its angle."""
+
+    start: complex
+    touching: complex
+    angle: float
+
+    @classmethod
+    def of(cls, panel: Panel, tangent: Tangent, factor: float) -> OnPaper:
+        begins = complex(panel.at(panel.x.low, tangent.offset + tangent.slope * factor * panel.x.low))
+        touching = complex(panel.at(tangent.inertia / factor, tangent.energy))
+        return cls(begins, touching, math.atan(tangent.slope * factor * panel.x.mu / panel.y.mu))
+
+
+def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
+    """Work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
+    assert results.motion is not None
+    steady, units = running.steady, results.problem.units
+    factor, unit = units.factor(MOMENT_OF_INERTIA), on_paper(units.spelt(MOMENT_OF_INERTIA))
+    title = _("Energy-mass diagram with tangents of the largest and the least speed; dots: computed positions")
+    sheet = Sheet(results.problem.title, title, paper=LANDSCAPE)
+    told = sheet.ground.low + 0.5 * ROW * 1j
+    sheet.ground = Ground(sheet.ground.low + 2.4 * ROW * 1j, sheet.ground.high)
+
+    def diagram(x: Real, colour: str = DARK, *, dots: bool = False) -> Curve:
+        return Curve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
+
+    whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
+    start, longest = room(sheet)
+    axis = across(*_ends(whole.xs, _leaning(steady) / factor), start, longest)
+    words = with_unit(_("reduced inertia of the links J"), MOMENT_OF_INERTIA, units)
+    below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
+    names = _("tangent of the largest speed"), _("tangent of the least speed")
+    lines = [
+        _line(tangent, factor, (axis.low, axis.high), name, colour)
+        for tangent, name, colour in zip(steady.tangents, names, COLOURS, strict=True)
+    ]
+    work = Plot(
+        _("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
+    )  # fmt: skip
+    panel = chart(sheet, [work], Across(axis, below))[0]
+    for curve in (whole, *lines):
+        sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
+    every = max(1, round(round_up(len(here.xs) / NUMBERED, TICKS)))
+    for place, number in list(zip(panel.at(here.xs, here.ys).tolist(), results.numbers, strict=True))[::every]:
+        sheet.label(str(number), place, 8, DARK)
+    drawn = [OnPaper.of(panel, tangent, factor) for tangent in steady.tangents]
+    for one, name, end, radius, colour in zip(drawn, ANGLES, ENDS, ARCS, COLOURS, strict=True):
+        _angle(sheet, one, name, radius, colour)
+        sheet.circle(one.start, 0.6, NAMES, NAMES, 0.4, 5)
+        sheet.label(end, one.start, 9, NAMES, "italic")
+    with sheet.on_layer("dimensions"):
+        sheet.line([one.start for one in drawn], NAMES, 2.0, z=4.2)
+    sheet.text(told + ROW * 1j, _measured(drawn), PLAIN)
+    if steady.law.flywheel:
+        sheet.text(told, _flywheel(steady.law.flywheel, axis.low, units), PLAIN)
+    return sheet.finish()
+
+
+def _ends(inertia: Any, massless: float) -> tuple[float, float]:
+    """Of the axis: it begins at zero unless that is far off. massless: its end where all links are without inertia."""
+    low, high = float(np.min(inertia)), float(np.max(inertia))
+    if high <= 0.0:
+        return 0.0, massless
+    wide = max(high - low, NARROW * high)
+    step = round_up(wide / 4)
+    begins = step * math.floor((low - wide) / step) if low > FAR * wide else 0.0
+    return begins, high + BEYOND * (high - begins)
+
+
+def _leaning(steady: Steady) -> float:
+    """The inertia (kg*m^2) over which a tangent rises as much as the work changes in the cycle; 1 where it does not."""
+    fastest, slowest = steady.tangents
+    rise = abs(fastest.offset - slowest.offset)
+    return rise / fastest.slope if rise > 0.0 else 1.0
+
+
+def _line(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> Curve:
+    """From the axis of energy on."""
+    low, high = ends
+    xs = np.array([low, min(tangent.inertia / factor + ON * (high - low), high)])
+    return Curve(xs, tangent.offset + tangent.slope * factor * xs, name, colour, "--", 1.0)
+
+
+def _angle(sheet: Sheet, tangent: OnPaper, name: Symbol, radius: float, colour: str) -> None:
+    """Of a tangent with the axis of inertia, where it begins; and where it touches."""
+    sheet.line([tangent.start, tangent.start + radius + LEVEL], THIN, 0.6, z=1.4, faint=True)
+    arc = tangent.start + radius * np.exp(1j * np.linspace(0, tangent.angle, 30))
+    sheet.line(arc.tolist(), colour, 0.7, z=2.6)
+    sheet.label(name, complex(arc[15]), 9, NAMES)
+    sheet.circle(tangent.touching, 0.9, "white", colour, 0.9, 4.5)
+
+
+def _measured(drawn: list[OnPaper]) -> Words:
+    """What one would measure on the sheet."""
+    told: list[str | Symbol] = []
+    for one, name in zip(drawn, ANGLES, strict=True):
+        told += [name, f" = {numeral(math.degrees(one.angle), '.4g')}°;   "]
+    a, b = (one.start for one in drawn)
+    return (*told, f"ab = {numeral(abs(a - b), '.4g')} {spelt('mm')}")
+
+
+def _flywheel(inertia: float, begins: float, units: UnitSystem) -> Words:
+    """How its inertia follows from that. begins: the inertia at which the axis does, in the unit of the file."""
+    tan, largest, least = symbol("tan"), *ANGLES
+    found = units.from_si(inertia, MOMENT_OF_INERTIA)
+    return (
+        Lettered("J_f"), " = ab·", Symbol("μ", "J"), f"/({tan} ", largest, f" − {tan} ", least, ")",
+        f" − {numeral(begins, '.4g')}" if begins else "",
+        f" = {numeral(found, '.4g')} {on_paper(units.spelt(MOMENT_OF_INERTIA))}",
+    )  # fmt: skip

@@ -1,0 +1,140 @@
+"""Force plans: closed polygons to scale, with a table of their vectors; what would lie in one line is spread apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from tmm_cli.drawing.paper.blocks import NOTE, Block, Figure, Row, room
+from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.picture import written_here
+from tmm_cli.drawing.paper.record import POINT, Drawing
+from tmm_cli.drawing.paper.script import Words, wrapped
+from tmm_cli.drawing.paper.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
+from tmm_cli.drawing.sheets.group_loads import figure
+from tmm_cli.drawing.sheets.mechanism import Position
+from tmm_cli.language import _, numeral, spelt
+from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
+from tmm_cli.mechanics.plans.record import NamedVector, extent
+
+ABOUT, LANE = 9.0, 5.0  # mm about the lines of a plan, for letters; between vectors that would lie on one another
+SEEN = 4.0  # mm: a shorter vector has no name beside it, only in the table
+EQUATION = 120.0  # mm: lines of the equation are no longer
+NEAR = 0.01  # of a plan: lines nearer than this lie on one another
+SMALL = 0.03  # of a plan: a vector that differs from another one by less is not drawn beside it
+
+
+def forces(here: Position) -> Iterable[tuple[str, Drawing]]:
+    """A sheet for the polygon of each group and of the driving link."""
+    if here.results.reactions is None:
+        return
+    for plan in force_plans(here.results.reactions, here.k, here.motion):
+        title = _("Force plan of link {links}. {caption}")
+        if plan.driving:
+            title = _("Force plan of the driving link {links}. {caption}")
+        elif len(plan.links) > 1:
+            title = _("Force plan of links {links}. {caption}")
+        kind = "links" if len(plan.links) > 1 else "link"
+        yield safe("-".join([here.stem("forces"), kind, *plan.links])), _sheet(here, plan, title).finish()
+
+
+def _sheet(here: Position, plan: ForcePlan, title: str) -> Sheet:
+    drawn = [*plan.plan.drawn(), *told_apart(plan)]
+    aside = lanes(drawn, plan.plan.size)
+    ground = Figure()
+    ground.spots([0j], ABOUT)
+    for vector, off in zip(drawn, aside, strict=True):
+        ground.line(vector.start, vector.end, ABOUT, off)
+    equation = list(wrapped(_equation(plan), NOTE * POINT, EQUATION)) if written_here() else []
+    # how wide the table is hardly hangs on the scale
+    notes = [*equation, "μ = 0.0000 N/mm"]
+    found = room(ground, Block(notes, table(plan, plan.plan.size / 100 or 1.0), 3))
+    sheet = here.sheet(title, room=found, links=", ".join(plan.links))
+    _joints(sheet, drawn, aside)
+    for vector, off in zip(drawn, aside, strict=True):
+        _force(sheet, vector, off, full=vector in plan.full)
+    for line in equation:
+        sheet.note(line)
+    sheet.note(scale_words("F", sheet.mu, "N/mm"))
+    sheet.table(table(plan, sheet.mu), 3)
+    return sheet
+
+
+def _equation(plan: ForcePlan) -> Words:
+    """The sum of all vectors, which is nothing."""
+    symbols = [v.symbol for v in plan.plan.vectors if v.kind != "inner"]
+    return (*(part for symbol in symbols[:-1] for part in (symbol, " + ")), *symbols[-1:], " = 0")
+
+
+def told_apart(plan: ForcePlan) -> list[NamedVector]:
+    """Reactions that are seen beside their parts."""
+    least = SMALL * plan.plan.size
+    return [
+        full for full in plan.full
+        if abs(full.value) > least and all(abs(full.value - v.value) > least for v in plan.plan.vectors)
+    ]  # fmt: skip
+
+
+def table(plan: ForcePlan, mu: float) -> list[Row]:
+    """Every vector with its size, its length on paper and its direction; then reactions of which it has the parts."""
+    rows = [Row((_("vector"), spelt("N"), spelt("mm"), _("from x")), head=True)]
+    least = NO_FORCE * plan.plan.size
+    for vector in (*plan.plan.vectors, *plan.full):
+        size = abs(vector.value) if abs(vector.value) > least else 0.0
+        angle = f"{numeral(round(float(np.degrees(np.angle(vector.value))), 1) % 360, '.1f')}°" if size else ""
+        rows.append(Row((vector.symbol, figure(size), numeral(size / mu, ".1f"), angle)))
+    return rows
+
+
+def lanes(vectors: Sequence[NamedVector], size: float) -> list[complex]:
+    """How far each vector is drawn off its place (mm, across it) so that none lies on another.
+
+    Long ones of the polygon stay where they are; the others go outward.
+    """
+    middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
+    taken: dict[int, int] = {}
+    found = [0j] * len(vectors)
+    for number in sorted(range(len(vectors)), key=lambda n: (vectors[n].kind == "inner", -abs(vectors[n].value))):
+        vector = vectors[number]
+        used = {lane for other, lane in taken.items() if _cover(vector, vectors[other], size)}
+        taken[number] = next(n for n in range(len(vectors) + 1) if n not in used)
+        along = vector.value / abs(vector.value)
+        upward = along if (round(along.imag, 6), along.real) > (0, 0) else -along
+        inward = dot(-1j * upward, (vector.start + vector.end) / 2 - middle) < -NEAR * size
+        found[number] = (1j if inward else -1j) * upward * LANE * taken[number]
+    return found
+
+
+def _cover(one: NamedVector, other: NamedVector, size: float) -> bool:
+    """Whether two vectors would be seen as one line."""
+    short, long = sorted((one, other), key=lambda vector: abs(vector.value))
+    along = long.value / abs(long.value)
+    if max(abs(cross(along, p - long.start)) for p in (short.start, short.end)) > NEAR * size:
+        return False
+    low, high = sorted(float(dot(along, p - long.start)) for p in (short.start, short.end))
+    return min(high, abs(long.value)) - max(low, 0.0) > NEAR * size
+
+
+def _joints(sheet: Sheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
+    """Thin lines that join what belongs to one corner of the polygon where its vectors are spread apart."""
+    ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
+    for _at, places in gathered(ends):
+        apart = [place for place in places if abs(place - places[0]) > 0.1 * LANE]
+        for place in apart:
+            sheet.line([places[0], place], THIN, 0.5, z=2.0)
+
+
+def _force(sheet: Sheet, vector: NamedVector, off: complex, *, full: bool) -> None:
+    start, end = sheet.on(vector.start) + off, sheet.on(vector.end) + off
+    colour, length = COLOURS[vector.kind], abs(end - start)
+    if vector.kind == "inner" or full:
+        sheet.line([start, end], colour, 0.9, "-." if full else "--", 4)
+        sheet.arrow(end - min(6.0, length) * (end - start) / length, end, colour, 0.9)
+    else:
+        sheet.arrow(start, end, colour, 1.6)
+        sheet.circle(end, 0.45, DARK, DARK, 0.3, 6)
+    if length > SEEN:
+        sheet.label(vector.symbol, (start + end) / 2, 10, colour)

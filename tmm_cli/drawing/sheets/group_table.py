@@ -1,0 +1,114 @@
+"""The table of Assur groups of classes II to VI by order (Table 1 of the source of structure), as a sheet.
+
+A group is drawn alone: links as bars, or plates where they have three pairs, pairs as hinges or stones; dotted leads go
+out from the pairs by which it is joined to other links.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, Sheet, cells
+from tmm_cli.language import _
+from tmm_cli.mechanics.numerics.vectors import unit
+from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.structure.group import ROMAN
+
+COLUMNS, ROWS, GAP = 4, 3, 4.0  # cells of the sheet; mm between them
+CAPTION, LEAD, RADIUS, STONE = 11.0, 6.5, 1.1, (5.6, 3.0)  # mm: height of words below, lead, hinge, stone
+PLATE = "#e8edf2"
+
+
+@dataclass(frozen=True)
+class Example:
+    """A group of the table: points in a square of side 1, links by their points, leads by point and direction (deg).
+
+    stones: for a sliding pair its point and the direction of its guide (deg).
+    """
+
+    group_class: int
+    order: int
+    name: str
+    points: Mapping[str, complex]
+    links: tuple[str, ...]
+    leads: Mapping[str, float]
+    stones: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def pairs(self) -> list[tuple[str, tuple[str, ...]]]:
+        """Each pair by its point, with the links that it joins; a lead joins one."""
+        return [(point, tuple(link for link in self.links if point in link)) for point in self.points]
+
+
+def _dyad(name: str, stones: Mapping[str, float]) -> Example:
+    points = {"A": 0.12 + 0.25j, "B": 0.5 + 0.8j, "C": 0.88 + 0.25j}
+    return Example(2, 2, name, points, ("AB", "BC"), {"A": 250, "C": 290}, stones)
+
+
+EXAMPLES: tuple[Example, ...] = (
+    _dyad("RRR", {}),
+    _dyad("RRP", {"C": 0}),
+    _dyad("RPR", {"B": 55}),
+    _dyad("PRP", {"A": 0, "C": 0}),
+    _dyad("RPP", {"B": 55, "C": 0}),
+    Example(3, 3, "", {"P": 0.35 + 0.45j, "Q": 0.65 + 0.45j, "R": 0.5 + 0.7j, "A": 0.1 + 0.15j, "B": 0.9 + 0.15j,
+                       "C": 0.5 + 1.0j}, ("PQR", "PA", "QB", "RC"), {"A": 225, "B": 315, "C": 90}),
+    Example(3, 4, "", {"M": 0.5 + 0.55j, "P": 0.3 + 0.75j, "Q": 0.3 + 0.4j, "R": 0.7 + 0.75j, "S": 0.7 + 0.4j,
+                       "A": 0.05 + 0.95j, "B": 0.05 + 0.15j, "C": 0.95 + 0.95j, "D": 0.95 + 0.15j},
+            ("MPQ", "MRS", "PA", "QB", "RC", "SD"), {"A": 135, "B": 225, "C": 45, "D": 315}),
+    Example(4, 2, "", {"P": 0.3 + 0.75j, "Q": 0.3 + 0.3j, "R": 0.7 + 0.75j, "S": 0.7 + 0.3j, "A": 0.05 + 0.5j,
+                       "B": 0.95 + 0.5j}, ("PQA", "RSB", "PR", "QS"), {"A": 200, "B": 340}),
+    Example(4, 3, "", {"P": 0.3 + 0.75j, "Q": 0.3 + 0.35j, "R": 0.7 + 0.75j, "S": 0.7 + 0.35j, "T": 0.5 + 0.12j,
+                       "A": 0.03 + 0.55j, "B": 0.97 + 0.55j, "U": 0.1 + 0.95j, "V": 0.9 + 0.95j}, (
+            "PQA", "RSB", "PR", "QST", "AU", "BV"), {"U": 120, "V": 60, "T": 270}),
+    Example(5, 3, "", {"P": 0.5 + 0.9j, "Q": 0.2 + 0.65j, "R": 0.32 + 0.3j, "S": 0.68 + 0.3j, "T": 0.8 + 0.65j,
+                       "A": 0.12 + 0.95j, "B": 0.5 + 0.08j, "C": 0.98 + 0.4j, "D": 0.98 + 0.05j},
+            ("PQA", "QR", "RSB", "STC", "TP", "CD"), {"A": 110, "B": 270, "D": 300}),
+    Example(6, 3, "", {"P": 0.35 + 0.9j, "Q": 0.15 + 0.55j, "R": 0.35 + 0.2j, "S": 0.65 + 0.2j, "T": 0.85 + 0.55j,
+                       "U": 0.65 + 0.9j, "A": 0.05 + 0.9j, "B": 0.5 + 0.02j, "C": 0.95 + 0.9j},
+            ("PQA", "QR", "RSB", "ST", "TUC", "UP"), {"A": 120, "B": 270, "C": 60}),
+)  # fmt: skip
+
+
+def sheets() -> Iterator[tuple[str, Drawing]]:
+    """The sheet, by the name of its file."""
+    sheet = Sheet(_("Assur groups of classes II to VI"), _("By class and order; leads are dotted"), paper=LANDSCAPE)
+    size, places = cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, GAP)
+    for example, (low, high) in zip(EXAMPLES, places, strict=False):
+        side = min(size.real, size.imag - CAPTION) - 2 * LEAD
+        middle = (low + high + 1j * CAPTION) / 2
+        _draw(sheet, example, middle - side * (0.5 + 0.5j), side)
+        words = _("class {number}, order {order}").format(number=ROMAN[example.group_class], order=example.order)
+        at = complex((low + high).real / 2, low.imag + 2)
+        sheet.text(at, f"{words}: {example.name}" if example.name else words, 9, colour=GREY_TEXT, ha="center")
+    yield "assur-groups", sheet.finish()
+
+
+def _draw(sheet: Sheet, example: Example, corner: complex, side: float) -> None:
+    at = {name: corner + side * point for name, point in example.points.items()}
+    for name, turn in example.leads.items():
+        way = _unit(turn)
+        sheet.line([at[name], at[name] + LEAD * way], DARK, 0.8, ":")
+    with sheet.on_layer("links"):
+        for link in example.links:
+            corners = [at[point] for point in link]
+            if len(link) > 2:
+                sheet.area(corners, PLATE, DARK, 1.0, 2)
+            else:
+                sheet.line(corners, DARK, 1.6)
+        for name, place in at.items():
+            if name in example.stones:
+                along = _unit(example.stones[name])
+                length, height = (part / 2 * way for part, way in zip(STONE, (along, 1j * along), strict=True))
+                sheet.area([place + length + height, place - length + height, place - length - height,
+                            place + length - height], "white", DARK, 1.0, 5)  # fmt: skip
+                sheet.line([place - 2 * length, place + 2 * length], DARK, 0.6, "-.")
+            else:
+                sheet.circle(place, RADIUS, "white", DARK, 1.0)
+
+
+def _unit(degrees: float) -> complex:
+    return complex(unit(math.radians(degrees)))

@@ -1,0 +1,54 @@
+"""Intermittent motion of wheels over a cycle of the driver, or over those of all settings: level where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.drawing.paper.chart import Across, across, chart, room
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import Sheet, safe, scale_words, with_unit
+from tmm_cli.drawing.sheets.diagrams import plotted
+from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.intermittent import Intermittent
+
+
+def intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """A sheet a wheel: its angle and its angular speed over the driver's way."""
+    for wheel in results.wheels or ():
+        yield f"intermittent-{safe(wheel.task.name)}", _sheet(results, wheel)
+
+
+def _sheet(results: Results, wheel: Intermittent) -> Drawing:
+    crank, units = results.linkage.driver.kind == "turn", results.problem.units
+    factor = np.pi / 180 if crank else units.factor(LENGTH)
+    caption = _("Intermittent motion over a cycle: {name}").format(name=wheel.task.name)
+    sheet = Sheet(results.problem.title, caption)
+    axis = across(0.0, wheel.way / factor, *room(sheet), degrees=crank)
+    if crank:
+        words = (f"{_('turn of the crank, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
+    else:
+        told = with_unit(_("way of the driver there and back"), LENGTH, units)
+        words = (f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm"))
+    ways, angles, omegas = (
+        np.concatenate([getattr(part, name) for part in wheel.parts]) for name in ("ways", "angles", "omegas")
+    )
+    borders = (np.cumsum([len(part.ways) for part in wheel.parts])[:-1] - 1).tolist()
+    every = [
+        Quantities(_("angle of the wheel"), ANGLE, [Course("", angles, np.nan)]),
+        Quantities(_("angular speed of the wheel"), ANGULAR_SPEED, [Course("", omegas, np.nan)]),
+    ]
+    spans = [
+        (part.ways[0] / factor, part.ways[-1] / factor, _("driven") if part.ride.driven else _("stands"))
+        for part in wheel.parts
+    ]
+    plots = [plotted(one, units, ways / factor, np.zeros(0), borders) for one in every]
+    chart(sheet, plots, Across(axis, words, spans=spans))
+    return sheet.finish()

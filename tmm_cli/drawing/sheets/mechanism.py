@@ -1,0 +1,180 @@
+"""A position in detail with its loads; what drawings of a mechanism share: symbols with names, thin lines, paths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.drawing.paper.blocks import Block, Figure, Room, room
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import DARK, GREY, NAMES, THIN, Sheet, scale_words
+from tmm_cli.drawing.sheets.acting import LOAD_MM, Forces
+from tmm_cli.drawing.symbols.forms import by_points
+from tmm_cli.drawing.symbols.parts import MEASURED, mass_centre
+from tmm_cli.drawing.symbols.render import Rendered, render, slider
+from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.drawing.symbols.wheel_symbols import draw as draw_wheels
+from tmm_cli.language import _, numeral, typeset
+from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.forces.free_bodies import Loaded
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.numerics.vectors import Vector, dot
+from tmm_cli.mechanics.plans.motion import massive
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+from tmm_cli.mechanics.structure.cycle import DENSE
+
+ABOUT = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
+ONE_LINE = 0.1  # mm between lines that look like one
+DECIMALS = 2  # of the place of the driver, in the unit of the file
+
+
+@dataclass(frozen=True)
+class Position:
+    """A computed position by its index, and what its sheets are called."""
+
+    results: Results
+    motion: Motion
+    k: int
+
+    def stem(self, name: str) -> str:
+        """velocity-03."""
+        return f"{name}-{self.results.numbers[self.k]:02d}"
+
+    def sheet(self, title: str, places: Iterable[complex] = (), room: Room | None = None, **words: str) -> Sheet:
+        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
+        subject = title.format(caption=self.caption, **words)
+        return Sheet(self.results.problem.title, subject, places, room=room)
+
+    @property
+    def caption(self) -> str:
+        """Which position it is and where the driver stands."""
+        place = place_of_driver(self.results, float(self.motion.q[self.k]))
+        return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
+
+
+def place_of_driver(results: Results, q: float, digits: int = 6) -> str:
+    """In words."""
+    crank, units = results.linkage.driver.kind == "turn", results.problem.units
+    measure = ANGLE if crank else LENGTH
+    value = round(units.from_si(q % (2 * np.pi) if crank else q, measure), DECIMALS)
+    place = typeset(f"{numeral(value, f'.{digits}g')} {units.spelt(measure)}")
+    return (_("crank at {place}") if crank else _("driver at {place}")).format(place=place)
+
+
+def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = ()) -> Rendered:
+    """One position to scale with its symbols, names of points and centres of mass, numbers of links.
+
+    mark: of the position, after the names of moving points. links: only these, without what they are joined to.
+    """
+    linkage = scene.linkage
+    moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK)
+    apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
+    inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
+    drawn = render(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
+    for pair in apart:
+        if not pair.lower:
+            draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
+        elif pair.slide is not None and pair.slide.runner in links:
+            slider(sheet, drawn.scene, pair, MEASURED, DARK)
+    names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
+    for link in shown:
+        own, centre = linkage.links[link], f"S{link}"
+        if np.any(own.mass != 0):
+            at = sheet.on(scene.place(link, complex(own.centre)))
+            point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
+            if point is None:
+                mass_centre(sheet, at)
+                belongs(sheet, scene, link, at)
+            if centre in names:
+                continue
+            if point is None:
+                sheet.label(centre, at, 8, "#6b5310")
+            else:
+                names[point].append(centre)
+    for name, called in names.items():
+        at = sheet.on(scene.point(name))
+        hinged = any(abs(at - sheet.on(scene.point(hinge.point))) <= MEASURED.hinge for hinge in linkage.hinges)
+        if not hinged:  # a dot in a circle would look like two pairs
+            sheet.circle(at, 0.6, face=DARK)
+        sheet.label(", ".join(called), at, 10)
+    for link, form in drawn.forms.items():
+        sheet.label(link, form.middle, 10, NAMES, "italic")
+    return drawn
+
+
+def belongs(sheet: Sheet, scene: Scene, link: str, at: complex) -> None:
+    """A thin line from a link of one point to a place (mm) that belongs to it too."""
+    if len(scene.linkage.links[link].points) == 1:
+        (point,) = scene.linkage.links[link].points
+        sheet.line([sheet.on(scene.point(point)), at], THIN, 0.9, z=2.1)
+
+
+def skeleton(sheet: Sheet, scene: Scene, colour: str = GREY, width: float = 0.7, z: float = 1.0) -> None:
+    """One position as thin lines."""
+    for link in scene.linkage.moving:
+        for edge in by_points(sheet, scene, link, whole=False).edges:
+            sheet.line(edge, colour, width, z=z, faint=True)
+
+
+def paths(results: Results) -> list[Vector]:
+    """Paths of all moving points over the cycle, and of centres of mass that are none of them, m."""
+    linkage, whole = results.linkage, at_positions(results, results.closely(DENSE), 0)
+    found = [whole.spot(name) for name in linkage.moving_points]
+    for link in massive(linkage):
+        own = linkage.links[link]
+        if all(abs(complex(own.centre) - local) > 0 for local in own.points.values()):
+            found.append(whole.poses[link].at(complex(own.centre)))
+    return found
+
+
+def trace(sheet: Sheet, found: Iterable[Vector]) -> None:
+    """Paths (m) as dashed lines, once only where a point comes back on the way on which it went."""
+    for path in found:
+        sheet.line(once(sheet.origin + path / sheet.mu), THIN, 0.7, "--", 1.5, faint=True)
+
+
+def once(path: Vector) -> list[complex]:
+    """A path (mm) that is interrupted where it leads back over itself."""
+    steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
+    off = middles[:, None] - path[None, :-1]
+    size = np.maximum(np.abs(steps), 1e-12)
+    share = np.clip(dot(steps[None, :], off) / size**2, 0, 1)
+    near = np.abs(off - share * steps[None, :]) < ONE_LINE
+    back = near & (dot(steps[:, None], steps[None, :]) < 0) & np.tri(len(steps), k=-1, dtype=bool)
+    return [path[0], *np.where(back.any(axis=1), np.nan, path[1:]).tolist()]
+
+
+def detailed(results: Results) -> list[Position]:
+    """The positions in detail that could be computed."""
+    motion = results.motion
+    assert motion is not None
+    return [Position(results, motion, k) for k in in_detail(results)]
+
+
+def position(here: Position) -> Iterable[tuple[str, Drawing]]:
+    """The position with weights, inertia forces and couples, loads, and what balances the crank."""
+    results, motion, k = here.results, here.motion, here.k
+    linkage, reactions = results.linkage, results.reactions
+    scene = Scene(linkage, results.structure, motion.poses, k)
+    given = () if reactions is None else Loaded.at(motion, reactions, k).given()
+    places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
+    places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
+    figure, notes = Figure(), [_("loads without scale")] if reactions is not None else []
+    figure.spots(to_scale(scene, [*places, *(one.at for one in given)]), ABOUT)
+    for one in given:
+        if not one.couple:
+            figure.spots([one.at], ABOUT / 2, LOAD_MM * one.force / abs(one.force))
+    found = room(figure, Block([*notes, scale_words("l", 0.0025, "m/mm")]))
+    sheet = here.sheet("{caption}", room=found)
+    measured(sheet, scene)
+    for one in given:
+        if one.kind == "load" and not one.couple:
+            belongs(sheet, scene, one.link, sheet.on(one.at))
+    Forces(sheet, whole=True).draw(given)
+    for note in notes:
+        sheet.note(note)
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
+    yield here.stem("position"), sheet.finish()

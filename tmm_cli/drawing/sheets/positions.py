@@ -1,0 +1,361 @@
+"""Along what the positions of a mechanism are numbered: the way of its output, and that of its driver."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.drawing.paper.blocks import Block, Figure, room
+from tmm_cli.drawing.paper.dimensions import (
+    Number,
+    Ruler,
+    angle_mark,
+    dimension,
+    draw_ruler,
+    gathered,
+    reach,
+    roomiest,
+    ruler_of,
+)
+from tmm_cli.drawing.paper.labels import gathered as in_place
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
+from tmm_cli.drawing.sheets.lengths import lengths
+from tmm_cli.drawing.sheets.mechanism import detailed, measured, paths, skeleton, trace
+from tmm_cli.drawing.symbols.parts import MEASURED
+from tmm_cli.drawing.symbols.render import arrows
+from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.forces.free_bodies import subscript
+from tmm_cli.mechanics.groups.sequence import LinkStates
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
+from tmm_cli.mechanics.numerics.vectors import Vector, unit
+from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """An end of the output's way: the driver's place (rad or m), and its mark, a number where it is a position."""
+
+    q: float
+    mark: str
+
+
+@dataclass(frozen=True)
+class Track:
+    """The way of a point of the output: along a line, about a pivot, or any.
+
+    line, pivot: direction and place of it, of the two kinds that have one (m).
+    """
+
+    kind: Literal["line", "arc", "any"]
+    link: str
+    local: complex
+    line: complex = 1.0
+    pivot: complex = 0j
+
+    def places(self, states: LinkStates) -> Vector:
+        """Of the point in these positions, m."""
+        return states.poses[self.link].at(self.local)
+
+
+def extremes(results: Results) -> list[Extreme]:
+    """Ends of the strokes in order, or of what is asked for where the driver does not turn fully."""
+    strokes, travels = results.strokes, results.travels
+    if strokes is not None and strokes.strokes:
+        cycle, ends = strokes.cycle, [stroke.start for stroke in strokes.strokes]
+        last = strokes.strokes[-1]
+        if len(ends) == 1:
+            ends.append(last.start + results.linkage.driver.sense * last.length)
+    elif travels and travels[0].high - travels[0].low > SAME_PLACE:
+        cycle, ends = np.inf, [travels[0].low_at, travels[0].high_at]
+    else:
+        return []
+    found: list[Extreme] = []
+    asked = results.asked[list(results.numbers)]
+    for q in ends:
+        off = np.abs(asked - q) if np.isinf(cycle) else np.abs((asked - q + cycle / 2) % cycle - cycle / 2)
+        here = int(np.argmin(off))
+        found.append(Extreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else ""))
+    between = [extreme for extreme in found if not extreme.mark]
+    for number, extreme in enumerate(between, 1):
+        mark = "k" + ("" if len(between) == 1 else "′" * (number - 1) if len(between) == 2 else subscript(str(number)))
+        found[found.index(extreme)] = Extreme(extreme.q, mark)
+    return found
+
+
+def travel(results: Results) -> float:
+    """The stroke (m) or the swing (rad) of the main output between its ends."""
+    strokes, travels = results.strokes, results.travels
+    if strokes is not None and strokes.strokes:
+        return strokes.travel
+    return abs(travels[0].high - travels[0].low) if travels else 0.0
+
+
+def output_track(results: Results) -> Track | None:
+    """Of the main output; None where there is none."""
+    linkage, link = results.linkage, results.mechanism.output
+    if link is None:
+        return None
+    point = linkage.output_point(link)
+    if point is not None:
+        return Track("any", linkage.owner(point), linkage.local(linkage.owner(point), point))
+    slide = linkage.output_guide(link)
+    if slide is None:
+        return swinging(linkage, link)
+    runs = linkage.slides_on_frame(link)
+    if slide.runner == FRAME:  # the guide moves
+        return Track("any", link, 0j)
+    return Track("line" if runs else "any", link, slide.at, line=complex(unit(slide.direction)))
+
+
+def swinging(linkage: Linkage, link: str) -> Track:
+    """Of the point of a link that is farthest from its pivot on the frame, or of its first one where it has none."""
+    points = linkage.links[link].points
+    pivot = next((p for p in points if p in linkage.links[FRAME].points and linkage.hinged_to_frame(link)), None)
+    if pivot is None or len(points) < 2:
+        return Track("any", link, next(iter(points.values()), 0j))
+    own = points[pivot]
+    end = max(points.values(), key=lambda local: abs(local - own))
+    return Track("arc", link, end, pivot=linkage.local(FRAME, pivot))
+
+
+def driver_track(results: Results) -> Track | None:
+    """Of the end of the crank, or of the driven slider; None of a wheel without a point."""
+    linkage, driver = results.linkage, results.linkage.driver
+    if driver.kind == "turn":
+        ends = [local for name, local in linkage.links[driver.link].points.items() if name != driver.joint]
+        return Track("any", driver.link, ends[0]) if ends else None
+    slide = linkage.slide(driver.joint)
+    if driver.base == FRAME and slide.runner == driver.link:
+        return Track("line", driver.link, slide.at, line=complex(unit(slide.direction)))
+    return Track("any", driver.link, slide.at)
+
+
+def extreme_states(results: Results, found: list[Extreme]) -> LinkStates:
+    """The mechanism at the ends of the output's way."""
+    return at_positions(results, np.array([extreme.q for extreme in found]), 0)
+
+
+# The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths.
+
+
+SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
+OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
+STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
+DIMENSION = 13.0  # mm beside a ruler for the stroke
+BEYOND, SHORT = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
+EXTREME = "#6a6a6a"
+BOLD = 4  # how much more a link in full is in the way than a thin one
+BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
+NEAR, FULL, PIVOT, GUIDE = 3.0, 8.0, 11.0, 13.0  # mm about thin lines, what is drawn in full, pivots, sliders
+RIM = 10.0  # mm about the pitch line of a wheel, for a hatched rim
+
+
+@dataclass(frozen=True)
+class PositionMark:
+    """Where a position is on a track (m), and what it is called; end: of the output's way; working: its stroke."""
+
+    place: complex
+    text: str
+    end: bool
+    working: bool
+
+
+@dataclass(frozen=True)
+class View:
+    """What is on the sheet: the motion with one position in full, the ends of the output's way."""
+
+    results: Results
+    motion: Motion
+    scene: Scene
+    ends: list[Extreme]
+    states: LinkStates | None
+
+    def lines(self, k: int) -> Vector:
+        """Points (m) that stand for the links in a position."""
+        scene, found = replace(self.scene, k=k), []
+        for link in self.results.linkage.moving:
+            places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
+            found += [place + (places[n - 1] - place) * BETWEEN for n, place in enumerate(places)]
+        return np.concatenate(found)
+
+    @property
+    def shown(self) -> list[int]:
+        """Positions drawn thin."""
+        step = max(1, len(self.results.numbers) // SHOWN)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    @property
+    def numbered(self) -> list[int]:
+        """Positions with numbers."""
+        step = math.ceil(len(self.results.numbers) / NUMBERED)
+        return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
+
+    def marks(self, track: Track) -> list[PositionMark]:
+        """Numbers and letters of positions along a track, ends of the output's way among them."""
+        named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
+        working = np.ones(len(places), bool)
+        if strokes is not None and strokes.strokes:
+            working = strokes.share(self.motion.q, self.results.linkage.driver.sense)
+        found = [
+            PositionMark(complex(places[k]), text, text in named, bool(working[k]))
+            for k in self.numbered
+            for text in [str(self.results.numbers[k])]
+        ]
+        if self.states is not None:
+            there = [mark.text for mark in found]
+            ends = zip(track.places(self.states), named, strict=True)
+            found += [PositionMark(complex(place), mark, True, True) for place, mark in ends if mark not in there]
+        return found
+
+
+def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers, stroke, lengths."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    chosen = detailed(results)
+    k = chosen[0].k if chosen else int(np.argmax(motion.placed))
+    ends = extremes(results)
+    states = extreme_states(results, ends) if ends else None
+    view = View(results, motion, Scene(linkage, results.structure, motion.poses, k), ends, states)
+    whole, track = paths(results), output_track(results)
+    marks = view.marks(track) if track is not None else []
+    ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
+    notes, rows = list(_notes(view, track, marks)), lengths(results)
+    figure = _figure(view, whole)
+    off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
+    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
+    caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
+    sheet = Sheet(results.problem.title, caption, room=found)
+    trace(sheet, whole)
+    for other in view.shown:
+        if other != k:
+            skeleton(sheet, replace(view.scene, k=other))
+    if states is not None:
+        for other in range(len(ends)):
+            skeleton(sheet, replace(view.scene, poses=states.poses, k=other), EXTREME, 0.9, 1.1)
+    if motion.placed[k]:
+        arrows(sheet, view.scene, measured(sheet, view.scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
+    driver = driver_track(results)
+    if driver is not None:
+        _spots(sheet, view.marks(driver))
+    if track is not None and ruled:
+        _output(sheet, view, track, marks, off)
+    elif track is not None and track != driver:
+        _spots(sheet, marks)
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
+    for note in notes:
+        sheet.note(note)
+    sheet.table(rows, 1)
+    yield "mechanism", sheet.finish()
+
+
+def ratio(mu: float) -> str:
+    """A scale factor (m/mm) as the scale of a drawing, 1:4."""
+    return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
+
+
+def _figure(view: View, whole: list[Vector]) -> Figure:
+    """Everything but the numbers of the output, with the room that it needs."""
+    figure, pivots = Figure(), fixed_pivots(view.results.linkage)
+    used = [*pivots, *(place for path in whole for place in path.tolist())]
+    figure.spots(pivots, PIVOT)
+    figure.spots(used, NEAR)
+    figure.spots(to_scale(view.scene, used)[len(used) :], RIM)
+    for k in view.shown:
+        figure.spots(view.lines(k), FULL if k == view.scene.k else NEAR)
+    sliding = [pair for pair in view.scene.structure.pairs if pair.slide is not None]
+    figure.spots([view.scene.at(pair) for pair in sliding], GUIDE)
+    crank = driver_track(view.results)
+    if crank is not None:
+        figure.spots([mark.place for mark in view.marks(crank)], FULL)
+    return figure
+
+
+def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> float:
+    """Room for the scale of the output and for its stroke beyond it; how far off the way it is, whatever the scale."""
+    mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
+    plain, numbers = _numbers(track, marks, lambda place: place / mu)
+    bold = [view.lines(view.scene.k)] * BOLD
+    lines = np.concatenate([*(view.lines(k) for k in view.shown), *bold]) / mu
+    ruler = roomiest(plain, numbers, lines)
+    low, high = min(number.run for number in numbers), max(number.run for number in numbers)
+    more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
+    for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
+        way = ruler.way(min(max(run, low), high))
+        for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
+            figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
+    return ruler.off
+
+
+def _numbers(track: Track, marks: list[PositionMark], on: Callable[[complex], complex]) -> tuple[Ruler, list[Number]]:
+    """A scale along the way of the output, and its numbers."""
+    pivot = on(track.pivot) if track.kind == "arc" else None
+    plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
+    numbers = gathered([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
+    return plain, numbers
+
+
+def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], off: float) -> None:
+    """Numbers of positions along the way of the output, so far off it, and its stroke or swing."""
+    plain, numbers = _numbers(track, marks, sheet.on)
+    ruler = replace(plain, off=off)
+    draw_ruler(sheet, ruler, numbers)
+    if view.states is None:
+        return
+    first, last = _farthest(track.places(view.states))
+    with sheet.on_layer("dimensions"):
+        if track.kind == "line":
+            ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
+            dimension(sheet, ends[0], ends[1], _size(view))
+        elif travel(view.results) < STRAIGHT:
+            angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)
+
+
+def _size(view: View) -> str:
+    """The stroke H, or the swing ψ."""
+    results, units = view.results, view.results.problem.units
+    turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
+    measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
+    return f"{letter} = {numeral(units.from_si(travel(results), measure), '.4g')} {units.spelt(measure)}"
+
+
+def _farthest(places: Vector) -> tuple[complex, complex]:
+    """The two ends that are farthest from one another."""
+    found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
+    return max(found, key=lambda ends: abs(ends[0] - ends[1]))
+
+
+def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
+    """Numbers of positions beside the places of a point, outside its way."""
+    finite = [mark for mark in marks if np.isfinite(mark.place)]
+    if not finite:
+        return
+    middle = sheet.on(sum(mark.place for mark in finite) / len(finite))
+    # in a cycle of several turns the crank comes back to its places
+    for at, here in in_place((sheet.on(mark.place), mark) for mark in finite):
+        out = at - middle
+        end = any(mark.end for mark in here)
+        sheet.circle(at, 0.7 if end else 0.5, DARK, DARK, 0.3, 5)
+        text = ", ".join(mark.text for mark in here)
+        sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
+
+
+def _notes(view: View, track: Track | None, marks: list[PositionMark]) -> Iterable[str]:
+    """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
+    yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
+    if view.ends:
+        yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
+        if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
+            yield _size(view)
+        if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
+            yield _("outer numbers: working stroke")

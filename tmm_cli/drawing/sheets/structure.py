@@ -1,0 +1,412 @@
+"""The Assur groups apart: each alone at its pose, its leads free, with its class, order and type; and the driver."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tmm_cli.drawing.paper.blocks import snug
+from tmm_cli.drawing.paper.ground import Ground
+from tmm_cli.drawing.paper.labels import extent
+from tmm_cli.drawing.paper.picture import on_large_sheet
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, cells, safe
+from tmm_cli.drawing.sheets.mechanism import place_of_driver
+from tmm_cli.drawing.symbols.forms import Form
+from tmm_cli.drawing.symbols.parts import FREE, PALETTE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
+from tmm_cli.drawing.symbols.render import arrows, names, render, spot
+from tmm_cli.drawing.symbols.scene import BEYOND, Scene, fitted, scale_to
+from tmm_cli.drawing.symbols.wheel_symbols import draw
+from tmm_cli.drawing.symbols.wheels import outline, replacement
+from tmm_cli.language import _, printed, typeset
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Group, Pair, RedundantLink
+from tmm_cli.reports.structure_tables import ROLES, counted_mobility, left_out
+
+PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
+LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link
+WIDEST = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
+ROW = 5.4  # mm of a line of the legend
+JOINT = 0.9  # mm: pairs of a link in place of a higher pair
+PLACES, MANY = 47, 40  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
+HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
+
+
+@dataclass(frozen=True)
+class Part:
+    """A driver on the frame (no group), an Assur group, or a redundant link; with its colour."""
+
+    title: str
+    links: tuple[str, ...]
+    colour: str
+    group: Group | None = None
+    redundant: RedundantLink | None = None
+
+
+def parts(structure: Structure) -> tuple[Part, ...]:
+    """The primary mechanisms and the groups, in solving order; then the redundant links."""
+    cranks = [driver for driver in structure.drivers if driver.base == FRAME]
+    every: list[tuple[str, tuple[str, ...], Group | None]] = [
+        *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
+        *((group.title, group.links, group) for group in structure.groups),
+    ]
+    coloured = [Part(title, links, PALETTE[n % len(PALETTE)], g) for n, (title, links, g) in enumerate(every)]
+    redundant = [Part(", ".join(r.links), r.links, FREE, redundant=r) for r in structure.reduction.links]
+    return tuple(coloured + redundant)
+
+
+def colours(structure: Structure) -> dict[str, str]:
+    """The colour of every link, by solving order; the frame, and what is rigid to it, is dark."""
+    of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK)
+    return of_frame | {link: part.colour for part in parts(structure) for link in part.links}
+
+
+def at_sketch(results: Results) -> tuple[str, Scene] | None:
+    """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
+
+    None when the linkage cannot be assembled at the sketch.
+    """
+    linkage, structure = results.linkage, results.structure
+    driver_range = results.driver_range
+    if driver_range is None:
+        return None
+    others = PLACES if len(structure.pairs) <= MANY else 0
+    places = np.linspace(driver_range.start, driver_range.end, others + 2)
+    motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
+    if not bool(motion.placed[0]):
+        return None
+    scenes = [Scene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
+    clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
+    best = int(np.argmax(clear))
+    k = best if clear[0] < HIDDEN and clear[best] > 2 * clear[0] else 0
+    return place_of_driver(results, float(motion.q[k])), scenes[k]
+
+
+def _clearness(scenes: Sequence[Scene]) -> Real:
+    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
+
+    Pairs that always coincide do not count.
+    """
+    moving, every = scenes[0].structure.links, scenes[0].structure.pairs
+    # a guide on the frame may be drawn anywhere along itself
+    pairs = [p for p in every if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
+    spots = np.array([[s.at(p) for p in pairs] for s in scenes])
+    spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
+    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines], complex)
+    bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
+    start, span = bars[..., 0], bars[..., 1] - bars[..., 0]
+    share = np.clip(dot(span, spots[:, :, None] - start) / np.maximum(np.abs(span) ** 2, 1e-300), 0, 1)
+    others = np.concatenate([np.broadcast_to(spots[:, None], (*spots.shape, len(pairs))), start + share * span], axis=2)
+    gaps = np.abs(others - spots[:, :, None]).reshape(len(scenes), -1)
+    size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
+    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
+    return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
+
+
+def whole_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
+    """The sheet of the scheme at the sketch; none when the linkage cannot be assembled there."""
+    found = at_sketch(results)
+    if found is not None:
+        yield "structure", scheme(results.problem.title, *found).finish()
+
+
+def scheme(title: str, place: str, scene: Scene) -> Sheet:
+    """The whole mechanism with its legend below; labels are placed."""
+    legend = Legend(scene.structure)
+    links, pairs, hue = scene.structure.links, scene.structure.pairs, colours(scene.structure)
+    places, most = scene.extent(links), LEAST + A_LINK * len(links)
+
+    def scale(paper: tuple[float, float]) -> float:
+        low, high = ground_of(paper)
+        return scale_to(places, high - low - 2 * PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
+
+    subject = _("Structural scheme, {place} (not to scale)").format(place=place)
+    if on_large_sheet():
+        most = math.inf
+        sheet = Sheet(title, subject, room=snug(places, PAD, WIDEST, legend.height))
+    else:
+        # upright only where the mechanism becomes much larger
+        paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
+        sheet = Sheet(title, subject, paper=paper)
+    sheet.ground.low += 1j * legend.height(sheet.paper[0])
+    scene = fitted(sheet, scene, links, PAD, most)
+    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
+    drawn = render(sheet, scene, links, pairs, look, hue)
+    arrows(sheet, scene, drawn, look, hue)
+    _replacements(sheet, scene)
+    numbers(sheet, drawn.forms, hue)
+    names(sheet, [(spot(sheet, scene, p, look), p.name, DARK) for p in pairs])
+    sheet.settle()
+    legend.draw(sheet)
+    return sheet
+
+
+def _replacements(sheet: Sheet, scene: Scene) -> None:
+    """The links in place of higher pairs, dashed: with a turning pair at an end, or a stone on a straight profile."""
+    with sheet.on_layer("links"):
+        for mesh in scene.linkage.meshes:
+            link = replacement(outline(scene, mesh))
+            start, end = sheet.on(link.start), sheet.on(link.end)
+            sheet.line([start, end], DARK, 0.9, "--", 6)
+            sheet.circle(start, JOINT, "white", DARK, 0.7)
+            if link.slides:
+                along = (end - start) / (abs(end - start) or 1.0)
+                corners = [end + JOINT * along * way for way in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)]
+                sheet.area(corners, "white", DARK, 0.7, 7)
+            else:
+                sheet.circle(end, JOINT, "white", DARK, 0.7)
+
+
+class Legend:
+    """The band below the scheme: colours of the parts on the left; formula, mobility and class on the right."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure, self.parts = structure, parts(structure)
+        lower = sum(p.lower for p in structure.pairs)
+        n, higher = len(structure.links), len(structure.pairs) - lower
+        self.facts = [
+            _("Formula of structure: {formula}").format(formula=structure.formula.replace("->", "→")),
+            _("n = {n} moving links, p₁ = {p1} lower pairs ({r} turning, {p} sliding), p₂ = {p2} higher pairs").format(
+                n=n, p1=lower, r=sum(p.kind == "R" for p in structure.pairs),
+                p=sum(p.kind == "P" for p in structure.pairs), p2=higher),
+            _("W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}").format(n=n, p1=lower, p2=higher, w=structure.mobility),
+            _("Mechanism of class {roman}").format(roman=structure.roman),
+        ]  # fmt: skip
+        if structure.reduction:
+            formula = _("W of the formula of structure: {count}").format(
+                count=typeset(counted_mobility(structure.count))
+            )
+            self.facts[1:1] = [*left_out(structure), formula]
+        points = [p.point for p in structure.pairs if p.kind == "R"]
+        inner = [d for d in structure.drivers if d.base != FRAME]
+        if inner:
+            drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in inner)
+            self.facts.append(_("Drivers between links of groups: {drivers}").format(drivers=drivers))
+        if higher:
+            self.facts.append(_("Dashed: the links that replace higher pairs"))
+        compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
+        if compound:
+            self.facts.append(_("Compound hinge {points}: a circle for every pair").format(points=", ".join(compound)))
+
+    def split(self, paper: float) -> tuple[float, list[str]]:
+        """Where the right part begins (mm), and its lines."""
+        width = paper - 2 * MARGIN
+        left = min(0.5 * width, 14 + max(extent(self.words(part), 9)[0] for part in self.parts))
+        chars = int((width - left - 6) / 1.75)
+        wrapped = (textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4) for fact in self.facts)
+        return left, [line for lines in wrapped for line in lines]
+
+    def words(self, part: Part) -> str:
+        """What a part is."""
+        if part.redundant is not None:
+            return _("{title}: redundant, adds q = {q}").format(title=part.title, q=part.redundant.constraints)
+        if part.group is None:
+            return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
+        group = part.group
+        return _("{title}: class {roman}, order {order}, {type}").format(
+            title=part.title, roman=group.roman, order=group.order, type=counted(group.type)
+        )
+
+    def height(self, paper: float) -> float:
+        __, lines = self.split(paper)
+        return ROW * min(max(len(self.parts), len(lines)), 14) + 4
+
+    def draw(self, sheet: Sheet) -> None:
+        """Into the band that was kept free."""
+        rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
+        top = MARGIN + self.height(sheet.paper[0])
+        sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK, 0.6, blocks=False)
+        most = int((top - MARGIN - 4) / ROW + 0.5)
+        for row, part in enumerate(self.parts[:most]):
+            at = complex(MARGIN, top - 4 - ROW * row)
+            sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
+            hidden = row == most - 1 and rows > most
+            text = _("... and {count} parts more").format(count=rows - most + 1) if hidden else self.words(part)
+            sheet.text(at + 12, text, 9, colour=part.colour)
+        for row, line in enumerate(lines[:most]):
+            sheet.text(complex(MARGIN + left + 4, top - 4 - ROW * row), line, 9)
+
+
+def counted(kind: str) -> str:
+    """RRRRRR as 6R: types of large groups only count their pairs."""
+    if len(kind) <= 5:
+        return kind
+    return "".join(f"{kind.count(letter)}{letter}" for letter in dict.fromkeys(kind))
+
+
+LEAST_GROUP, A_LINK_OF_GROUP = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
+A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
+LINE, GROUP_PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
+WORDS = 110.0  # mm: width of a caption on a large sheet
+STUB = 8.0  # mm of what a lead would be joined to
+
+
+def all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Sheets of the groups at the sketch; none when the linkage cannot be assembled there."""
+    found = at_sketch(results)
+    return () if found is None else groups(results.problem.title, *found, results.roles)
+
+
+def groups(
+    title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
+) -> Iterable[tuple[str, Drawing]]:
+    """All groups side by side, on more than one sheet when there are many; on large sheets each alone."""
+    every = parts(scene.structure)
+    if on_large_sheet():
+        for part in every:
+            yield safe(f"groups-{part.title}"), _alone(title, scene, part, roles or {}).finish()
+        return
+    for first in range(0, len(every), A_SHEET):
+        stem = "groups" if first == 0 else f"groups-sheet-{first // A_SHEET + 1}"
+        yield stem, side_by_side(title, place, scene, every[first : first + A_SHEET], roles or {}).finish()
+
+
+def _alone(title: str, scene: Scene, part: Part, roles: Mapping[str, str]) -> Sheet:
+    """One part on a large sheet, below its caption."""
+    words = caption(part, scene.structure.pairs, roles, WORDS)
+    sheet = Sheet(title, words[0], room=snug(scene.extent(part.links), GROUP_PAD[0], 0.0))
+    sheet.remarks = words[1:]
+    _part(sheet, scene, part, GROUP_PAD[0])
+    return sheet
+
+
+def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], roles: Mapping[str, str]) -> Sheet:
+    """A sheet of these parts, each in a cell with its caption below it."""
+    subject = _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place)
+    sheet = Sheet(title, subject, paper=LANDSCAPE)
+    rows = math.ceil(len(every) / A_ROW)
+    columns = math.ceil(len(every) / rows)
+    size, places = cells(sheet.ground.low, sheet.ground.high, columns, rows, GAP)
+    told = [caption(part, scene.structure.pairs, roles, size.real) for part in every]
+    for index, (part, words, (low, high)) in enumerate(zip(every, told, places, strict=False)):
+        row, column = divmod(index, columns)
+        lines = max(map(len, told[row * columns : (row + 1) * columns]))
+        if column:
+            x = low.real - GAP / 2
+            sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN, 0.4, blocks=False)
+        sheet.ground = Ground(low + 1j * (LINE * (lines + 0.5)), high)
+        top = low + 1j * LINE * (lines - 0.5)
+        sheet.text(top, words[0], 11, colour=part.colour, weight="bold")
+        for line, text in enumerate(words[1:], 1):
+            sheet.text(top - 1j * LINE * line, text, 8.5)
+        _part(sheet, scene, part, GROUP_PAD[rows > 1])
+    return sheet
+
+
+def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
+    """What a part is, in lines that fit a width (mm)."""
+    links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
+    if part.redundant is not None:
+        q = _("redundant, adds q = {q}").format(q=part.redundant.constraints)
+        words = [q, _("links: {links}").format(links=links)]
+        words.append(_("pairs: {pairs}").format(pairs=_listed(pairs_outside(part, pairs))))
+    elif part.group is None:
+        words = [_("primary mechanism: driver and frame"), _("links: {links}").format(links=links)]
+        driving = [pair for pair in pairs if FRAME in (pair.i, pair.j) and {pair.i, pair.j} <= {FRAME, *part.links}]
+        if driving:
+            words.append(_("driving pair: {pair}").format(pair=_listed(driving[-1:])))
+    else:
+        group = part.group
+        words = [
+            _("class {roman}, order {order}, type {type}").format(
+                roman=group.roman, order=group.order, type=counted(group.type)
+            ),
+            _("links: {links}").format(links=links),
+        ]
+        if group.inner:
+            words.append(_("inner pairs: {pairs}").format(pairs=_listed(group.inner)))
+        words.append(_("outer pairs: {pairs}").format(pairs=_listed(group.outer)))
+        if group.drivers:
+            drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in group.drivers)
+            words.append(_("with drivers: {drivers}").format(drivers=drivers))
+    fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ", max_lines=4) for text in words]
+    return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
+
+
+def pairs_outside(part: Part, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
+    """The pairs that join a part to other links: those of a group, or all of a redundant link."""
+    if part.group is not None:
+        return part.group.outer
+    links = {*part.links}
+    return tuple(p for p in pairs if part.redundant and {p.i, p.j} & links and not {p.i, p.j} <= links)
+
+
+def _listed(pairs: Iterable[Pair]) -> str:
+    return ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in pairs)
+
+
+def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
+    """One part in the field that the ground of the sheet has."""
+    pairs, links = scene.structure.pairs, part.links
+    outer, frame = pairs_outside(part, pairs), () if part.group or part.redundant else (FRAME,)
+    inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
+    most = math.inf if on_large_sheet() else LEAST_GROUP + A_LINK_OF_GROUP * len(links)
+    scene = fitted(sheet, scene, links, pad, most)
+    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
+    own = dict.fromkeys(links, part.colour)
+    for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side
+        if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
+            draw(sheet, scene.higher(pair), own)
+    for pair in outer:
+        if pair.slide is not None:
+            sliding_lead(sheet, scene, pair, part, look)
+    drawn = render(sheet, scene, links, inner, look, {FRAME: DARK} | own, leads=outer)
+    for pair in outer:
+        if pair.kind == "R":
+            _stub(sheet, scene, pair, drawn.forms, look)
+    arrows(sheet, scene, drawn, look, own)
+    numbers(sheet, drawn.forms, own)
+    names(sheet, ((spot(sheet, scene, p, look), p.name, part.colour if part.group else DARK) for p in inner))
+    names(sheet, ((spot(sheet, scene, p, look), lead_name(p, part), DARK) for p in outer))
+    _later(sheet, scene, part, (*inner, *outer), look)
+    sheet.settle()
+
+
+def lead_name(pair: Pair, part: Part) -> str:
+    """A (to 1): a lead and the link that it is joined to."""
+    return _("{pair} (to {link})").format(pair=pair.name, link=printed(pair.i if pair.j in part.links else pair.j))
+
+
+def sliding_lead(sheet: Sheet, scene: Scene, pair: Pair, part: Part, look: Look) -> None:
+    """A free sliding pair: the box with a piece of the guide, or the bar with the stone, that it would be joined to."""
+    assert pair.slide is not None
+    at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
+    if pair.slide.runner not in part.links:
+        box(sheet, at, along, FREE, look.box, look, "--")
+        return
+    reach = (look.box[0] / 2 + BEYOND + 2) * along
+    rails(sheet, at - reach, at + reach, look.box[1])
+    box(sheet, at, along, part.colour, look.box, look)
+
+
+def _stub(sheet: Sheet, scene: Scene, pair: Pair, forms: Mapping[str, Form], look: Look) -> None:
+    """A short dashed piece of the link that a free hinge would be joined to, on its empty side."""
+    at = sheet.on(scene.at(pair))
+    arm = (forms.get(pair.j) or forms[pair.i]).middle - at
+    out = quiet(sheet, at, -arm / abs(arm) if abs(arm) > 0.5 else 1j, STUB + 2)
+    start, end = at + look.hinge * out, at + (look.hinge + STUB) * out
+    sheet.line([start, end], FREE, 1.3, "--", 4.4)
+    for side in look.sides:
+        sheet.ground.line(start + side * out, end + side * out)
+
+
+def _later(sheet: Sheet, scene: Scene, part: Part, drawn: Iterable[Pair], look: Look) -> None:
+    """Pairs in which later groups will be joined to the links: dots with grey names."""
+    known = {p.name for p in drawn}
+    circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
+    later = [p for link in part.links for p in scene.of(link) if p.name not in known]
+    fresh = [p for p in later if all(abs(sheet.on(scene.at(p)) - at) > 0.5 for at in circled)]
+    for pair in fresh:
+        at = sheet.on(scene.at(pair))
+        if np.isfinite(at):
+            sheet.circle(at, 0.55 * look.hinge, part.colour, part.colour, 0.5, 6)
+    names(sheet, [(sheet.on(scene.at(p)), p.name, FREE) for p in fresh])

@@ -1,0 +1,123 @@
+"""The construction of a synthesis as a student would draw it, and the mechanism in its extreme positions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import cycle
+
+import numpy as np
+
+from tmm_cli.drawing.paper.chart import Across, Curve, Plot, across, chart, filling, limits, room
+from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
+from tmm_cli.drawing.sheets.construction import construction
+from tmm_cli.drawing.sheets.mechanism import measured, paths, skeleton, trace
+from tmm_cli.drawing.symbols.actuators import cylinders
+from tmm_cli.drawing.symbols.forms import by_points
+from tmm_cli.drawing.symbols.parts import MEASURED
+from tmm_cli.drawing.symbols.render import slider
+from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.language import _, translated
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.quantities import ANGLE, KINDS, Dimension
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.synthesis.construction import Diagram, Line
+from tmm_cli.synthesis.record import Outcome
+
+ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
+
+
+def sheets(
+    title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
+) -> Iterable[tuple[str, Drawing]]:
+    """What the task draws, and the extreme positions, if there is a mechanism with strokes.
+
+    names: of parameters, standard name to that in the file.
+    """
+    linkage = results.linkage if results is not None else None
+    for drawn in outcome.drawings:
+        if isinstance(drawn, Diagram):
+            yield f"synthesis-{drawn.name}", diagram(title, drawn, units)
+        else:
+            yield f"synthesis-{drawn.name}", construction(title, drawn, units, linkage, names).finish()
+    if results is not None and results.strokes is not None and results.strokes.strokes:
+        yield "synthesis-extremes", extremes(results).finish()
+
+
+def synthesised(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """The sheets of a problem whose file has a synthesis."""
+    found = results.problem.synthesis
+    if found is not None:
+        yield from sheets(results.problem.title, found.outcome, results, results.problem.units, found.names)
+
+
+def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
+    """Curves over one quantity, in the units of the file."""
+    sheet = Sheet(title, translated(drawn.title), paper=LANDSCAPE)
+    words, kind = drawn.x
+    wide = KINDS[kind].dimension
+    over = limits([np.asarray(line.x, dtype=float) / units.factor(wide) for line in (*drawn.lines, *drawn.lower)])
+    degrees = wide == ANGLE and units.symbol(ANGLE) == "deg"
+    start, most = room(sheet)
+    axis = filling(*over, start, most) if drawn.equal else across(*over, start, most, degrees=degrees)
+    plots = [_plot(drawn.lines, drawn.y, wide, units)]
+    if drawn.lower:
+        plots.append(replace(_plot(drawn.lower, drawn.lower_y, wide, units), logarithmic=True, share=0.6))
+    chart(sheet, plots, Across(axis, with_unit(translated(words), wide, units)), same_scale=drawn.equal)
+    return sheet.finish()
+
+
+def _plot(lines: Iterable[Line], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> Plot:
+    """Curves of a panel, those behind the others first."""
+    words, kind = y
+    high = KINDS[kind].dimension
+    colours = cycle((DARK, LOAD, INERTIA, REACTION))
+    curves = [
+        Curve(
+            np.asarray(line.x, dtype=float) / units.factor(wide), np.asarray(line.y, dtype=float) / units.factor(high),
+            translated(line.text), THIN if line.faint else next(colours), width=1.0 if line.faint else 1.3,
+            dots=line.dots,
+        )
+        for line in sorted(lines, key=lambda line: not line.faint)
+    ]  # fmt: skip
+    return Plot(with_unit(translated(words), high, units), curves)
+
+
+def extremes(results: Results) -> Sheet:
+    """The mechanism at both ends of its working stroke, the start in full, with the paths of its points."""
+    strokes, linkage = results.strokes, results.linkage
+    assert strokes is not None
+    ends = [stroke.start for stroke in strokes.strokes]
+    if len(ends) == 1:
+        ends.append(ends[0] + linkage.driver.sense * strokes.strokes[0].length)
+    motion = at_positions(results, np.array(ends), 2)
+    scene = Scene(linkage, results.structure, motion.poses)
+    ways = paths(results)
+    used = [*fixed_pivots(linkage), *(place for way in ways for place in way)]
+    sheet = Sheet(results.problem.title, _("Extreme positions of the output"), to_scale(scene, used))
+    trace(sheet, ways)
+    others = [replace(scene, k=k) for k in range(1, len(ends))]
+    for other in others:
+        skeleton(sheet, other, INERTIA, 1.6, 2.9)
+        for link in linkage.moving:
+            for start, end in by_points(sheet, other, link, whole=False).edges:
+                sheet.ground.line(start, end)
+        for pair in results.structure.pairs:
+            if pair.slide is not None and pair.name not in cylinders(linkage):
+                slider(sheet, other, pair, MEASURED, INERTIA)
+    measured(sheet, scene, ENDS[0])
+    points = linkage.moving_points
+    sheet.ground.rivals += [sheet.on(here.point(name)) for here in (scene, *others) for name in points]
+    for other in others:
+        for name in points:
+            at = sheet.on(other.point(name))
+            if any(name in h.point for h in linkage.hinges):
+                sheet.circle(at, 0.8 * MEASURED.hinge, edge=INERTIA)
+            else:
+                sheet.circle(at, 0.6, INERTIA, INERTIA)
+            sheet.label(name + ENDS[min(other.k, 3)], at, 10, INERTIA)
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
+    sheet.note(_("I: start of the working stroke, II: its end"))
+    return sheet

@@ -1,0 +1,240 @@
+"""The form in which a link is drawn: a bar between two places, a plate between more, a bar along every guide.
+
+By its pairs nothing of it is to be measured; by its points it is to scale, its guides as long as the way on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from tmm_cli.drawing.paper.boxes import outline
+from tmm_cli.drawing.paper.sheet import Sheet, border
+from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders
+from tmm_cli.drawing.symbols.scene import BEYOND, ON_LINE, Scene, apart
+from tmm_cli.drawing.symbols.wheels import bars as follower_bars
+from tmm_cli.drawing.symbols.wheels import outline as shape_of
+from tmm_cli.mechanics.linkage import Slide
+from tmm_cli.mechanics.numerics.vectors import cross, dot
+
+Line = tuple[complex, complex]
+GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it
+STONE, OVER = 3.75, 7.0  # mm, to scale: half a stone; how far such a bar goes on beyond the way of its middle
+
+
+@dataclass
+class Bar:
+    """A straight bar along a guide, from low to high (mm) of its base; `holds` are the link's pairs on it."""
+
+    base: complex
+    along: complex
+    low: float
+    high: float
+    holds: list[complex] = field(default_factory=list)
+
+    def meets(self, place: complex) -> bool:
+        return bool(abs(cross(self.along, place - self.base)) < ON_LINE)
+
+    def take(self, place: complex) -> None:
+        """Reach as far as a place on the line."""
+        run = float(dot(self.along, place - self.base))
+        self.low, self.high = min(self.low, run), max(self.high, run)
+
+    def foot(self, place: complex) -> complex:
+        return self.base + self.along * float(dot(self.along, place - self.base))
+
+    @property
+    def tips(self) -> Line:
+        return self.base + self.low * self.along, self.base + self.high * self.along
+
+
+@dataclass(frozen=True)
+class Form:
+    """A link on paper: corners of its plate (or the two ends of its bar), bars, struts with rigid corners.
+
+    joints are its pairs but for the stones on its bars; boxes are those of them where it is the stone itself.
+    """
+
+    joints: Sequence[complex] = ()
+    boxes: Sequence[complex] = ()
+    hull: Sequence[complex] = ()
+    bars: Sequence[Bar] = ()
+    struts: Sequence[Line] = ()
+    welds: Sequence[tuple[complex, complex, complex]] = ()
+
+    @property
+    def lines(self) -> list[Line]:
+        """Its straight parts."""
+        lines = [bar.tips for bar in self.bars] + list(self.struts)
+        if len(self.hull) == 2:
+            lines.append((self.hull[0], self.hull[1]))
+        return lines
+
+    @property
+    def edges(self) -> list[Line]:
+        """Its straight parts and the sides of its plate."""
+        return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
+
+    @property
+    def middle(self) -> complex:
+        """Where its number goes: the middle of its plate or of the longest free part of its longest line."""
+        if len(self.hull) > 2:
+            return sum(self.hull) / len(self.hull)
+        if not self.lines:
+            return self.joints[0] if self.joints else complex(np.nan, np.nan)
+        start, end = max(self.lines, key=lambda line: abs(line[1] - line[0]))
+        if abs(end - start) < ON_LINE:
+            return start
+        along = (end - start) / abs(end - start)
+        joined = (*self.joints, *(bar.base for bar in self.bars))
+        runs = sorted({0.0, abs(end - start), *(float(dot(along, j - start)) for j in joined)})
+        runs = [r for r in runs if 0 <= r <= abs(end - start)]
+        gap = max(range(len(runs) - 1), key=lambda n: runs[n + 1] - runs[n])
+        return start + along * (runs[gap] + runs[gap + 1]) / 2
+
+    def through(self, place: complex) -> complex | None:
+        """The direction of a bar that goes on beyond a hinge on both sides, if there is one."""
+        for start, end in self.lines:
+            length = abs(end - start)
+            if length < 2:
+                continue
+            along = (end - start) / length
+            inside = 1.0 < dot(along, place - start) < length - 1.0
+            if inside and abs(cross(along, place - start)) < ON_LINE:
+                return along
+        return None
+
+
+def by_points(sheet: Sheet, scene: Scene, link: str, *, whole: bool = True) -> Form:
+    """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them.
+
+    Not whole: its guides end at their stones, as thin lines of many positions do.
+    """
+    joints = apart(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
+    bars: list[Bar] = []
+    for slide in _guides(scene, link):
+        stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
+        (low, high), here = scene.way(slide), scene.run(slide)
+        bar = _bar(bars, stone, along)
+        for end, side in ((low - here, -along), (high - here, along)) if whole else ():
+            tip = stone + end / sheet.mu * along
+            if not any(bar.meets(j) and dot(side, j - tip) > STONE for j in joints):
+                bar.take(border(stone, tip + OVER * side, *sheet.field))
+    return _joined(sheet, scene, link, joints, bars)
+
+
+def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
+    """The form of a link from its pairs, on paper."""
+    joints = apart(sheet.on(p) for p in scene.joints(link))
+    bars: list[Bar] = []
+    for slide in _guides(scene, link):
+        at, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
+        bar = _bar(bars, at, along)
+        bar.take(at - GUIDE * along)
+        bar.take(at + GUIDE * along)
+    for bar in bars:
+        for end in scene.ends(link):
+            if bar.meets(sheet.on(end)):
+                bar.take(sheet.on(end))
+    return _joined(sheet, scene, link, joints, bars)
+
+
+def _guides(scene: Scene, link: str) -> list[Slide]:
+    """Guides that a link carries, but for those in its cylinders."""
+    slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
+    return [slide for slide in slides if slide.name not in cylinders(scene.linkage)]
+
+
+def _bar(bars: list[Bar], at: complex, along: complex) -> Bar:
+    """The bar on a line through a place: one that is there already, or a new one."""
+    same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
+    if same is None:
+        same = Bar(at, along, 0.0, 0.0)
+        bars.append(same)
+    return same
+
+
+def _lay(bars: list[Bar], start: complex, end: complex) -> None:
+    """A bar between two places (mm), or the one on their line made to reach them."""
+    if abs(end - start) > ON_LINE:
+        bar = _bar(bars, start, (end - start) / abs(end - start))
+        bar.take(start)
+        bar.take(end)
+
+
+def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar]) -> Form:
+    """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
+    driven, boxes = cylinders(scene.linkage), []
+    for pair in scene.of(link):
+        if pair.slide is not None and pair.name in driven:
+            _lay(bars, *Cylinder.of(sheet, scene, pair.slide).part(link))
+        elif pair.slide is not None and pair.slide.runner == link:
+            boxes.append(sheet.on(scene.at(pair)))
+    for mesh in scene.linkage.meshes:
+        for start, end in follower_bars(shape_of(scene, mesh)) if mesh.j == link else ():
+            _lay(bars, sheet.on(start), sheet.on(end))
+    for bar in bars:
+        bar.holds += [j for j in joints if bar.meets(j)]
+        for place in bar.holds:
+            bar.take(place)
+    struts: list[Line] = []
+    welds: list[tuple[complex, complex, complex]] = []
+    for number, bar in enumerate(bars[1:], 1):
+        _join(bars[:number], bar, struts, welds)
+    loose = [j for j in joints if not any(bar.meets(j) for bar in bars)]
+    if loose and bars:
+        bar, near, foot = _nearest(bars, loose)
+        bar.take(foot)
+        if len(loose) > 1 and bar.holds:
+            loose.append(foot)
+        else:
+            struts.append((near, foot))
+            welds.append((foot, near - foot, _longer(bar, foot)))
+            # at a hinge, bars of one link would look like two links without a mark
+            welds += [(near, foot - near, other - near) for other in loose if other != near]
+    hull = _flat(outline(loose)) if len(loose) > 1 else ()
+    return Form(joints, boxes, hull, bars, struts, welds)
+
+
+def _flat(hull: Sequence[complex]) -> Sequence[complex]:
+    """Corners of a plate; the two ends of one whose corners lie on a line."""
+    if len(hull) < 3:
+        return hull
+    start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
+    along = (end - start) / abs(end - start)
+    return hull if max(abs(cross(along, p - start)) for p in hull) > ON_LINE else (start, end)
+
+
+def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
+    """Where pairs beside the bars are joined to them: at a pair on a bar, or at the foot of the perpendicular."""
+
+    def foot(bar: Bar, place: complex) -> complex:
+        return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
+
+    ways = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
+    return min(ways, key=lambda way: abs(way[1] - way[2]))
+
+
+def _longer(bar: Bar, foot: complex) -> complex:
+    return max((tip - foot for tip in bar.tips), key=abs)
+
+
+def _join(
+    others: Sequence[Bar], bar: Bar, struts: list[Line],
+    welds: list[tuple[complex, complex, complex]],
+) -> None:  # fmt: skip
+    """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
+    for other in others:
+        turn = float(cross(other.along, bar.along))
+        if abs(turn) > 0.05:
+            meet = other.base + other.along * float(cross(bar.base - other.base, bar.along)) / turn
+            if abs(meet - bar.base) < 150 and abs(meet - other.base) < 150:
+                bar.take(meet)
+                other.take(meet)
+                welds.append((meet, _longer(bar, meet), _longer(other, meet)))
+                return
+    start, end = min(((p, q) for p in bar.tips for other in others for q in other.tips), key=lambda w: abs(w[1] - w[0]))
+    struts.append((start, end))

@@ -1,0 +1,194 @@
+"""Where everything of a linkage is in one position, m, and how it is put on paper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.symbols.wheels import Outline, contact, outline
+from tmm_cli.drawing.symbols.wheels import extent as wheels_extent
+from tmm_cli.mechanics.groups.state import Pose
+from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
+from tmm_cli.mechanics.numerics.vectors import cross, dot, unit
+from tmm_cli.mechanics.plans.record import extent
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Pair
+
+ON_LINE = 0.3  # mm: what still lies on a line
+BEYOND = 6.0  # mm: how far a guide goes on beyond its stone
+APART, ASIDE = 12.0, 19.0  # mm: boxes nearer to one another would cover them; how far one is drawn away then
+
+
+STILL = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of the frame
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A linkage with its structure at index k of the poses of its links.
+
+    moved: by how much (m) boxes are drawn away from their running points, along their guides.
+    """
+
+    linkage: Linkage
+    structure: Structure
+    poses: Mapping[str, Pose]
+    k: int = 0
+    moved: Mapping[str, complex] = field(default_factory=dict)
+
+    def place(self, link: str, local: complex) -> complex:
+        """A point of a link (its axes, m) in the drawing's axes, m."""
+        if link == FRAME:
+            return complex(local)
+        return self._now(self.poses[link].x) + local * self._now(self.poses[link].z)
+
+    def turn(self, link: str) -> float:
+        """The angle of a link, rad."""
+        return float(np.angle(self.place(link, 1 + 0j) - self.place(link, 0j)))
+
+    def along(self, slide: Slide) -> complex:
+        """Direction of a guide."""
+        turned = 1.0 if slide.carrier == FRAME else self._now(self.poses[slide.carrier].z)
+        return complex(turned * unit(slide.direction))
+
+    def run(self, slide: Slide) -> float:
+        """How far the runner is along a guide, m."""
+        foot = self.place(slide.carrier, slide.through)
+        return float(dot(self.along(slide), self.place(slide.runner, slide.at) - foot))
+
+    def way(self, slide: Slide) -> tuple[float, float]:
+        """The least and the largest run in all positions, m."""
+        carrier, runner = (self.poses.get(link, STILL) for link in (slide.carrier, slide.runner))
+        runs = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
+        return float(np.nanmin(runs)), float(np.nanmax(runs))
+
+    def point(self, name: str) -> complex:
+        """A named point, m."""
+        link = self.linkage.owner(name)
+        return self.place(link, self.linkage.local(link, name))
+
+    def at(self, pair: Pair) -> complex:
+        """Where a pair is: its hinge, or the running point of its runner, m."""
+        if pair.slide is not None:
+            return self.place(pair.slide.runner, pair.slide.at) + self.moved.get(pair.name, 0j)
+        if pair.kind == "R":
+            link = pair.j if pair.i == FRAME else pair.i
+            return self.place(link, self.linkage.local(link, pair.point))
+        return contact(self.higher(pair))
+
+    def higher(self, pair: Pair) -> Outline:
+        """The wheels, or the cam and its follower, of a higher pair."""
+        assert pair.mesh is not None
+        return outline(self, pair.mesh)
+
+    def of(self, link: str) -> tuple[Pair, ...]:
+        """The lower pairs of a link."""
+        return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
+
+    def joints(self, link: str) -> list[complex]:
+        """Places at which a link is hinged or runs on a guide; of a bar with one of them, its named points too."""
+        found = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
+        disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
+        if len(found) + len(self.guides(link)) < 2 and not disk:
+            found += self.ends(link)
+        return found
+
+    def guides(self, link: str) -> list[tuple[complex, complex]]:
+        """Guides that a link carries: the place of the stone on each (m), and the direction."""
+        carried = [p for p in self.of(link) if p.slide is not None and p.slide.carrier == link]
+        return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
+
+    def ends(self, link: str) -> list[complex]:
+        """Named points of a link: those on its guide show how long it is."""
+        return [self.place(link, local) for local in self.linkage.links[link].points.values()]
+
+    def extent(self, links: Iterable[str]) -> list[complex]:
+        """Places that must be on the paper when these links are drawn, m."""
+        links = tuple(links)
+        found: list[complex] = []
+        for link in links:
+            found += self.joints(link)
+            for stone, along in self.guides(link):
+                found += [stone, *(e for e in self.ends(link) if abs(cross(along, e - stone)) < 1e-6 * abs(e - stone))]
+        found = [p for p in found if np.isfinite(p)]
+        size = max((abs(p - q) for p in found for q in found[:1]), default=0.0)
+        own = [self.higher(p) for p in self.structure.pairs if not p.lower and {p.i, p.j} & set(links)]
+        drawn = (*links, FRAME) if len(links) == len(self.structure.links) else links
+        return found + wheels_extent(own, size, drawn)
+
+    def _now(self, values: object) -> complex:
+        row = np.ravel(np.asarray(values))
+        return complex(row[self.k if row.size > 1 else 0])
+
+
+def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: float) -> Scene:
+    """Put these links onto the ground of the sheet; no slider covers another one."""
+    fit(sheet, scene.extent(links), pad, most)
+    parted = spread(sheet, scene, links)
+    if parted is not scene:
+        fit(sheet, parted.extent(links), pad, most)
+        parted = spread(sheet, scene, links)
+        centre(sheet, parted.extent(links))
+    return parted
+
+
+def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
+    """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
+    boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
+    every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    moved = {}
+    for pair in (p for link in links for p in scene.of(link)):
+        if pair.slide is None or pair.slide.carrier != FRAME:
+            continue
+        at = boxes[pair.name]
+        if any(abs(place - at) < APART for name, place in boxes.items() if name != pair.name):
+            others = [place for place in (*every, *boxes.values()) if abs(place - at) > ON_LINE]
+            choices = [at + side * ASIDE * scene.along(pair.slide) for side in (1, -1)]
+            # farther from the others; without any, lower
+            free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
+            boxes[pair.name] = free
+            moved[pair.name] = (free - at) * sheet.mu
+    return replace(scene, moved=moved) if moved else scene
+
+
+def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
+    """Metres a millimetre at which places (m) fit into a room (mm) and are not larger than `most` (mm)."""
+    larger, across, up, __ = extent(places or [0j])
+    return max(across / room.real, up / room.imag, larger / most) or 1.0
+
+
+def fit(sheet: Sheet, places: Sequence[complex], pad: float, most: float) -> None:
+    """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
+    sheet.mu = scale_to(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    centre(sheet, places)
+
+
+def centre(sheet: Sheet, places: Sequence[complex]) -> None:
+    """Put places (m) into the middle of the ground of the sheet, at its scale."""
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
+
+
+def apart(places: Iterable[complex]) -> list[complex]:
+    """Places without those that coincide with an earlier one."""
+    found: list[complex] = []
+    for place in places:
+        if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in found):
+            found.append(place)
+    return found
+
+
+def to_scale(scene: Scene, places: Sequence[complex]) -> list[complex]:
+    """Places (m) with what else must be on a sheet that has them: wheels, cams, ends of springs on the frame."""
+    size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
+    found = [*places, *wheels_extent((outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
+    for spring in scene.linkage.springs:
+        if not spring.turns:
+            found += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
+    return found
+
+
+def fixed_pivots(linkage: Linkage) -> list[complex]:
+    """Hinges with the frame, m."""
+    return [complex(linkage.local(FRAME, hinge.point)) for hinge in linkage.hinges if FRAME in hinge.links]

@@ -1,0 +1,227 @@
+"""Toothed wheels, racks and cams: where their shapes lie, m.
+
+Wheels are their pitch circles; the pitch point is marked. A cam is given by its follower's law alone: for a sliding
+follower its disk is drawn for a flat face (the force plan takes it so too), for a swinging one for a roller on an arm
+that is chosen to look well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.pairs.lower import axis
+from tmm_cli.mechanics.linkage import Mesh
+from tmm_cli.mechanics.numerics.vectors import Vector, dot, unit
+
+if TYPE_CHECKING:
+    from tmm_cli.drawing.symbols.scene import Scene
+
+
+ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
+STEPS = 361
+AROUND = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
+LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A wheel of a mesh: its pitch circle (m); ring: it has inner teeth."""
+
+    link: str
+    centre: complex
+    radius: float
+    ring: bool = False
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """A mesh of a wheel with a wheel or a rack: pitch point, direction of the pitch line there, wheels.
+
+    side: from the pitch point to where the rack is (a unit vector), for racks; start is its running point.
+    """
+
+    mesh: Mesh
+    pitch: complex
+    along: complex
+    discs: tuple[Disc, ...]
+    side: complex = 0j
+    start: complex = 0j
+
+
+@dataclass(frozen=True)
+class CamShape:
+    """A cam's disk about its axis, where its follower touches it, and the follower: face or arm, roller's radius.
+
+    true: it is the cam that has this flat-faced follower, at its running point; else only a sign for one.
+    """
+
+    mesh: Mesh
+    axis: complex
+    disk: Vector
+    touch: complex
+    face: tuple[complex, complex]
+    stem: tuple[complex, complex]
+    roller: float = 0.0
+    true: bool = False
+
+
+Outline = Teeth | CamShape
+
+
+def outline(scene: Scene, mesh: Mesh) -> Outline:
+    """A higher pair at a pose."""
+    if mesh.kind == "cam":
+        return _flat_faced(scene, mesh) if mesh.slide else _with_roller(scene, mesh)
+    return _gear(scene, mesh) if mesh.kind == "gear" else _rack(scene, mesh)
+
+
+def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
+    """Where the axis of a wheel or cam is, m."""
+    return scene.place(mesh.carrier, axis(scene.linkage, link, mesh.carrier))
+
+
+def _turned(scene: Scene, mesh: Mesh) -> float:
+    """The angle of a cam from its carrier, rad."""
+    return scene.turn(mesh.i) - scene.turn(mesh.carrier)
+
+
+def contact(found: Outline) -> complex:
+    """Where the two links touch, m."""
+    return found.pitch if isinstance(found, Teeth) else found.touch
+
+
+def bars(found: Outline) -> list[tuple[complex, complex]]:
+    """Straight parts of a cam's follower, m: its stem, and its face or none where it has a roller."""
+    return [] if isinstance(found, Teeth) else [part for part in (found.stem, found.face) if part[0] != part[1]]
+
+
+def extent(found: Iterable[Outline], size: float, links: Collection[str] | None = None) -> list[complex]:
+    """Places that must be on the sheet, m: of all links or some; `size` is that of the rest of the mechanism (m)."""
+    places: list[complex] = []
+    for one in found:
+        if isinstance(one, CamShape):
+            places += [*one.disk.tolist(), one.touch, *one.face]
+            continue
+        if one.side != 0 and (links is None or one.mesh.j in links):
+            places.append(one.pitch)
+        apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
+        for disc in one.discs:
+            if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
+                places += [disc.centre + disc.radius * complex(unit(turn)) for turn in AROUND]
+    return [p for p in places if np.isfinite(p)]
+
+
+def _gear(scene: Scene, mesh: Mesh) -> Teeth:
+    one, other = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
+    pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
+    radii = abs(pitch - one), abs(pitch - other)
+    inner = mesh.ratio > 0
+    discs = (
+        Disc(mesh.i, one, radii[0], inner and radii[0] > radii[1]),
+        Disc(mesh.j, other, radii[1], inner and radii[1] > radii[0]),
+    )
+    return Teeth(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
+
+
+def _guided(scene: Scene, mesh: Mesh) -> tuple[complex, complex]:
+    """Of a rack or a sliding follower: the way in which it goes, and its running point."""
+    slide = scene.linkage.slide(mesh.slide)
+    if slide.runner == mesh.j:
+        return scene.along(slide), scene.place(slide.runner, slide.at)
+    return -scene.along(slide), scene.place(slide.carrier, slide.through)
+
+
+def _rack(scene: Scene, mesh: Mesh) -> Teeth:
+    forward, start = _guided(scene, mesh)
+    centre = _axis(scene, mesh, mesh.i)
+    side = -1j * forward * math.copysign(1.0, mesh.ratio)
+    pitch = centre + side * abs(mesh.ratio)
+    return Teeth(mesh, pitch, forward, (Disc(mesh.i, centre, abs(mesh.ratio)),), side, start)
+
+
+def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
+    """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
+    assert mesh.law is not None
+    forward, runs = _guided(scene, mesh)
+    centre, angle = _axis(scene, mesh, mesh.i), _turned(scene, mesh)
+    turn = np.linspace(0, 2 * np.pi, STEPS)
+    rise, slope, bend = mesh.law(turn)
+    now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
+    height = float(dot(forward, runs - centre)) - now
+    true = bool(np.min(height + rise + bend) > 0 and np.min(height + rise) > 0)
+    if not true:  # no convex cam has its face there: the least that is convex, and not too slender
+        height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
+        height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
+    ways = forward * unit(angle - turn)
+    disk = (height + rise - 1j * slope) * ways
+    # where no cam could have the law, the envelope has tails beyond the face
+    tails = np.max(dot(ways[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
+    disk = centre + disk[~tails]
+    foot = centre + (height + now) * forward
+    reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
+    touch = foot - 1j * slope_now * forward
+    return CamShape(mesh, centre, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
+
+
+def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
+    """The disk of a roller on a follower that swings."""
+    assert mesh.law is not None
+    centre, pivot = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
+    turn = np.linspace(0, 2 * np.pi, STEPS)
+    rise, angle = mesh.law(turn)[0], _turned(scene, mesh)
+    middle = (float(np.max(rise)) + float(np.min(rise))) / 2
+    outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
+    arm = ARM * (centre - pivot) * complex(unit(outward * math.acos(ARM)))
+    path = centre + (pivot + arm * unit(rise - middle) - centre) * unit(angle - turn)
+    now = float(mesh.law(np.array(angle))[0])
+    here = pivot + arm * complex(unit(now - middle))
+    tangent = np.gradient(path)
+    normal = 1j * tangent / np.maximum(np.abs(tangent), 1e-300)
+    normal = normal * np.sign(dot(normal, centre - path))
+    roller = ROLLER * abs(centre - pivot)
+    disk = path + roller * normal
+    touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
+    return CamShape(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """The link in place of a higher pair, m: from the centre of curvature of i's profile to that of j's.
+
+    slides: the profile of j is straight, so the link slides along it at `end` instead of turning about a centre.
+    """
+
+    start: complex
+    end: complex
+    slides: bool
+
+
+def replacement(found: Outline) -> Replacement:
+    """The replacing link at a pose (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
+
+    Involute teeth touch along a common tangent of their base circles, where the centres of curvature lie.
+    """
+    if isinstance(found, Teeth):
+        mesh = found.mesh
+        line = found.along * complex(unit(mesh.pressure))
+        centres = [found.pitch + line * float(dot(line, disc.centre - found.pitch)) for disc in found.discs]
+        return Replacement(centres[0], centres[1] if len(centres) > 1 else found.pitch, len(centres) == 1)
+    centre = _curved_about(found.disk, found.touch)
+    if found.roller:
+        return Replacement(centre, found.stem[1], False)
+    return Replacement(centre, found.touch, True)
+
+
+def _curved_about(disk: Vector, touch: complex) -> complex:
+    """The centre of curvature of a closed outline near a place: that of the circle through three points about it."""
+    size = len(disk)
+    at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)
+    a, b, c = (complex(disk[(at + k * step) % size]) for k in (-1, 0, 1))
+    u, v = b - a, c - a
+    turn = 2 * (u.conjugate() * v).imag
+    return a + 1j * (abs(u) ** 2 * v - abs(v) ** 2 * u) / turn * -1 if turn else b

@@ -1,0 +1,182 @@
+"""Degrees taken for radians, or radians for degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from tmm_cli.batch.family import Family
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
+from tmm_cli.mechanics.analysis.named_quantities import Quantity
+from tmm_cli.mechanics.numerics.vectors import Real
+
+
+@dataclass(frozen=True)
+class Degrees(Mistake):
+    """Angles, angular speeds and accelerations."""
+
+    factor: float = 1.0
+
+    name = N_("degrees for radians")
+    sentence = N_(
+        "This is the right value in the other unit of angles: degrees were taken for radians, or the reverse."
+    )
+    solves = False
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(180 / np.pi), cls(np.pi / 180))
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return values * self.factor if quantity.dimension.angle and quantity.against != "angle" else values
+
+
+# Millimetres taken for metres, or metres for millimetres.
+
+
+@dataclass(frozen=True)
+class Millimetres(Mistake):
+    """Whatever a length is a factor of."""
+
+    factor: float = 1.0
+
+    name = N_("mm for m")
+    sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
+    solves = False
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(1000.0), cls(0.001))
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return values * self.factor if quantity.dimension.length else values
+
+
+# Revolutions a minute taken for radians a second.
+
+
+@dataclass(frozen=True)
+class Rpm(Mistake):
+    """Velocities are 9.55 times too large, accelerations and inertia forces 91 times."""
+
+    name = N_("rpm for rad/s")
+    sentence = N_("The speed of the crank was put in as revolutions a minute; omega = pi n / 30 is wanted, in rad/s.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if family.linkage.driver.kind == "turn":
+            yield cls()
+
+    def family(self, family: Family) -> Family:
+        driver = family.linkage.driver
+        return family.changed(replace(family.linkage, driver=replace(driver, rate=driver.rate * (30 / np.pi))))
+
+
+# Positions counted from another zero of the crank.
+
+
+@dataclass(frozen=True)
+class OtherZero(Mistake):
+    """From the other extreme position, or from the crank along the x axis."""
+
+    extreme: bool = True
+
+    name = N_("other zero of the crank")
+    sentence = N_("The positions were counted from another zero of the crank than the task's.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if family.strokes is not None and len(family.strokes.strokes) == 2:
+            yield cls(True)
+        if family.linkage.driver.kind == "turn":
+            yield cls(False)
+
+    def family(self, family: Family) -> Family:
+        first: Real = np.zeros(1)
+        if self.extreme:
+            assert family.strokes is not None
+            ends = [stroke.start for stroke in family.strokes.strokes]
+            away = [np.abs(np.exp(1j * end) - np.exp(1j * family.q[:, :1])) for end in ends]
+            first = np.where(away[0] > away[1], ends[0], ends[1])
+        return family.changed(family.linkage, family.q - family.q[:, :1] + first)
+
+
+# A neighbouring position.
+
+
+@dataclass(frozen=True)
+class Neighbour(Mistake):
+    """The value of the position before or after."""
+
+    step: int = 1
+
+    name = N_("neighbouring position")
+    sentence = N_("This is the value of a neighbouring position.")
+    solves = False
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(1), cls(-1))
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return np.roll(values, self.step, axis=1)
+
+
+# The crank turned the wrong way.
+
+
+@dataclass(frozen=True)
+class Sense(Mistake):
+    """In the same positions, or with the positions counted the wrong way too."""
+
+    counted: bool = False
+
+    name = N_("sense of rotation")
+    sentence = N_("This belongs to a crank that turns the other way.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(False), cls(True))
+
+    def family(self, family: Family) -> Family:
+        driver = family.linkage.driver
+        linkage = replace(family.linkage, driver=replace(driver, sense=-driver.sense))
+        if family.strokes is not None:  # the same ways of the driver, from their other ends
+            strokes = family.strokes.changed(
+                lambda s: replace(s, start=s.start + driver.sense * s.length, low=s.low + s.run, run=-s.run)
+            )
+            family = replace(family, strokes=strokes)
+        return family.changed(linkage, 2 * family.q[:, :1] - family.q if self.counted else None)
+
+
+# A length on the plan divided by its scale where it is to be multiplied, or the reverse.
+
+
+SIZES = tuple(m * 10.0**power for power in (-3, -2, -1, 0, 1, 2) for m in (1, 2, 2.5, 4, 5) if m * 10.0**power != 1)
+
+
+@dataclass(frozen=True)
+class ScaleInverted(Mistake):
+    """All values off one kind of plan are wrong by the square of its scale factor, a round number in mm."""
+
+    stage: str = ""
+    scale: float = 1.0
+
+    name = N_("scale factor inverted")
+    sentence = N_(
+        "All values of this plan are wrong by one factor: lengths divided by the scale in place of multiplied."
+    )
+    solves = False
+    price = 25.0
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(stage, scale) for stage in ("velocities", "accelerations", "forces") for scale in SIZES)
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return values * self.scale**2 if quantity.stage == self.stage else values

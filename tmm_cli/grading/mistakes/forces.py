@@ -1,0 +1,214 @@
+"""Inertia forces drawn along the accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from tmm_cli.batch.family import Family
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.grading.solution import Solution
+from tmm_cli.language import N_
+from tmm_cli.mechanics.analysis.named_quantities import Quantity
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import Real
+
+
+@dataclass(frozen=True)
+class InertiaReversed(Mistake):
+    """Forces, couples, or both."""
+
+    parts: tuple[str, ...] = ()
+
+    name = N_("inertia not reversed")
+    sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        yield from (cls(parts) for parts in (("force",), ("moment",), ("force", "moment")))
+
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia":
+            return load
+        return replace(load, **{part: -getattr(load, part) for part in self.parts})
+
+
+# The moment of inertia taken about a hinge instead of the centre of mass.
+
+
+@dataclass(frozen=True)
+class HingeInertia(Mistake):
+    """Of one link, or of all: its couple of inertia is too large by m s^2 epsilon."""
+
+    link: str = ""
+
+    name = N_("moment of inertia about the hinge")
+    sentence = N_("The moment of inertia was taken about the hinge; the couple wants it about the centre of mass.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        links = family.linkage.links
+        own = [n for n in family.linkage.moving if np.any(links[n].inertia != 0) and np.any(_arm(family, n) != 0)]
+        yield from (cls(name) for name in own)
+        if len(own) > 1:
+            yield cls()
+
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia" or self.link not in ("", load.link):
+            return load
+        extra = family.linkage.links[load.link].mass * np.abs(_arm(family, load.link)) ** 2
+        return replace(load, moment=load.moment - extra * motion.link(load.link).epsilon)
+
+
+def _arm(family: Family, name: str) -> Real:
+    """From a link's hinge, that on the frame if it has one, to its centre of mass, m."""
+    link = family.linkage.links[name]
+    frame = family.linkage.links[FRAME].points
+    hinge = next((p for n, p in link.points.items() if n in frame), next(iter(link.points.values()), 0j))
+    return np.asarray(link.centre - hinge)
+
+
+# Inertia forces left out.
+
+
+@dataclass(frozen=True)
+class NoInertia(Mistake):
+    """Of one link, or of all."""
+
+    link: str = ""
+
+    name = N_("inertia force left out")
+    sentence = N_("The inertia force m a_S was left out.")
+    part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        links = family.linkage.links
+        own = [name for name in family.linkage.moving if np.any(getattr(links[name], cls.of) != 0)]
+        yield from (cls(name) for name in own)
+        if len(own) > 1:
+            yield cls()
+
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "inertia" or self.link not in ("", load.link):
+            return load
+        return replace(load, **{self.part: getattr(load, self.part) * 0})
+
+
+# Couples of inertia left out.
+
+
+@dataclass(frozen=True)
+class NoCouple(NoInertia):
+    """Of one link, or of all."""
+
+    name = N_("couple of inertia left out")
+    sentence = N_("The couple of inertia J epsilon was left out.")
+    part, of = "moment", "inertia"
+
+
+# Weights left out, or masses put in for them.
+
+
+@dataclass(frozen=True)
+class NoWeight(Mistake):
+    """Of one link, or of all. mass: the weight is the number of kilograms."""
+
+    link: str = ""
+    mass: bool = False
+
+    name = N_("weight forgotten")
+    sentence = N_("A weight G = m g was left out, or the mass was put in for it.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if np.all(family.linkage.gravity == 0):
+            return
+        links = family.linkage.links
+        own = [name for name in family.linkage.moving if np.any(links[name].mass != 0)]
+        yield from (cls(name) for name in own)
+        yield from (cls("", mass) for mass in (False, True))
+
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        if load.kind != "weight" or self.link not in ("", load.link):
+            return load
+        return replace(load, force=load.force * (1 / np.abs(family.linkage.gravity) if self.mass else 0.0))
+
+
+# The weight put in where the mass is wanted.
+
+
+@dataclass(frozen=True)
+class WeightForMass(Mistake):
+    """Inertia forces are g times too large."""
+
+    name = N_("weight for mass")
+    sentence = N_(
+        "The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large."
+    )
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if np.any(family.linkage.gravity != 0):
+            yield cls()
+
+    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+        return replace(load, force=load.force * np.abs(family.linkage.gravity)) if load.kind == "inertia" else load
+
+
+# The reaction of a guide drawn through the hinge.
+
+
+@dataclass(frozen=True)
+class GuideThroughHinge(Mistake):
+    """It acts where moments about the hinge vanish, which is seldom the hinge itself."""
+
+    name = N_("guide's reaction through the hinge")
+    sentence = N_("The reaction of a guide does not act through the hinge: its place follows from moments about it.")
+    solves = False
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return values * 0 if quantity.name.startswith("arm of R_") else values
+
+
+# R_ik written down for R_ki.
+
+
+@dataclass(frozen=True)
+class OppositeReaction(Mistake):
+    """Reactions with the opposite direction."""
+
+    name = N_("R_ik for R_ki")
+    sentence = N_("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
+    solves = False
+
+    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+        return -values if quantity.name.startswith("R_") else values
+
+
+# The resistance acting in the wrong stroke.
+
+
+@dataclass(frozen=True)
+class WrongStroke(Mistake):
+    """both: it acts always; else in the idle stroke alone."""
+
+    both: bool = False
+
+    name = N_("load in the wrong stroke")
+    sentence = N_("The useful resistance acts in the working stroke only; here it acts in the idle one.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        if family.strokes is not None and any(load.working_stroke_only for load in family.linkage.loads):
+            yield from (cls(False), cls(True))
+
+    def family(self, family: Family) -> Family:
+        assert family.strokes is not None
+        strokes = family.strokes.changed(lambda s: replace(s, working=self.both or not s.working))
+        return replace(family, strokes=strokes)

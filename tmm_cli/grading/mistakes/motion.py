@@ -1,0 +1,222 @@
+"""A group drawn in its other assembly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Self
+
+from tmm_cli.batch.family import Family
+from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.language import N_
+from tmm_cli.mechanics.groups.base import Closed, Kernel, Wrapped
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.pairs.lower import Constraint, Guided, Sliding
+from tmm_cli.mechanics.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
+from tmm_cli.mechanics.kinematics.motion import Motion, Point
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.vectors import Real, cross
+
+
+@dataclass(frozen=True)
+class Mirror(Mistake):
+    """The group of these links lies on the other side."""
+
+    links: str = ""
+
+    name = N_("mirror assembly")
+    sentence = N_("This belongs to another assembly: links {links} were drawn on the other side.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        for kernel in family.kernels:
+            if isinstance(kernel, Closed) and kernel.assemblies == 2:
+                yield cls(", ".join(kernel.group.links))
+
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if isinstance(kernel, Closed) and ", ".join(kernel.group.links) == self.links:
+            return replace(kernel, sign=-kernel.sign)
+        return kernel
+
+
+# Groups whose accelerations follow from other velocity terms; places, velocities and reactions are right.
+
+
+Terms = Callable[[Constraint, Poses, Rates], Any]  # the velocity terms of a pair as the student has them
+
+
+@dataclass(frozen=True)
+class Equations(Newton):
+    """A group as equations, one a row of a pair, with other velocity terms."""
+
+    terms: Terms = field(kw_only=True)
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
+        return [term for constraint in self.constraints for term in self.terms(constraint, poses, rates)]
+
+
+@dataclass(frozen=True)
+class OtherTerms(Wrapped):
+    """Accelerations from equations with other velocity terms."""
+
+    equations: Equations
+
+    @classmethod
+    def of(cls, right: Kernel, linkage: Linkage, terms: Terms) -> OtherTerms:
+        """The group with its numbers."""
+        plain = Newton.of(right.group.rebind(linkage), linkage)
+        own = {f.name: getattr(plain, f.name) for f in fields(plain)}
+        return cls.around(right, Equations(**own, terms=terms))
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        return self.equations.accelerations(at, poses, rates, accels, drives)
+
+
+# The normal part of a link's acceleration left out.
+
+
+@dataclass(frozen=True)
+class Normal(Mistake):
+    """Of one link: its points accelerate as if it did not turn."""
+
+    link: str = ""
+
+    name = N_("normal part left out")
+    sentence = N_("The normal part omega^2 r of the acceleration of link {link} was left out.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        linkage = family.linkage
+        yield from (cls(link) for link in linkage.moving if not linkage.slides_on_frame(link))
+
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if self.link in kernel.group.links:
+            return OtherTerms.of(kernel, family.linkage, self._terms)
+        return Unturned.around(kernel, self.link)
+
+    def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
+        still = without(rates, self.link)
+        if not isinstance(pair, Sliding):
+            return pair.velocity_terms(poses, still)
+        here, (turned, across) = Guided.at(pair.slide, poses), pair.velocity_terms(poses, rates)
+        return turned, across + cross(here.u, here.bend(pair.slide, still) - here.bend(pair.slide, rates))
+
+    def motion(self, motion: Motion) -> Motion:
+        return UnturnedMotion(**vars(motion), link_without=self.link)
+
+
+def without(rates: Rates, link: str) -> Rates:
+    """Velocities in which a link does not turn."""
+    return {**rates, link: replace(rates[link], w=rates[link].w * 0)}
+
+
+@dataclass(frozen=True)
+class Unturned(Wrapped):
+    """A group that hangs on the link."""
+
+    link: str
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        known = without(rates, self.link) if self.link in self.group.known and self.link in rates else rates
+        return self.inner.accelerations(at, poses, known, accels, drives)
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnturnedMotion(Motion):
+    """A motion in which the points of the link accelerate so."""
+
+    link_without: str
+
+    def _point(self, link: str, local: complex) -> Point:
+        found = super()._point(link, local)
+        if link != self.link_without:
+            return found
+        extra = self.first[link].w ** 2 * local * self.poses[link].z
+        second = found.second + extra
+        return replace(found, second=second, a=found.a + extra * self.rate**2)
+
+
+# The tangential part of a link's acceleration left out.
+
+
+@dataclass(frozen=True)
+class Tangential(Mistake):
+    """Of a link that turns about an outer hinge of its group."""
+
+    link: str = ""
+
+    name = N_("tangential part left out")
+    sentence = N_("The tangential part epsilon r of the acceleration of link {link} was left out.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        for kernel in family.kernels:
+            for pair in kernel.group.outer:
+                if pair.kind == "R":
+                    yield cls(kernel.group.own(pair))
+
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        if self.link not in kernel.group.links:
+            return kernel
+        pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
+        linkage, other = family.linkage, pair.other(self.link)
+        there, here = linkage.local(other, pair.point), linkage.local(self.link, pair.point)
+        return NotTurningFaster.around(kernel, self.link, other, there, here)
+
+
+@dataclass(frozen=True)
+class NotTurningFaster(Wrapped):
+    """A group one of whose links has no angular acceleration."""
+
+    link: str
+    known: str
+    there: complex
+    here: complex
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        found = dict(zip(self.group.links, self.inner.accelerations(at, poses, rates, accels, drives), strict=True))
+        hinge = accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
+        w, arm = rates[self.link].w, self.here * poses[self.link].z
+        found[self.link] = Accel.through(hinge, w * 0, w, arm)
+        return tuple(found.values())
+
+
+# The Coriolis acceleration left out or reversed.
+
+
+@dataclass(frozen=True)
+class Coriolis(Mistake):
+    """Of one link that slides on a moving one. sense: 0 left out, -1 reversed."""
+
+    runner: str = ""
+    carrier: str = ""
+    sense: int = 0
+
+    name = N_("Coriolis acceleration")
+    sentence = N_("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
+
+    @classmethod
+    def cases(cls, family: Family) -> Iterable[Self]:
+        for slide in family.linkage.slides:
+            if FRAME not in (slide.carrier, slide.runner):
+                yield from (cls(slide.runner, slide.carrier, sense) for sense in (0, -1))
+
+    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+        slides = [pair.slide for pair in (*kernel.group.inner, *kernel.group.outer) if pair.slide is not None]
+        if all(slide.runner != self.runner for slide in slides):
+            return kernel
+        return OtherTerms.of(kernel, family.linkage, self._terms)
+
+    def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
+        found = pair.velocity_terms(poses, rates)
+        if not (isinstance(pair, Sliding) and pair.links == (self.carrier, self.runner)):
+            return found
+        turned, across = found
+        coriolis = 2 * rates[self.carrier].w * Guided.at(pair.slide, poses).sliding(pair.slide, rates)
+        return turned, across + (1 - self.sense) * coriolis

@@ -1,7 +1,0 @@
-"""Assur groups that can be solved, one file a type. A new type in closed form is a file and a name here."""
-
-from tmm_cli.groups.base import Closed
-from tmm_cli.groups.dyads import DYADS
-from tmm_cli.groups.telescope import Telescope
-
-CLOSED: tuple[type[Closed], ...] = (*DYADS.values(), Telescope)

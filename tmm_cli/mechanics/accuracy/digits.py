@@ -1,0 +1,355 @@
+"""How far each value may be from the truth by rounding, and how far the data carry it.
+
+Every value is computed once more by the same stages in double-doubles, from the decimals of the file. The difference is
+the error of float64 itself; values near dead positions were taken from double-doubles already, and are off by their
+last rounding alone:
+
+    bound = |y - y_exact| + u |y| + w kappa,    u = 2^-53, w = 2^-102
+
+with kappa, the response of y per unit relative change of every length: the rounding of double-doubles themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.accuracy.lengths import all_changed, largest_beside, lengths, widened
+from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.mechanics.analysis.on_request import driver_motion
+from tmm_cli.mechanics.analysis.pipeline import Results, near_dead, refined, with_forces
+from tmm_cli.mechanics.analysis.selection import mass_centres
+from tmm_cli.mechanics.analysis.selection import values as leading_values
+from tmm_cli.mechanics.groups.base import Kernel, spread
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.driver_range import DriverRange
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.double_double import EPS, array, exactly, rounded
+from tmm_cli.mechanics.numerics.tolerances import KNOWN_LAW, LIMIT_AGREES, ROUNDOFF
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+)
+from tmm_cli.mechanics.structure.assur import Structure
+
+SHARE = 1e-3  # of each length: the change that sensitivities are told for
+PAPER = 0.5  # mm of paper, likewise
+STEP = 1e-7  # of a length, where the linkage is far from dead positions
+CLOSE = 2.0**-7  # of the square of the margin, where it is near one
+WIDE = 2.0**-102  # rounding of double-doubles
+LEAST = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
+CHUNK = 1500  # positions at once
+
+Cells = Mapping[Hashable, Real]  # one value a position
+
+
+@dataclass
+class Digits:
+    """For each value: its bound by rounding, its change when every length changes by 0.1 % and by 0.5 mm on paper.
+
+    Changes are sums of the absolute changes by every single length: the worst case, to first order. Of the same keys
+    and shapes as the values, in their units. mu: m a millimetre of paper, nan when nothing is drawn.
+    """
+
+    bound: dict[Hashable, Real] = field(default_factory=dict)
+    lengths: dict[Hashable, Real] = field(default_factory=dict)
+    paper: dict[Hashable, Real] = field(default_factory=dict)
+    mu: float = float("nan")
+
+
+def judged(
+    results: Results,
+    of: Callable[[Results], Cells],
+    *,
+    mu: float = float("nan"),
+    blur: Real | float = 0.0,
+) -> Digits:
+    """Digits of what `of` reads out of results with a motion, at all their positions.
+
+    mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
+    (rad or m).
+    """
+    motion = results.motion
+    assert motion is not None
+    values = of(results)
+    if not values:
+        return Digits(mu=mu)
+    judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
+    found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
+    chunk = max(CHUNK // (1 + len(lengths(results.linkage))), 1)
+    near = near_dead(motion) if motion.where is None else motion.where
+    for these, close in ((~near & motion.placed, False), (near, True)):
+        places = np.flatnonzero(these)
+        for start in range(0, len(places), chunk):
+            chosen = places[start : start + chunk]
+            found[:, :, chosen] = judge.at(chosen, close, mu)
+    bound, share, paper = (dict(zip(values, part, strict=True)) for part in found)
+    return Digits(bound, share, paper, mu)
+
+
+def is_angle(key: Hashable) -> bool:
+    """Whether a value is an angle, a full turn from itself: its key begins with True or with its name."""
+    return isinstance(key, tuple) and key[0] in (True, "angle")
+
+
+def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel, ...]) -> Results:
+    """Motion and reactions of a linkage without a file, at places q of its driver (position 0 first)."""
+    law = driver_motion(linkage, float(q[0]))
+    motion = move(linkage, kernels, q, law)
+    where = near_dead(motion)
+    if bool(np.any(where)):
+        motion = refined(motion, widened(linkage), exactly(q[where]), law, where)
+    inputs = Inputs(linkage)
+    mechanism = Mechanism(inputs, structure).known(
+        kernels=kernels, driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False), asked=q, dead=(),
+        output=None, outputs=(), strokes=None, further=(), travels=(), pressure=(),
+    )  # fmt: skip
+    return with_forces(Results(inputs, structure, mechanism, tuple(range(len(q))), motion), cycle=False)
+
+
+def bounds(results: Results) -> tuple[Cells, Digits]:
+    """Values and their digits, of a linkage whose numbers are exact as they stand when it has no file (see `bare`).
+
+    Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
+    links, force and couple of pairs, balancing of drivers.
+    """
+    return quantities(results), judged(results, quantities)
+
+
+def quantities(results: Results) -> Cells:
+    """The motion and reactions of results, by quantity, name and component."""
+    assert results.motion is not None
+    found: dict[Hashable, Real] = {}
+    for quantity, name, value in leading_values(results.motion, results.reactions):
+        for component, part in (("x", value.real), ("y", value.imag)) if quantity.vector else (("", value),):
+            found[quantity.name, name, component] = part
+    return found
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Judges values read out of results, at some positions together; arrays are (values, positions)."""
+
+    results: Results
+    of: Callable[[Results], Cells]
+    values: Cells
+    blur: Real
+
+    def at(self, chosen: Real, near: bool, mu: float) -> Real:
+        """Bounds and both sensitivities at the chosen positions, all of which are near a dead one or none is."""
+        results, motion = self.results, self.results.motion
+        assert motion is not None
+        q, first, blur = exactly(motion.q[chosen]), results.start, self.blur[chosen]
+        if results.inputs.extended is not None and results.inputs.request.places:
+            places = np.stack(results.inputs.extended().request.places)
+            first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
+        wide = at(results, exact(results), q, first, chosen)
+        values, true = np.stack([value[..., chosen] for value in self.values.values()]), self.rows(self.of(wide))
+        if near:
+            share, paper, by_q = self.responses(wide.linkage, q, first, chosen, true, _step(wide))
+        else:
+            share, paper, by_q = self.responses(results.linkage, motion.q[chosen], results.start, chosen, values, STEP)
+        bound = rounded(self.gap(values, true)) + ROUNDOFF * np.abs(values)
+        if results.running is not None:
+            bound = bound + KNOWN_LAW * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
+        bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
+        return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
+
+    def responses(self, linkage: Linkage, q: Real, first: float, chosen: Real, rows: Real, step: float) -> Any:
+        """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place.
+
+        All in one run: its positions are those at q once for each number that is changed there, the place first. rows:
+        the values at q; step: the relative change of a length.
+        """
+        count, data = len(q), lengths(self.results.linkage)
+        sizes = largest_beside(data)
+        reach = 1.0 if self.results.linkage.driver.kind == "turn" else np.max(sizes, initial=0.0) or 1.0
+        by = step * np.array([reach, *sizes])
+        there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
+        changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
+        places = q[there] + np.where(number == 0, by[0], 0.0)
+        other = at(self.results, all_changed(linkage, changes), places, first, chosen[there])
+        gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
+        slopes = gaps / by[:, None]
+        values = np.array([abs(length.value) for length in data])
+        return SHARE * np.tensordot(slopes[:, 1:], values, (1, 0)), PAPER * slopes[:, 1:].sum(1), slopes[:, 0]
+
+    def rows(self, cells: Cells) -> Real:
+        """The values one below the other; those that are not there are 0."""
+        nothing = np.zeros(np.shape(next(iter(cells.values()))))
+        found: Real = array([cells.get(key, nothing) for key in self.values])
+        return found
+
+    def gap(self, one: Real, other: Real) -> Real:
+        """How far values are from others; of angles the way round."""
+        away: Real = np.abs(one - other)
+        turning = np.array([[is_angle(key)] for key in self.values])
+        return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
+
+
+def _step(results: Results) -> float:
+    """The relative change of a length for derivatives near dead positions: small against what is left to them."""
+    motion = results.motion
+    assert motion is not None
+    least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
+    return min(STEP, max(CLOSE * least**2, LEAST))
+
+
+def exact(results: Results) -> Linkage:
+    """The linkage with the decimals of its file; without a file, with its numbers as they stand."""
+    extended = results.inputs.extended
+    return widened(results.linkage) if extended is None else extended().linkage
+
+
+def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real | None = None) -> Results:
+    """The same results at places q with the numbers of another linkage in the same assembly.
+
+    first: the place of position 0. chosen: which of the positions these are; all of them when left out.
+    """
+    assert results.motion is not None
+    kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
+    # a law of motion that was found for the machine is taken as it is
+    moved = move(linkage, kernels, q, results.running or driver_motion(linkage, first))
+    numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
+    strokes = results.strokes
+    if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
+        strokes = _begun(strokes, linkage, kernels, q)
+    found = replace(
+        results, inputs=replace(results.inputs, linkage=linkage), structure=results.structure.rebind(linkage),
+        mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes), motion=moved,
+        numbers=numbers,
+    )  # fmt: skip
+    if results.reactions is None:
+        return found
+    found = with_forces(found, cycle=False)
+    assert found.lever is not None and results.lever is not None
+    return replace(found, lever=found.lever.with_rows_of(results.lever))
+
+
+def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
+    """Strokes whose output begins and ends where it really is there: tables against the stroke are counted from there,
+    and in shares of its run."""
+    still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
+    lows: list[Any] = [
+        output_place(move(linkage, kernels, still + s.start, law, 0), strokes.link) for s in strokes.strokes
+    ]
+    swings = linkage.output_swings(strokes.link)
+    begun = []
+    for k, (stroke, low) in enumerate(zip(strokes.strokes, lows, strict=True)):
+        more = lows[(k + 1) % len(lows)] - low - stroke.run
+        run = stroke.run + (more - 2 * np.pi * np.round(rounded(more) / (2 * np.pi)) if swings else more)
+        begun.append(replace(stroke, low=low, run=run))
+    others = tuple(_begun(other, linkage, kernels, q) for other in strokes.others)
+    return replace(strokes, strokes=tuple(begun), others=others)
+
+
+# Bounds by rounding from what the stages found on their way: how far each group is from its dead positions.
+#
+# A group whose margin is m gives places to u/m and velocities, accelerations and forces to u/m^2 (u: unit roundoff),
+# and hands its errors on to the groups after it. So at a position all numbers are known to
+#
+#     bound = LOSS u (1 + |q|) product(1/m)^2
+#
+# of the largest value of their kind that the mechanism has. It costs nothing, needs no wider float, and is wide: it
+# says 10 to 13 digits where 15 are true. Near dead positions, where it says fewer than are printed, positions are
+# judged by accuracy.digits.
+
+
+LOSS = 128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
+SHARP = 10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
+AWAY = 4.0  # the same for a driver that is not where it was asked to be
+FEWEST = 0.5e-6  # of the largest value: where so much is open, six figures are not sure
+
+
+def relative(results: Results, blur: float = 0.0) -> Real:
+    """How far numbers at each position may be from the truth, in shares of the largest of their kind.
+
+    blur: how far places of the driver may be from those that were asked for (rad or m).
+    """
+    motion = results.motion
+    assert motion is not None
+    unit = np.full(np.shape(motion.q), ROUNDOFF)
+    if motion.where is not None:  # computed in extended precision, and rounded
+        unit[motion.where] = EPS
+    away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
+    lost = growth(results)
+    way = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
+    if motion.limits is not None:
+        lost = np.where(motion.limits, LIMIT_AGREES / (LOSS * ROUNDOFF), lost)
+    found: Real = LOSS * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + AWAY * away * lost
+    return found if results.running is None else np.maximum(found, KNOWN_LAW)
+
+
+def growth(results: Results) -> Real:
+    """How much errors grow on their way through the groups, at each position."""
+    motion = results.motion
+    assert motion is not None
+    lost = np.ones(np.shape(motion.q))
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        with np.errstate(all="ignore"):
+            lost = lost * np.maximum(SHARP * kernel.near / at.margin, 1.0) ** 2
+    return lost
+
+
+def slenderness(results: Results) -> float:
+    """The size of the mechanism over its shortest link: errors of places turn that by so much more."""
+    short = [spread(results.linkage, link) for link in results.linkage.moving]
+    return _longest(results) / min((size for size in short if size > 0), default=1.0)
+
+
+def sizes(results: Results) -> Mapping[Dimension, float]:
+    """The largest value of each kind that the mechanism has, SI; of plain numbers that of transfer functions."""
+    motion = results.motion
+    assert motion is not None
+    size = _longest(results)
+    w = _most(rate.w for rate in motion.first.values())
+    v = _most(rate.v for rate in motion.first.values()) + w * size
+    e = _most(accel.e for accel in motion.second.values()) + w * w
+    a = _most(accel.a for accel in motion.second.values()) + e * size
+    rate, gain = _most([motion.rate]), _most([motion.acceleration])
+    found = {
+        LENGTH: max(size, v), ANGLE: np.pi, SPEED: v * rate, ANGULAR_SPEED: w * rate,
+        ACCELERATION: a * rate**2 + v * gain, ANGULAR_ACCELERATION: e * rate**2 + w * gain, NUMBER: max(v, w, a, e),
+    }  # fmt: skip
+    if results.reactions is not None:
+        applied = results.reactions.applied
+        links = results.linkage.links.values()
+        mass, inertia = _most(link.mass for link in links), _most(link.inertia for link in links)
+        # a link that does not move has the errors of its forces all the same
+        forces = max(found[ACCELERATION] * mass, _most(reaction.force for reaction in results.reactions.all))
+        couples = max(found[ANGULAR_ACCELERATION] * inertia, _most(load.moment for load in applied))
+        found[INERTIA] = mass * v**2 + inertia * w**2  # reduced to the driver
+        found[FORCE] = max(forces, _most(load.force for load in applied)) + couples / size
+        found[MOMENT] = found[FORCE] * found[LENGTH]
+    return found
+
+
+def _longest(results: Results) -> float:
+    """How far points of the links, and what acts on them, are from one another and from the origin, m."""
+    assert results.motion is not None
+    linkage = results.linkage
+    spreads = (spread(linkage, link) for link in linkage.links)
+    acted_on = _most([*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)])
+    longest: float = max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
+    return longest
+
+
+def _most(values: object) -> float:
+    """The largest size of arrays, nan left out."""
+    found = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
+    return float(max(found, default=0.0))

@@ -1,0 +1,273 @@
+"""The lengths that a linkage is given by, each of them changed alone; and a linkage of double-doubles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
+from tmm_cli.mechanics.kinematics.driver_range import DriverRange
+from tmm_cli.mechanics.kinematics.pressure import Pressure, pressure_at
+from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.double_double import exactly
+from tmm_cli.mechanics.numerics.tolerances import NO_COORDINATE, ROUNDOFF
+from tmm_cli.mechanics.numerics.vectors import Real, Record, mapped
+
+
+@dataclass(frozen=True)
+class Length:
+    """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed.
+
+    along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0. paths: where it
+    stands in the linkage (vectors.mapped).
+    """
+
+    link: str
+    along: complex | float
+    value: float
+    paths: frozenset[str]
+
+
+def lengths(linkage: Linkage) -> tuple[Length, ...]:
+    """Every coordinate of every link that is not zero. The same number on the same link is one length."""
+    found: dict[tuple[str, complex, float], list[str]] = {}
+    vectors = list(_vectors(linkage))
+    least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
+    for link, path, value in vectors:
+        for along, part in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
+            if abs(part) > least:
+                found.setdefault((link, along, part), []).append(path)
+    return tuple(Length(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items())
+
+
+def largest_beside(data: Sequence[Length]) -> Real:
+    """The largest length of the same link, of each length (m)."""
+    return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
+
+
+def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
+    """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
+    return all_changed(linkage, [(length, by)])
+
+
+def all_changed(linkage: Linkage, changes: Iterable[tuple[Length, Any]]) -> Linkage:
+    """The same with several of its lengths longer, each by so much."""
+    more: dict[str, Any] = {}
+    for length, by in changes:
+        for path in length.paths:
+            more[path] = more.get(path, 0.0) + length.along * by
+    return mapped(lambda path, value: value + more[path] if path in more else value, linkage)
+
+
+def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
+    """Every vector in axes of a link: that link, where it stands, its value."""
+    for name, link in linkage.links.items():
+        for point, value in link.points.items():
+            yield name, f"links.{name}.points.{point}", value
+        if np.any(link.mass != 0):
+            yield name, f"links.{name}.centre", link.centre
+    for k, slide in enumerate(linkage.slides):
+        yield slide.carrier, f"slides[{k}].through", slide.through
+        yield slide.runner, f"slides[{k}].at", slide.at
+    for k, load in enumerate(linkage.loads):
+        if load.force != 0:
+            yield load.link, f"loads[{k}].at", load.at
+    for k, spring in enumerate(linkage.springs):
+        if not spring.turns:
+            yield spring.i, f"springs[{k}].at_i", spring.at_i
+            yield spring.j, f"springs[{k}].at_j", spring.at_j
+
+
+def widened(record: Record) -> Record:
+    """The same record with every float and complex number as a double-double, as it stands."""
+
+    def wide(path: str, value: Any) -> Any:
+        return exactly(value) if isinstance(value, float | complex) else value
+
+    return mapped(wide, record)
+
+
+# How far what was searched for goes with each length, without a search: from its function beside where it was found.
+#
+# An extreme (f' = 0) goes by -(df'/dp) / f'', and its value as f does where it is. At an end of the driver's way it
+# is the driver that turns back while the group that stops it goes on: the end goes as the driver does with that group
+# held.
+
+
+Function = Callable[[LinkStates], Real]  # (..., places)
+
+ASIDE = 1e-4  # rad, or of a slider's way: so far before and after it an extreme is looked at
+CHANGE = 1e-6  # of a length, beside an extreme
+INSIDE = 1e-4 * np.array([1, 4, 16])  # of the way: so far from an end groups are looked at; they go as roots of it
+SMALL = 1e-3  # of what is left to an end: steps of the driver there
+LEAST = 1e-6  # likewise: steps of lengths
+AT_END = 2e-9  # of the way: a largest pressure angle that was found so near to its end is there
+FLAT = 64 * ROUNDOFF  # of its value: an extreme that bends less has no place of its own
+SMOOTH = 0.9  # of the one side's bend the other has at least; else it is the edge of a dwell, which no length shifts
+
+
+def responses(results: Results, data: tuple[Length, ...]) -> Mapping[str, Real]:
+    """How far each number that was searched for goes a metre of each length, (lengths,), by its path in results.
+
+    What tells nothing is 0: a place where it is flat, a length that passive constraints do not leave free.
+    """
+    assert results.driver_range is not None
+    beside = _Beside(results, results.driver_range, data)
+    found = {path: _at_end(beside.ends[k]) for k, paths in enumerate(ends(results.driver_range)) for path in paths}
+    for path, strokes in outputs(results).items():
+        starts, lows = beside.extremes(np.array([s.start for s in strokes.strokes]), _output(strokes.link))
+        ways = results.linkage.driver.sense * (np.roll(starts, -1, axis=0) - starts)
+        parts = {"start": starts, "length": ways, "low": lows, "run": np.roll(lows, -1, axis=0) - lows}
+        found |= {f"{path}.strokes[{k}].{part}": row for part, rows in parts.items() for k, row in enumerate(rows)}
+    for k, travel in enumerate(results.travels):
+        rows = beside.travel(np.array([travel.low_at, travel.high_at]), _output(travel.link))
+        paths = [f"travels[{k}].{part}" for part in ("low_at", "high_at", "low", "high")]
+        found |= zip(paths, np.concatenate(rows), strict=True)
+    for k, dead in enumerate(results.dead):
+        found[f"dead[{k}].place"] = beside.extremes(np.array([dead.place]), _margin(dead.group))[0][0]
+    for k, pressure in enumerate(results.pressure):
+        place, largest = beside.pressure(pressure)
+        found |= {f"pressure[{k}].place": place, f"pressure[{k}].largest": largest}
+        if np.isfinite(pressure.other):
+            place, other = beside.pressure(replace(pressure, place=pressure.other_place, largest=pressure.other))
+            found |= {f"pressure[{k}].other_place": place, f"pressure[{k}].other": other}
+    return {path: np.where(np.isfinite(rate), rate, 0.0) for path, rate in found.items()}
+
+
+def ends(driver_range: DriverRange) -> tuple[list[str], list[str]]:
+    """Where the start of the driver's way and its end stand in results."""
+    limits = [(f"driver_range.limits[{k}].place", limit.place) for k, limit in enumerate(driver_range.limits)]
+    named = (("start", driver_range.start), ("end", driver_range.end))
+    start, end = ([f"driver_range.{name}", *(path for path, at in limits if at == place)] for name, place in named)
+    return start, end
+
+
+def outputs(results: Results) -> dict[str, Strokes]:
+    """The outputs that have strokes, by their paths in results."""
+    every = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
+    return {path: strokes for path, strokes in every.items() if strokes is not None and strokes.strokes}
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """Functions of the links beside places of the driver; what it gives are rates a metre, (..., lengths)."""
+
+    results: Results
+    driver_range: DriverRange
+    data: tuple[Length, ...]
+
+    def values(self, places: Real, aside: Real | float, of: Function, change: float) -> tuple[Real, Real]:
+        """A function before, at and after each place (..., 3, places), and its rates a metre (..., 3, places, lengths).
+
+        change: of the largest length of the same link.
+        """
+        q = places + aside * np.array([[-1], [0], [1]])
+        by = change * largest_beside(self.data)
+        number = np.repeat(np.arange(len(by) + 1), q.size)
+        changes = [(length, np.where(number == k, by[k - 1], 0.0)) for k, length in enumerate(self.data, 1)]
+        linkage = all_changed(self.results.linkage, changes)
+        kernels = tuple(kernel.rebind(linkage) for kernel in self.results.kernels)
+        found = of(link_states(linkage, kernels, np.tile(q.ravel(), len(by) + 1), 0))
+        found = np.moveaxis(found.reshape(*np.shape(found)[:-1], -1, *q.shape), -3, -1)
+        return found[..., 0], (found[..., 1:] - found[..., :1]) / by
+
+    def extremes(self, places: Real, of: Function) -> tuple[Real, Real]:
+        """Of places where a function is extreme, and of its values there, both (places, lengths)."""
+        slider = self.results.linkage.driver.kind == "slide"
+        aside = ASIDE * (self.driver_range.end - self.driver_range.start if slider else 1.0)
+        values, rates = self.values(places, aside, of, CHANGE)
+        before, after = values[0] - values[1], values[2] - values[1]
+        bends = np.minimum(before / after, after / before) > SMOOTH
+        bends = bends & (np.abs(before) > FLAT * np.abs(values[1]))
+        moved = -(rates[2] - rates[0]) / 2 * (aside / (before + after))[:, None]
+        return np.where(bends[:, None], moved, 0.0), rates[1]
+
+    def by_end(self, k: int, of: Function) -> tuple[Real, Real]:
+        """A function's slopes by the driver's place (..., 3) and rates (..., 3, lengths) beside an end."""
+        span = self.driver_range.end - self.driver_range.start
+        left = INSIDE * span
+        places = self.driver_range.end - left if k else self.driver_range.start + left
+        values, rates = self.values(places, SMALL * left, of, LEAST * INSIDE[0] * min(span, 1.0))
+        return (values[..., 2, :] - values[..., 0, :]) / (2 * SMALL * left), rates[..., 1, :, :]
+
+    @cached_property
+    def ends(self) -> tuple[Real, Real]:
+        """Of the driver's places beside both ends, with the group held that stops it there, each (3, lengths)."""
+        return self._end(0, self.driver_range.start), self._end(1, self.driver_range.end)
+
+    def _end(self, k: int, place: float) -> Real:
+        group = next((kernel.group for kernel in self.results.kernels if kernel.group.title in self.stops(place)), None)
+        if self.driver_range.full or group is None:
+            return np.zeros((3, len(self.data)))
+        slopes, rates = self.by_end(k, lambda states: _coordinates(states, group.links))
+        best = int(np.nanargmax(np.abs(slopes[:, 0])))
+        moved: Real = -rates[best] / slopes[best, :, None]
+        return moved
+
+    def stops(self, place: float) -> set[str]:
+        """The group that stops the driver at an end."""
+        return {limit.group for limit in self.driver_range.limits if limit.place == place}
+
+    def travel(self, places: Real, of: Function) -> tuple[Real, Real]:
+        """As extremes, of places some of which are the first or the last that was asked for."""
+        asked, driver_range = self.results.asked, self.driver_range
+        moved, rates = self.extremes(places, of)
+        start, end = map(_at_end, self.ends)
+        share = (places[:, None] - driver_range.start) / (driver_range.end - driver_range.start)
+        edges = (start + share * (end - start)) * (not self.results.inputs.request.places)
+        inner = (np.min(asked) < places) & (places < np.max(asked))
+        return np.where(inner[:, None], moved, edges), rates
+
+    def pressure(self, pressure: Pressure) -> tuple[Real, Real]:
+        """Of the place of a largest pressure angle, and of that angle, each (lengths,).
+
+        At an end where a group stops the driver and it is a right angle it stays one, whatever the lengths.
+        """
+        driver_range = self.driver_range
+        of, close = _angle(pressure), AT_END * (driver_range.end - driver_range.start)
+        for k, end in () if driver_range.full else enumerate((driver_range.start, driver_range.end)):
+            if abs(pressure.place - end) <= close:
+                moved = _at_end(self.ends[k])
+                if pressure.largest == np.pi / 2:
+                    return moved, np.zeros(len(self.data))
+                slopes, rates = self.by_end(k, of)
+                return moved, _at_end(rates + slopes[:, None] * moved)
+        places, largest = self.extremes(np.array([pressure.place]), of)
+        return places[0], largest[0]
+
+
+def _at_end(rates: Real) -> Real:
+    """Rates at an end from those inside, (3, lengths): polynomials of roots of what is left to it, 1 to 2 to 4."""
+    found: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
+    return found
+
+
+def _coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
+    """All places and directions of some links."""
+    poses = [states.poses[link] for link in links]
+    vectors = [part for pose in poses for part in (pose.x, pose.z)]
+    return np.stack([part for vector in vectors for part in (vector.real, vector.imag)])
+
+
+def _output(link: str) -> Function:
+    return lambda states: output_place(states, link)
+
+
+def _angle(pressure: Pressure) -> Function:
+    return lambda states: pressure_at(states, pressure.group, pressure.link)
+
+
+def _margin(group: str) -> Function:
+    """The square of a group's margin, which is smooth through a dead position."""
+
+    def of(states: LinkStates) -> Real:
+        titles = [kernel.group.title for kernel in states.kernels]
+        return states.placements[titles.index(group)].margin ** 2
+
+    return of

@@ -1,0 +1,318 @@
+"""Roots and extremes: how far from where they were found the signs of their functions are sure.
+
+In double-doubles, or coarsely in float64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_cli.mechanics.accuracy.digits import PAPER, SHARE, Digits, exact, growth, slenderness
+from tmm_cli.mechanics.accuracy.lengths import ends, lengths, outputs, responses
+from tmm_cli.mechanics.analysis.pipeline import CYCLE, Results, cycle_losses
+from tmm_cli.mechanics.groups.base import Closed
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.kinematics.driver_range import DriverRange
+from tmm_cli.mechanics.kinematics.pressure import pressure_at
+from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel, output_place, output_slope
+from tmm_cli.mechanics.numerics.double_double import EPS, DoubleDouble, rounded
+from tmm_cli.mechanics.numerics.tolerances import NO_PRESSURE, ROUNDOFF
+from tmm_cli.mechanics.numerics.vectors import Real, mapped
+
+FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
+AROUND = 65  # places over the driver's way that tell how large a function is
+SMOOTH = 1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
+NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
+FINE = 1e-10  # of the largest value: more noise in float64, near a dead position, would blur all that was found
+LEAST = 1e-12  # of the way: ends of groups that were followed there
+GUESS = 1e-9  # of the way: dead positions where a margin is least
+
+
+class Wide:
+    """The linkage of results at any places of its driver, with the decimals of its file.
+
+    growth: how much rounding of the data may grow; then the linkage is as it is, in float64.
+    """
+
+    def __init__(self, results: Results, growth: float | None = None) -> None:
+        self.results = results
+        self.linkage = exact(results) if growth is None else results.linkage
+        self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
+        self.kind: Any = DoubleDouble if growth is None else np.asarray
+        self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
+        self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
+
+    def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
+        """Some links there, and those they hang on."""
+        kernels = towards(self.kernels, links)
+        return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
+
+    def sides(self, places: Real) -> tuple[Real, Real]:
+        """Growing distances from each place, the last bit first, and the places on both sides at them."""
+        steps = 2.0 ** np.arange(FARTHEST) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
+        there = self.kind(places)[:, None]
+        return steps, np.stack([there - steps, there + steps])
+
+    def brackets(
+        self, places: Real, of: Callable[[LinkStates], Real], links: Iterable[str], size: float | None = None
+    ) -> tuple[Real, LinkStates, Real]:
+        """The least distance from each place at which a function has different signs on both sides for sure, or inf.
+
+        With the links, at these places first, and how large the function may be there. links: those it is about. size:
+        its largest value; when left out that over the driver's way.
+        """
+        steps, both = self.sides(places)
+        driver_range = self.results.mechanism.driver_range
+        way = np.linspace(driver_range.start, driver_range.end, AROUND)
+        with np.errstate(all="ignore"):
+            states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
+            there, values, along = np.split(rounded(of(states)), [len(places), len(places) + both.size])
+        size = float(np.nanmax(np.abs(along))) if size is None else size
+        below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
+        distance = _first((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
+        return distance, states, np.abs(there) + self.noise * size
+
+    def turns(self, places: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
+        """Of places where an output turns back, and of where it is told to be then.
+
+        inner: which of them are such; the others were asked for.
+        """
+        carrier = self.linkage.output_carrier(link)
+        bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
+        bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(places))
+        off = np.abs(rounded(output_place(states, link)[: len(places)] - runs))
+        if self.linkage.output_swings(link):
+            off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
+        off = np.nan_to_num(off) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
+        return bounds, 2 * off + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
+
+    def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
+        """Of the driver's places at the ends of strokes, and of where the output is then."""
+        if strokes.link not in self.known:
+            places, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
+            self.known[strokes.link] = self.turns(places, lows, strokes.link)
+        return self.known[strokes.link]
+
+    def travel(self, travel: Travel) -> tuple[Real, Real]:
+        """Of the driver's places at the least and the largest run of an output, and of these runs."""
+        places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
+        inner = (np.min(asked) < places) & (places < np.max(asked))
+        return self.turns(places, np.array([travel.low, travel.high]), travel.link, inner)
+
+    def end(self, place: float, towards: int, group: str, span: float) -> float:
+        """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
+        kernel = next((k for k in self.kernels if k.group.title == group), None)
+        if not isinstance(kernel, Closed):
+            return LEAST * span + 4 * ROUNDOFF * abs(place)
+        steps, both = self.sides(np.array([place]))
+        inside, outside = self.at(both.ravel(), kernel.group.links).placed.reshape(both.shape)[::towards]
+        sure = float(_first(inside & ~outside, steps)[0])
+        return (sure if np.isfinite(sure) else LEAST * span) + self.noise * span
+
+    def dead(self, place: float, group: str, span: float) -> float:
+        """Of a dead position inside the way: there the gap of the group stops growing."""
+        kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
+        if not isinstance(kernel, Closed):
+            return GUESS * span
+
+        def closing(states: LinkStates) -> Real:
+            at = kernel.closed(states.poses, states.drives)
+            return kernel.residual_rate(at, states.poses, states.first, states.drives)
+
+        distance = self.brackets(np.array([place]), closing, kernel.group.links, float(kernel.size))[0]
+        return min(float(distance[0]), GUESS * span)
+
+    def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
+        """Of an extreme pressure angle, and of the driver's place there: where it is flat, half the digits only.
+
+        At an end of the way it is where the end is; where it is the same all the way, no place is known (infinity).
+        """
+        if largest < NO_PRESSURE:
+            return largest + 4 * ROUNDOFF, np.inf
+        step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
+        driver_range = self.results.mechanism.driver_range
+        limit = next((limit for limit in driver_range.limits if limit.place == place), None)
+        if largest == np.pi / 2 and limit is None:  # where the group is dead inside the way
+            return 2 * ROUNDOFF, self.dead(place, group, span)
+        if largest == np.pi / 2 and limit is not None:
+            return 2 * ROUNDOFF, self.end(place, -1 if place == driver_range.start else 1, limit.group, span)
+        states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
+        b2, b1, here, a1, a2 = pressure_at(states, group, link)
+        error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
+        edge = 2 * GUESS * span
+        for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
+            if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
+                return error, edge + 4 * ROUNDOFF * abs(place)
+        bend = abs(float(2 * here - b1 - a1)) / step**2  # of an extreme of either kind
+        if not bend * step**2 > error:  # no bend that could be told from rounding
+            return error, np.inf
+        slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
+        off = abs(slope / bend)  # where the slope of a smooth top is nothing
+        flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
+        there = 4 * off + SMOOTH * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
+        return error, there if there < span else np.inf
+
+
+def coarsely(results: Results) -> Wide:
+    """In float64, with the rounding of the data as it may grow on its way through the groups, if that tells enough."""
+    grown = growth(results)
+    most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
+    return Wide(results, most if NOISE * ROUNDOFF * most < FINE else None)
+
+
+def _first(sure: Real, steps: Real) -> Real:
+    """The first of its steps at which each place is sure, or inf."""
+    return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
+
+
+# Bounds of what is searched for: ends of strokes, limits, dead positions, largest pressure angles.
+#
+# A root is known as well as its function's sign: in double-doubles the nearest places beside it where the sign is
+# sure. What follows from several such numbers is shifted by the bound of each of them, one after the other.
+
+
+Cells = Mapping[Hashable, Real]
+
+LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
+SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
+
+
+class Found(NamedTuple):
+    """A number of the mechanism that was searched for: where it stands, its bound, the results with it shifted by so
+    much; sense: to which side they are.
+    """
+
+    path: str
+    bound: float
+    shifted: Callable[[float], Results]
+    sense: int = 1
+
+
+def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: float = float("nan")) -> Digits:
+    """Judge what `of` reads out of results that belongs to no position.
+
+    mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
+    """
+    values, data = of(results), lengths(results.linkage)
+    here = _row(values, values)
+    bound = 2 * ROUNDOFF * np.abs(here)
+    with np.errstate(all="ignore"):
+        rates = {} if np.isnan(mu) or results.driver_range is None else responses(results, data)
+        goes = np.zeros((len(here), len(data)))  # how far each number goes a metre of each length
+        for found in found_in(results, wide):
+            rate = rates.get(found.path, 0.0)
+            by = found.sense * (min(SHIFT, LARGE * found.bound) or (SHIFT if np.any(rate) else 0.0))
+            if by:
+                slope = _gap(_row(of(found.shifted(by)), values), here) / by
+                bound = bound + np.where(slope != 0, np.abs(slope) * found.bound, 0.0)
+                goes = goes + np.where(rate, slope[:, None] * rate, 0.0)
+        sizes = np.array([abs(length.value) for length in data])
+        share, paper = SHARE * np.abs(goes) @ sizes, PAPER * mu * np.abs(goes).sum(axis=1)
+    ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
+    # of nothing an array is still one part
+    told = [dict(zip(values, np.split(part, ends_of), strict=False)) for part in (bound, share, paper)]
+    return Digits(told[0], told[1], told[2], mu)
+
+
+def _row(moved: Cells, values: Cells) -> Real:
+    """All numbers in a row; what is not there any more has not moved."""
+    kept = (
+        moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
+        for key, value in values.items()
+    )
+    return np.concatenate([np.zeros(0), *(np.ravel(value) for value in kept)])
+
+
+def _gap(moved: Real, here: Real) -> Real:
+    """How far numbers have moved, and to which side; a full turn is no way, nor is one from or to nowhere."""
+    way: Real = moved - here
+    turn = np.copysign(2 * np.pi, way)
+    return np.where(np.abs(way - turn) < 1e-3, way - turn, np.where(np.isnan(way), 0.0, way))
+
+
+def found_in(results: Results, wide: Wide) -> Iterator[Found]:
+    """Everything that was searched for."""
+    driver_range = results.driver_range
+    if driver_range is None:
+        return
+    span = driver_range.end - driver_range.start
+
+    def found(path: str, bound: float, sense: int = 1, also: Sequence[str] = ()) -> Found:
+        return Found(path, float(bound), lambda by: _shifted(results, dict.fromkeys((path, *also), by)), sense)
+
+    for (end, *also), bound in zip(ends(driver_range), _ends(results, driver_range, wide), strict=True):
+        yield found(end, bound, also=also)
+    for output, strokes in outputs(results).items():
+        starts, lows = wide.strokes(strokes)
+        parts = {"start": starts, "length": starts + np.roll(starts, -1), "low": lows, "run": lows + np.roll(lows, -1)}
+        for k in range(len(starts)):
+            for part, bounds in parts.items():
+                yield found(f"{output}.strokes[{k}].{part}", bounds[k])
+    for k, travel in enumerate(results.travels):
+        for part, bound_at, bound in zip(("low", "high"), *wide.travel(travel), strict=True):
+            yield found(f"travels[{k}].{part}_at", bound_at)
+            yield found(f"travels[{k}].{part}", bound)
+    for k, dead in enumerate(results.dead):
+        yield found(f"dead[{k}].place", wide.dead(dead.place, dead.group, span))
+        yield found(f"dead[{k}].margin", dead.margin + 4 * ROUNDOFF)
+    for k, pressure in enumerate(results.pressure):
+        largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
+        yield found(f"pressure[{k}].largest", largest, -1)
+        yield found(f"pressure[{k}].place", there)
+        if np.isfinite(pressure.other):
+            other, there = wide.pressure(pressure.group, pressure.link, pressure.other_place, pressure.other, span)
+            yield found(f"pressure[{k}].other", other, -1)
+            yield found(f"pressure[{k}].other_place", there)
+    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
+        rough = cycle_losses(results, CYCLE // 2, ranges=False)
+
+        def towards(by: float) -> Results:
+            losses = mapped(
+                lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked", "ranges")
+            )
+            return replace(results, losses=losses)
+
+        yield Found("losses", 1.0, towards)
+
+
+def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[float]:
+    """Bounds of both ends of the driver's way."""
+    span = driver_range.end - driver_range.start
+    for sense, place in ((-1, driver_range.start), (1, driver_range.end)):
+        limit = None if driver_range.full else _limit(results, place)
+        yield 2 * ROUNDOFF * abs(place) if limit is None else wide.end(place, sense, limit, span)
+
+
+def blur(results: Results, wide: Wide) -> float:
+    """How far position 0 may be from where it was asked for, rad or m."""
+    request, driver_range = results.inputs.request, results.driver_range
+    if driver_range is None or request.places:
+        return 0.0
+    if not driver_range.full:
+        return max(_ends(results, driver_range, wide))
+    if request.start != "working stroke" or results.strokes is None or not results.strokes.strokes:
+        return 0.0
+    return float(wide.strokes(results.strokes)[0][0])
+
+
+def _shifted(results: Results, by: Mapping[str, float]) -> Results:
+    """The results with numbers of the mechanism shifted by so much; paths: travels[0].low, as vectors.mapped has them.
+
+    Pressure angles at the positions are no searched ones: they stay.
+    """
+
+    def moved(part: str) -> Any:
+        return mapped(lambda path, value: value + by[path] if path in by else value, getattr(results, part), path=part)
+
+    parts = {path.partition(".")[0].partition("[")[0] for path in by}
+    return replace(results, mechanism=results.mechanism.changed(**{part: moved(part) for part in parts | {"pressure"}}))
+
+
+def _limit(results: Results, place: float) -> str | None:
+    """The group that stops the driver at a place."""
+    assert results.driver_range is not None
+    return next((limit.group for limit in results.driver_range.limits if limit.place == place), None)

@@ -1,0 +1,135 @@
+"""What of a mechanism is worth a second look: each check with its number, the limit and where it is nearest to it.
+
+What the positions alone would not show is looked for over the whole of what is asked: a cycle, or first to last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.forces.loads import given_loads
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.kinematics.driver_range import SCAN
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.roots import least
+from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES
+from tmm_cli.mechanics.numerics.vectors import Real, dot
+
+Kind = Literal["slot", "pressure", "load", "near dead", "lever"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A number against its limit. of: the thing, by its name in the file; at: the driver's place (rad or m), if any.
+
+    slot: how far beyond the point `detail` of its slot a link is (m; negative: what is left), at most 0. pressure: the
+    largest pressure angle on a link (rad), at most the limit. load: the work (J) with which a load that acts always
+    drives in one stroke (`detail`: working or idle) while it resists in the other, at most 0. near dead: least
+    margin of a group, at least the limit. lever: its largest difference from the force plan, at most the limit.
+    """
+
+    kind: Kind
+    of: str
+    at: float | None
+    value: float
+    limit: float
+    holds: bool
+    detail: str = ""
+
+
+@lru_cache(maxsize=1)
+def checks(results: Results) -> tuple[Check, ...]:
+    """All checks of results with forces, which have a motion and are whole."""
+    if results.lever is None or results.of or results.driver_range is None:
+        return ()
+    closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
+    found = (
+        *_slots(results), *_pressure(results), *_loads(results, closely), *_near_dead(results, closely),
+        *_lever(results),
+    )  # fmt: skip
+    if not results.driver_range.full:
+        return found
+    cycle = results.driver_range.end - results.driver_range.start
+    seam = SEAM_OF_EXTREMES
+    return tuple(c if c.at is None else replace(c, at=max((c.at + seam) % cycle - seam, 0.0)) for c in found)
+
+
+def _slots(results: Results) -> Iterable[Check]:
+    """The end of each slot to which its link comes nearest, or beyond which it goes farthest."""
+    for name in dict.fromkeys(excess.slide.name for excess in results.slots):
+        worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
+        yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
+
+
+def _pressure(results: Results) -> Iterable[Check]:
+    for found in results.pressure:
+        place = found.place if found.largest > NO_PRESSURE else None
+        yield Check("pressure", found.link, place, found.largest, found.allowed, found.holds, found.group)
+
+
+def _loads(results: Results, motion: Motion) -> Iterable[Check]:
+    """Loads that act always, and are constant or tabulated against the stroke, which comes and goes."""
+    strokes, loads = results.strokes, results.linkage.loads
+    if strokes is None or not strokes.strokes:
+        return
+    always = {
+        x.name: x.table.stroke_link if x.table else "" for x in loads
+        if not x.working_stroke_only and x.window is None and not x.resists and x.base == FRAME
+        and (x.table is None or x.table.against == "stroke")
+    }  # fmt: skip
+    between = (motion.q[1:] + motion.q[:-1]) / 2
+    for load in given_loads(motion, strokes):
+        if load.name not in always:
+            continue
+        works = strokes.of_link(always[load.name]).share(between, motion.linkage.driver.sense)
+        rate, arm = motion.first[load.link], load.at * motion.poses[load.link].z
+        slope: Real = dot(load.force, rate.at(arm)) + load.moment * rate.w
+        work = (slope[1:] + slope[:-1]) / 2 * np.diff(motion.q)
+        work = np.where(np.isfinite(work), work, 0.0)
+        done = {"working": float(np.sum(work[works])), "idle": float(np.sum(work[~works]))}
+        drives = max(done, key=lambda stroke: done[stroke])
+        resists = -min(done.values()) > NO_WORK * float(np.sum(np.abs(work)))
+        both = resists and done[drives] > NO_WORK * float(np.sum(np.abs(work)))
+        yield Check("load", load.name, None, done[drives] if both else 0.0, 0.0, not both, drives if both else "")
+
+
+def _near_dead(results: Results, motion: LinkStates) -> Iterable[Check]:
+    """The least margin of each group: in its dead or change positions, or where it comes nearest to one."""
+    step = abs(float(motion.q[1] - motion.q[0]))
+    for kernel, placement in zip(motion.kernels, motion.placements, strict=True):
+        title = kernel.group.title
+        margin = np.where(motion.placed, placement.margin, np.inf)
+        if not bool(np.any(np.isfinite(margin))):
+            continue
+        k = int(np.argmin(margin))
+        upto = towards(motion.kernels, kernel.group.links)
+        found = [least(partial(_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)]
+        found += [(float(motion.q[k]), float(margin[k]))]
+        found += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
+        place, value = min(found, key=lambda pair: pair[1])
+        yield Check("near dead", title, place, value, kernel.near, value >= kernel.near)
+
+
+def _margin(results: Results, upto: tuple[Kernel, ...], q: Real) -> Real:
+    """Of the last group."""
+    there = link_states(results.linkage, upto, q, 0)
+    return np.where(there.placed, there.placements[-1].margin, np.inf)
+
+
+def _lever(results: Results) -> Iterable[Check]:
+    """The position where the lever differs most from the force plan."""
+    assert results.lever is not None and results.motion is not None
+    counted = results.motion.moving & ~results.locked
+    if bool(np.any(counted)):
+        k = int(np.argmax(np.where(counted, results.lever.difference, -1.0)))
+        value, limit = float(results.lever.difference[k]), results.inputs.lever_limit
+        place = float(results.motion.q[k]) if value > NO_DIFFERENCE else None
+        yield Check("lever", "", place, value, limit, results.lever_holds)

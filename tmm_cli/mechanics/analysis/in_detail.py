@@ -1,0 +1,103 @@
+"""Which positions are drawn in full: those the file names, or where the driver is balanced hardest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.mechanism import Inputs
+from tmm_cli.mechanics.analysis.pipeline import Results, solve
+from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly.enumerate import find_assemblies
+from tmm_cli.mechanics.errors import AmbiguousSketchError, UnknownPositionError
+from tmm_cli.mechanics.kinematics.centres import centres
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.group import Group
+
+
+def in_detail(results: Results) -> tuple[int, ...]:
+    """Indices of the positions in detail, among those computed; none where nothing moves.
+
+    A single position is always one. Where the file names none it is the one of the largest balancing moment or force
+    of the first driver; where nothing acts, the one after position 0, in which the output often rests.
+    """
+    computed = _computed(results)
+    wanted = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
+    if wanted:
+        return tuple(k for k in np.flatnonzero(computed).tolist() if results.numbers[k] in wanted)
+    if not computed.any():
+        return ()
+    balance = balancing(results)
+    if balance.any():
+        return (int(np.argmax(balance)),)
+    return (int(np.flatnonzero(computed)[:2][-1]),)
+
+
+def chosen_here(results: Results) -> bool:
+    """Whether the file leaves it to the program which position is drawn in full."""
+    return len(results.numbers) > 1 and not results.inputs.request.detail
+
+
+def balancing(results: Results) -> Real:
+    """The size of the first driver's balancing moment (N m) or force (N) at each position; zero where there is none."""
+    computed = _computed(results)
+    if results.reactions is None:
+        return np.zeros(len(computed))
+    sizes: Real = np.abs(results.reactions.balance.generalized)
+    return np.where(computed & np.isfinite(sizes), sizes, 0.0)
+
+
+def _computed(results: Results) -> Real:
+    motion = results.motion
+    assert motion is not None
+    return motion.moving & ~results.locked
+
+
+# Instantaneous centres of a mechanism in the positions in detail.
+
+
+def with_centres(results: Results) -> Results:
+    """Kinematics with the centres, in positions that were asked for one by one or are in detail."""
+    motion = results.motion
+    assert motion is not None
+    every = len(results.numbers) < len(results.asked)
+    chosen = np.flatnonzero(motion.moving).tolist() if every else in_detail(results)
+    return replace(results, centres={k: centres(motion, results.structure, k) for k in chosen})
+
+
+# Every real assembly of the groups at some positions, beside the one that the sketch chooses.
+
+
+def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: Any = None) -> Results:
+    """Kinematics with all assemblies at the positions, or at the first in detail; problem: see Results.
+
+    Where the sketch does not decide, the structure with the assemblies. Raises LinkageError as `solve`.
+    """
+    try:
+        results = solve(inputs, "kinematics", positions, problem=problem)
+    except AmbiguousSketchError as error:
+        return _undecided(inputs, error.group, positions or (), problem)
+    numbers = positions or inputs.request.detail[:1] or (0,)
+    return replace(results, assemblies=tuple(
+        find_assemblies(results.linkage, results.structure, results.kernels, float(results.asked[n]), n)
+        for n in numbers
+    ))  # fmt: skip
+
+
+def _undecided(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
+    """The groups before the one that is not decided, and this one, at the sketch's place or those of the file."""
+    results = solve(inputs, "structure", problem=problem)
+    order = [g.links for g in results.structure.solved]
+    kernels = assemble(inputs.linkage, results.structure, results.structure.solved[: order.index(group.links)])
+    given = inputs.request.places
+    for number in positions:
+        if given and number >= len(given):
+            raise UnknownPositionError(number, len(given))
+    places: list[tuple[float, int | None]] = [(given[n], n) for n in positions] if given else []
+    return replace(results, assemblies=tuple(
+        find_assemblies(inputs.linkage, results.structure, kernels, q, number)
+        for q, number in places or [(inputs.linkage.sketch.at, None)]
+    ))  # fmt: skip

@@ -1,0 +1,308 @@
+"""What is asked of intermittent motion: a wheel that a link takes along on some strokes and that stands on others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import groupby
+from operator import attrgetter
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.errors import LinkageError, MissingStrokesError, NoCycleError, SettingError
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import DriverMotion, LawOfMotion, towards
+from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
+from tmm_cli.mechanics.kinematics.motion import Turning, move
+from tmm_cli.mechanics.kinematics.strokes import OutputCurve, Strokes, find_strokes, runs_of
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SHOCKLESS, WHOLE_TURNS
+from tmm_cli.mechanics.numerics.vectors import Real
+
+When = Literal["forward", "backward", "working stroke", "idle stroke"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The linkage of one of the settings that take turns; values: of parameters, as they are written.
+
+    linkage: None where it is that of the file.
+    """
+
+    values: Mapping[str, str] = field(default_factory=dict)
+    linkage: Linkage | None = None
+
+
+@dataclass(frozen=True)
+class WheelTask:
+    """A wheel (or a shaft, a flange) on the axis of `link`, which turns on the frame and takes it along.
+
+    when: the link turns forward (counterclockwise) or backward, or in strokes of the output; settings: one a cycle of
+    the driver, in turn.
+    """
+
+    name: str
+    link: str
+    when: When
+    settings: tuple[Setting, ...] = (Setting(),)
+
+
+# Stage: the parts of a cycle in which a link takes a wheel along, and those in which the wheel stands.
+#
+# A ratchet, a one-way clutch, or a stone in the slots of a flange joins the wheel to the link while this goes one way;
+# what holds it in between is not asked. In each part the link goes one way only, between ends that are found exactly.
+
+
+PLACES = 181  # of a part in which the wheel is driven
+MOST_CYCLES = 1000  # that are looked at for whole turns of the wheel
+
+
+@dataclass(frozen=True)
+class Ride:
+    """The link goes one way while the driver goes from `start` on by `way` in the sense +1 or -1 (rad or m).
+
+    driven: whether it takes the wheel along.
+    """
+
+    start: float
+    way: float
+    sense: int
+    driven: bool
+
+    @property
+    def end(self) -> float:
+        return self.start + self.sense * self.way
+
+
+@dataclass(frozen=True)
+class Part:
+    """A ride as the wheel has it: its angle, omega and epsilon at driver's ways (from the cycle's beginning).
+
+    setting: which of the task's. time: that it takes, nan where the driver's speed changes. omega, epsilon: the largest
+    sizes in it, found between those places. Rad and s.
+    """
+
+    ride: Ride
+    setting: int
+    time: float
+    ways: Real
+    angles: Real
+    omegas: Real
+    epsilons: Real
+    omega: float = 0.0
+    epsilon: float = 0.0
+
+    @property
+    def step(self) -> float:
+        return float(self.angles[-1] - self.angles[0])
+
+
+@dataclass(frozen=True)
+class Intermittent:
+    """A wheel over a cycle of all its settings: parts in their order."""
+
+    task: WheelTask
+    parts: tuple[Part, ...]
+
+    @property
+    def driven(self) -> tuple[Part, ...]:
+        return tuple(part for part in self.parts if part.ride.driven)
+
+    @property
+    def turn(self) -> float:
+        """Of the wheel in a cycle (rad)."""
+        return sum(part.step for part in self.parts)
+
+    def of_setting(self, number: int) -> float:
+        """The same with one of the settings."""
+        return sum(part.step for part in self.parts if part.setting == number)
+
+    @property
+    def way(self) -> float:
+        """Of the driver in a cycle (rad, or m there and back)."""
+        return sum(part.ride.way for part in self.parts)
+
+    @property
+    def standing(self) -> float:
+        """Share of the driver's way on which the wheel stands."""
+        return sum(part.ride.way for part in self.parts if not part.ride.driven) / self.way
+
+    def time(self, *, driven: bool) -> float:
+        """In which it is driven in a cycle, or stands (s)."""
+        return sum(part.time for part in self.parts if part.ride.driven == driven)
+
+    @cached_property
+    def cycles(self) -> int | None:
+        """After how many cycles the wheel has made whole turns; None: after none of very many."""
+        turns = np.arange(1, MOST_CYCLES + 1) * self.turn / (2 * np.pi)
+        whole = np.abs(turns - np.round(turns)) < WHOLE_TURNS
+        return int(np.argmax(whole)) + 1 if self.turn and bool(np.any(whole)) else None
+
+    @property
+    def omega(self) -> float:
+        """Largest angular speed (rad/s)."""
+        return float(np.max([part.omega for part in self.driven], initial=0.0))
+
+    @property
+    def epsilon(self) -> float:
+        """Largest angular acceleration while it is driven (rad/s2)."""
+        return float(np.max([part.epsilon for part in self.driven], initial=0.0))
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """Of omega where each part begins, after the one before it; the first one comes after the last (rad/s)."""
+        before = (self.parts[-1], *self.parts[:-1])
+        found = [float(own.omegas[0] - last.omegas[-1]) for last, own in zip(before, self.parts, strict=True)]
+        return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in found)
+
+    @property
+    def shock(self) -> float:
+        """The largest jump of omega (rad/s); zero where the wheel is taken up and let go without shock."""
+        return float(np.max(np.abs(self.jumps)))
+
+
+def rides_of_turns(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[Ride]:
+    """Over the strokes of a driver that turns fully in a sense, from that which begins first at `start` or after it.
+
+    strokes: of the task's link, or of the output where the task asks for those.
+    """
+    if task.when in ("forward", "backward"):
+        chosen = [s.run > 0 if task.when == "forward" else s.run < 0 for s in strokes.strokes]
+    else:
+        chosen = [s.working == (task.when == "working stroke") for s in strokes.strokes]
+    found = []
+    for stroke, driven in zip(strokes.strokes, chosen, strict=True):
+        gone = float(np.mod(sense * (stroke.start - start) + SAME_PLACE, strokes.cycle)) - SAME_PLACE
+        first = start + sense * gone
+        found.append(Ride(first, stroke.length, sense, driven))
+        if stroke.rest:
+            found.append(Ride(first + sense * stroke.length, stroke.rest, sense, driven=False))
+    return _joined(sorted(found, key=lambda ride: sense * ride.start))
+
+
+def rides_there_and_back(
+    linkage: Linkage, kernels: Sequence[Kernel], task: WheelTask, driver_range: DriverRange
+) -> list[Ride]:
+    """Over the stroke of a driver, forth in its sense and back: cut where the link turns back."""
+    sense, curve = linkage.driver.sense, OutputCurve(linkage, towards(kernels, [task.link]), task.link)
+    q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
+    slope = curve.slope(q)
+    moves = np.flatnonzero(slope)
+    back = slope[moves[:-1]] * slope[moves[1:]] < 0
+    low, high = moves[:-1][back], moves[1:][back]
+    turns = roots(curve.slope, q[low], q[high]) if low.size else q[:0]
+    inside = (turns - q[0] > SAME_PLACE) & (q[-1] - turns > SAME_PLACE)
+    ends = np.concatenate([q[:1], turns[inside], q[-1:]])[::sense]
+    wanted = 1 if task.when == "forward" else -1
+    found = []
+    for way, places in ((sense, ends), (-sense, ends[::-1])):
+        __, runs = runs_of(curve, places[:-1], np.diff(places))
+        lengths = np.abs(np.diff(places))
+        found += [
+            Ride(float(first), float(length), way, bool(run * wanted > 0))
+            for first, length, run in zip(places, lengths, runs, strict=False)
+        ]
+    return _joined(found)
+
+
+def parts_of(
+    linkage: Linkage, kernels: Sequence[Kernel], link: str, rides: Sequence[Ride], law: LawOfMotion, setting: int,
+    before: Sequence[Part],
+) -> list[Part]:  # fmt: skip
+    """The wheel in the rides with one of the settings, after the parts before them.
+
+    A driver that goes back is as fast at each place as it was on its way there.
+    """
+    way, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
+    rate = law.rate if isinstance(law, DriverMotion) and law.acceleration == 0 else float("nan")
+    upto, sense = towards(kernels, [link]), linkage.driver.sense
+
+    def turning(q: Real) -> Turning:
+        return move(linkage, upto, q, law).link(link)
+
+    found = []
+    for ride in rides:
+        gone = np.linspace(0, ride.way, PLACES if ride.driven else 2)
+        places, back = ride.start + ride.sense * gone, ride.sense * sense
+        angles = omegas = epsilons = np.zeros(len(gone))
+        omega = epsilon = 0.0
+        if ride.driven:
+            own = turning(places)
+            angles, omegas, epsilons = np.unwrap(own.angle), back * own.omega, own.epsilon
+            omega = _largest(lambda q: np.abs(turning(q).omega), places)
+            epsilon = _largest(lambda q: np.abs(turning(q).epsilon), places)
+        time = ride.way / rate if rate else float("nan")
+        angles = angle + (angles - angles[0])
+        found.append(Part(ride, setting, time, way + gone, angles, omegas, epsilons, omega, epsilon))
+        way, angle = way + ride.way, float(angles[-1])
+    return found
+
+
+def _joined(rides: Sequence[Ride]) -> list[Ride]:
+    """Rides one after another in which the wheel stands, and the driver does not turn back, are one."""
+    found: list[Ride] = []
+    for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):
+        first, *others = group
+        found.append(Ride(first.start, first.way + sum(ride.way for ride in others), sense, driven))
+    return found
+
+
+def _largest(size: Callable[[Real], Real], places: Real) -> float:
+    """The largest size over places close together, found between them."""
+    values = size(places)
+    if not bool(np.all(np.isfinite(values))):
+        return float("nan")
+    best = int(np.argmax(values))
+    low, high = sorted((places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]))
+    return max(float(values[best]), -float(least(lambda q: -size(q), low, high)[1]))
+
+
+# Intermittent motion: each wheel over the cycles of all its settings.
+
+
+LawOf = Callable[[Linkage], LawOfMotion]  # how the driver of a linkage moves
+
+
+def intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> tuple[Intermittent, ...]:
+    """All wheels of the file, from the driver's place `start` on. Raises NoCycleError, MissingStrokesError,
+    SettingError.
+    """
+    return tuple(_wheel(mechanism, task, start, law_of) for task in mechanism.inputs.wheels)
+
+
+def _wheel(mechanism: Mechanism, task: WheelTask, start: float, law_of: LawOf) -> Intermittent:
+    parts: list[Part] = []
+    for number, setting in enumerate(task.settings):
+        own, linkage = mechanism, setting.linkage
+        try:
+            if linkage is not None:
+                own = Mechanism(Inputs(linkage), mobile(linkage))
+            rides = _rides(own, task, start)
+            parts += parts_of(own.linkage, own.kernels, task.link, rides, law_of(own.linkage), number, parts)
+        except LinkageError as error:
+            if linkage is None:
+                raise
+            raise SettingError(("intermittent", task.name, "settings", number), error) from None
+    return Intermittent(task, tuple(parts))
+
+
+def _rides(mechanism: Mechanism, task: WheelTask, start: float) -> list[Ride]:
+    linkage, driver_range, block = mechanism.linkage, mechanism.driver_range, ("intermittent", task.name)
+    by_link = task.when in ("forward", "backward")
+    if driver_range.full and driver_range.repeats:
+        strokes = mechanism.strokes
+        if by_link:
+            strokes = find_strokes(linkage, mechanism.kernels, driver_range, link=task.link)
+        if strokes is None or not strokes.strokes:
+            raise MissingStrokesError(task.link, (*block, "moves_with" if by_link else "when"))
+        return rides_of_turns(task, strokes, linkage.driver.sense, start)
+    if driver_range.full or not driver_range.inclusive or linkage.others:
+        raise NoCycleError(block)
+    if not by_link:
+        raise MissingStrokesError(task.link, (*block, "when"))
+    return rides_there_and_back(linkage, mechanism.kernels, task, driver_range)

@@ -1,0 +1,351 @@
+"""A quantity by the name that the tables give it, and how it is read from what was solved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import permutations
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.selection import mass_centres, named_points
+from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    Dimension,
+    place_dimension,
+)
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.naming import output_link
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.intermittent import Intermittent, WheelTask
+
+
+Stage = Literal["structure", "places", "velocities", "accelerations", "forces", "balance"]
+STAGES: tuple[Stage, ...] = ("structure", "places", "velocities", "accelerations", "forces", "balance")
+
+
+class Solved(Protocol):
+    """What quantities are read from: one linkage at its positions, or many variants at once."""
+
+    @property
+    def linkage(self) -> Any: ...
+
+    @property
+    def motion(self) -> Any: ...
+
+    @property
+    def reactions(self) -> Any: ...
+
+    @property
+    def strokes(self) -> Any: ...
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity of this linkage, by name.
+
+    read: its values in SI, (positions) or (variants, positions), complex where it is a vector; (1) or (variants, 1)
+    where it belongs to the mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size
+    in the cycle, its range there (of a place), a radian (of an angle, taken modulo 360 degrees: the end of a link is
+    then off by that share of its length), or nothing (it is exact, as a class is). thing: the link, point or pair that
+    it is of; on: the link on which a reaction acts. otherwise: the same reaction if the links of its compound hinge are
+    attached to the other of its two links, as students may do.
+    """
+
+    name: str
+    stage: Stage
+    dimension: Dimension
+    read: Callable[[Solved], Any]
+    vector: bool = False
+    whole: bool = False
+    against: Literal["largest", "range", "angle", "exact"] = "largest"
+    thing: str = ""
+    on: str = ""
+    otherwise: Quantity | None = None
+
+    @property
+    def order(self) -> int:
+        """In which order the work is done."""
+        return STAGES.index(self.stage)
+
+
+Maker = Callable[["Linkage", "Structure"], "dict[str, Quantity]"]  # all quantities of a kind, by name
+
+
+# What belongs to the mechanism as a whole: mobility, class, stroke or swing, coefficient of the mean speed.
+
+
+def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+    """W, class, numbers of links, pairs, passive constraints and strokes; H of an output (where it swings: the
+    arc psi l of its first point), psi, k."""
+    exact = {
+        "W": structure.mobility + structure.redundant,
+        "class": structure.mechanism_class,
+        "n": len(structure.links),
+        "p1": len(structure.pairs) - structure.higher,
+        "p2": structure.higher,
+        "passive": structure.redundant,
+    }
+    found = {
+        name: Quantity(name, "structure", NUMBER, _constant(value), whole=True, against="exact")
+        for name, value in exact.items()
+    }
+    output = output_link(linkage, structure.groups)
+    slides = output is not None and linkage.slides_on_frame(output)
+    name, dimension = ("H", LENGTH) if slides else ("psi", ANGLE)
+    found[name] = Quantity(name, "places", dimension, _travel, whole=True)
+    if output is not None and not slides and linkage.output_arm(output) is not None:
+        found["H"] = Quantity("H", "places", LENGTH, partial(_arc, output), whole=True)
+    found["strokes"] = Quantity("strokes", "places", NUMBER, _number, whole=True, against="exact")
+    found["k"] = Quantity("k", "places", NUMBER, _k, whole=True)
+    return found
+
+
+def _constant(value: int) -> Any:
+    return lambda solution: np.array([float(value)])
+
+
+def _travel(solution: Solved) -> Any:
+    strokes = solution.strokes
+    if strokes is None or not strokes.strokes:
+        return np.array([np.nan])
+    return np.abs(strokes.strokes[0].run) + np.zeros(1)
+
+
+def _arc(output: str, solution: Solved) -> Any:
+    """H = psi l of an output that swings, m."""
+    arm = solution.linkage.output_arm(output)
+    return _travel(solution) * (np.nan if arm is None else arm[1])
+
+
+def _k(solution: Solved) -> Any:
+    strokes = solution.strokes
+    if strokes is None or len(strokes.strokes) < 2:
+        return np.array([np.nan])
+    working, idle = (sum(s.length for s in strokes.strokes[first::2]) for first in (0, 1))  # they take turns
+    return np.asarray(working / idle) + np.zeros(1)
+
+
+def _number(solution: Solved) -> Any:
+    strokes = solution.strokes
+    return np.array([float("nan") if strokes is None else float(len(strokes.strokes))])
+
+
+# Places, velocities and accelerations of points, links and sliding pairs.
+
+
+def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+    """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in sliding pairs."""
+    found: dict[str, Quantity] = {}
+
+    def put(quantity: Quantity) -> None:
+        found[quantity.name] = quantity
+
+    for point, place in {**named_points(linkage), **mass_centres(linkage)}.items():
+        put(Quantity(f"x of {point}", "places", LENGTH, partial(_coordinate, point, place, "real"), against="range",
+                     thing=point))  # fmt: skip
+        put(Quantity(f"y of {point}", "places", LENGTH, partial(_coordinate, point, place, "imag"), against="range",
+                     thing=point))  # fmt: skip
+        put(Quantity(f"v of {point}", "velocities", SPEED, partial(_point, point, place, "v"), True, thing=point))
+        put(Quantity(f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True,
+                     thing=point))  # fmt: skip
+    for link in linkage.moving:
+        put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="angle", thing=link))
+        put(Quantity(f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_link, link, "omega"), thing=link))
+        put(Quantity(f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"),
+                     thing=link))  # fmt: skip
+        if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link):
+            slides = linkage.slides_on_frame(link)
+            put(Quantity(f"s of {link}", "places", place_dimension("slide" if slides else "turn"),
+                         partial(_run, link), against="range" if slides else "angle", thing=link))  # fmt: skip
+    for slide in linkage.slides:
+        name = f"{slide.runner} on {slide.carrier}"
+        put(Quantity(f"v of {name}", "velocities", SPEED, partial(_slide, slide.name, "v"), thing=slide.runner))
+        put(Quantity(f"a of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "a"),
+                     thing=slide.runner))  # fmt: skip
+        put(Quantity(f"Coriolis of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "coriolis"),
+                     True, thing=slide.runner))  # fmt: skip
+    return found
+
+
+def relative_angles(linkage: Linkage) -> dict[str, Quantity]:
+    """`phi of 5 on 4`: rotation of a link relative to another one that moves and is hinged to it, rad."""
+    found = {}
+    for hinge in linkage.hinges:
+        for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
+            name = f"phi of {link} on {base}"
+            read = partial(_relative_angle, link, base)
+            found[name] = Quantity(name, "places", ANGLE, read, against="angle", thing=link)
+    return found
+
+
+def _relative_angle(link: str, base: str, solution: Solved) -> Any:
+    return solution.motion.link(link).angle - solution.motion.link(base).angle
+
+
+def _point(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
+    link = place[0]
+    motion = solution.motion
+    if point in motion.linkage.links[link].points:
+        return getattr(motion.named(point), part)
+    return getattr(motion.centre(link), part)
+
+
+def _coordinate(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
+    return getattr(_point(point, place, "x", solution), part)
+
+
+def _link(link: str, part: str, solution: Solved) -> Any:
+    return getattr(solution.motion.link(link), part)
+
+
+def _run(link: str, solution: Solved) -> Any:
+    return output_run(solution.motion, link)[0]
+
+
+def _slide(name: str, part: str, solution: Solved) -> Any:
+    return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), part))
+
+
+# Inertia forces and couples, reactions, what balances the driver.
+
+
+NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be drawn
+
+
+def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+    """U3 and M3 of inertia; R_34, the force of link 3 on link 4; R_A, the whole pin of a compound hinge; M_b or F_b."""
+    found: dict[str, Quantity] = {}
+
+    def put(quantity: Quantity) -> None:
+        found.setdefault(quantity.name, quantity)
+
+    for name in linkage.moving:
+        link = linkage.links[name]
+        if np.any(link.mass != 0):
+            put(Quantity(f"U of {name}", "forces", FORCE, partial(_inertia, name, "force"), True, thing=name))
+        if np.any(link.inertia != 0):
+            put(Quantity(f"M of {name}", "forces", MOMENT, partial(_inertia, name, "moment"), thing=name))
+    common_links = _common_links(linkage, structure)
+    for pair in structure.pairs:
+        alone = sum({other.i, other.j} == {pair.i, pair.j} for other in structure.pairs) == 1
+        for by, on in ((pair.i, pair.j), (pair.j, pair.i)):
+            called = _reaction_name(by, on) if alone else f"{_reaction_name(by, on)} in {pair.name}"
+            force = Quantity(called, "forces", FORCE, partial(_reaction, pair.name, on), True, thing=pair.name, on=on)
+            if pair.point in common_links and pair.kind == "R":
+                common = common_links[pair.point]
+                read = partial(_pin_force, pair.point, common, 1 if on == common else -1)
+                force = replace(force, otherwise=replace(force, read=read))
+            put(force)
+            if pair.slide is not None:
+                put(Quantity(f"arm of {called}", "forces", LENGTH, partial(_arm, pair.name), thing=pair.name))
+    for hinge in linkage.hinges:
+        if hinge.point in common_links:
+            common = common_links[hinge.point]
+            put(Quantity(f"R_{hinge.point}", "forces", FORCE, partial(_pin_force, hinge.point, common, -1), True))
+            for by, on in permutations([link for link in hinge.links if link != common], 2):
+                force = Quantity(_reaction_name(by, on), "forces", FORCE, partial(_pin_force, hinge.point, on, 1), True)
+                put(replace(force, otherwise=replace(force, read=partial(_pin_force, hinge.point, by, -1))))
+    for driver in linkage.drivers:
+        own = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
+        if driver.kind == "turn":
+            put(Quantity(f"M_b{own}", "balance", MOMENT, partial(_balance, driver.link, "moment"), thing=driver.link))
+        if driver.kind == "slide" or driver.base == FRAME:
+            put(Quantity(f"F_b{own}", "balance", FORCE, partial(_balance, driver.link, "force"), thing=driver.link))
+    return found
+
+
+def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
+    """For the point of each compound hinge the link to which the others are attached."""
+    found = {}
+    for hinge in linkage.hinges:
+        ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
+        if len(ends) > 1:
+            (found[hinge.point],) = set.intersection(*ends)
+    return found
+
+
+def _reaction_name(by: str, on: str) -> str:
+    return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
+
+
+def _pin_force(point: str, link: str, sense: int, solution: Solved) -> Any:
+    """The force of the pin of a compound hinge on one of its links, or its opposite."""
+    return sense * solution.reactions.pin_force(point, link)
+
+
+def _inertia(link: str, part: str, solution: Solved) -> Any:
+    return next(getattr(x, part) for x in solution.reactions.applied if x.link == link and x.kind == "inertia")
+
+
+def _reaction(pair: str, on: str, solution: Solved) -> Any:
+    return solution.reactions.of(pair).onto(on)
+
+
+def _arm(pair: str, solution: Solved) -> Any:
+    """Where a guide's force acts, along the guide from its running point; nothing where the force is nearly zero."""
+    reaction = solution.reactions.of(pair)
+    size = np.abs(reaction.force)
+    assert reaction.arm is not None
+    return np.where(size > NEARLY_ZERO * np.max(size, axis=-1, keepdims=True), reaction.arm, np.nan)
+
+
+def _balance(link: str, part: str, solution: Solved) -> Any:
+    return next(getattr(balance, part) for balance in solution.reactions.balances if balance.driver.link == link)
+
+
+# What a wheel of the block intermittent makes of the mechanism's motion.
+
+
+Reader = Callable[["Intermittent"], float]
+OF_WHEELS: tuple[tuple[str, Dimension, Reader], ...] = (
+    ("turn", ANGLE, lambda wheel: abs(wheel.turn)),
+    ("standing", NUMBER, lambda wheel: wheel.standing),
+    ("cycles", NUMBER, lambda wheel: np.nan if wheel.cycles is None else wheel.cycles),
+    ("largest omega", ANGULAR_SPEED, lambda wheel: wheel.omega),
+    ("largest epsilon", ANGULAR_ACCELERATION, lambda wheel: wheel.epsilon),
+    ("shock", ANGULAR_SPEED, lambda wheel: wheel.shock),
+)
+
+
+def of_wheels(tasks: Iterable[WheelTask]) -> dict[str, Quantity]:
+    """Sizes of a wheel's turn in a cycle and of each step; share of standing, cycles to whole turns, speeds."""
+    found = []
+    for number, task in enumerate(tasks):
+        for name, dimension, of in OF_WHEELS:
+            found.append((f"{name} of {task.name}", dimension, partial(_read, number, of)))
+        for k in range(len(task.settings)):
+            found.append((f"step {k + 1} of {task.name}", ANGLE, partial(_read, number, partial(_step, k))))
+    return {name: Quantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in found}
+
+
+def _read(number: int, of: Reader, results: Any) -> Any:
+    return np.array([float(of(results.wheels[number]))])
+
+
+def _step(setting: int, wheel: Intermittent) -> float:
+    return abs(wheel.of_setting(setting))
+
+
+# All quantities by name: what students may be asked, what a file shows. A further kind: a file, a word in KINDS.
+
+
+KINDS: tuple[Maker, ...] = (whole, motion, forces)
+
+
+def quantities(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+    """All quantities of a linkage by name, in the order of the kinds."""
+    return {name: quantity for kind in KINDS for name, quantity in kind(linkage, structure).items()}

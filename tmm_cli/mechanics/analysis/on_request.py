@@ -1,0 +1,58 @@
+"""What few files ask for: each is imported when it is asked for, and scipy for single runs alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.mechanism import Mechanism
+from tmm_cli.mechanics.groups.sequence import DriverMotion, LawOfMotion
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.intermittent import Intermittent
+    from tmm_cli.mechanics.dynamics.balancing import Balancing, BalancingTask
+    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+    from tmm_cli.mechanics.dynamics.steady import Running
+    from tmm_cli.mechanics.dynamics.task import RunTask, SteadyTask
+
+
+def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
+    """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
+    driver = linkage.driver
+    if driver.law is not None:
+        from tmm_cli.mechanics.dynamics.laws import LawByTable
+
+        return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
+    at = linkage.sketch.at if linkage.others else start
+    return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
+
+
+def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> Running | SingleRun:
+    """From position 0 on. Raises what `running` and `single_run` raise."""
+    if task.cyclic:
+        from tmm_cli.mechanics.dynamics.steady import running
+
+        return running(mechanism, float(mechanism.asked[0]), task)
+    from tmm_cli.mechanics.dynamics.single_run import single_run
+
+    return single_run(mechanism, mechanism.asked, task)
+
+
+def balancing(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balancing:
+    """Over the cycle from position 0 on, and at places of the driver. Raises what `analysis.balancing` raises."""
+    from tmm_cli.mechanics.dynamics.balancing import balancing as found
+
+    return found(mechanism, float(mechanism.asked[0]), q, task)
+
+
+def intermittent(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[Intermittent, ...]:
+    """Wheels over a cycle from position 0 on; running: a law of motion that was found, which then holds with every
+    setting. Raises what `analysis.intermittent` raises.
+    """
+    from tmm_cli.mechanics.analysis.intermittent import intermittent as found
+
+    start = float(mechanism.asked[0])
+    return found(mechanism, start, lambda linkage: driver_motion(linkage, start) if running is None else running)

@@ -1,0 +1,393 @@
+"""Positions near a dead one are computed once more in double-doubles, with the data as they are written.
+
+At a distance eps (rad) from a dead position the nearest double to a length of the file already changes velocities by
+1e-16/eps of themselves, whatever the method; with 31 digits that is nothing. The results are rounded to float64 again;
+a position is treated so or not by itself alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
+from tmm_cli.mechanics.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
+from tmm_cli.mechanics.analysis.selection import carriers, check
+from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.errors import (
+    MissingStrokesError,
+    NoTurnError,
+    SpeedsEndError,
+    TableBeyondCycleError,
+    UnknownPositionError,
+)
+from tmm_cli.mechanics.forces.energy import Energy, energy
+from tmm_cli.mechanics.forces.friction import FrictionSolution, Losses, find_locked_ranges, losses, solve_friction
+from tmm_cli.mechanics.forces.lever import Lever, lever
+from tmm_cli.mechanics.forces.loads import Applied, applied
+from tmm_cli.mechanics.forces.plan import Reactions, power, react
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import LawOfMotion, towards
+from tmm_cli.mechanics.kinematics.driver_range import DeadPosition, DriverRange, Excess
+from tmm_cli.mechanics.kinematics.motion import Motion, move, spliced, with_limits
+from tmm_cli.mechanics.kinematics.pressure import Pressure, pressure_at
+from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.double_double import exactly, rounded
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.assur import Structure
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.extremes import Extreme
+    from tmm_cli.mechanics.analysis.intermittent import Intermittent
+    from tmm_cli.mechanics.assembly.enumerate import Assemblies
+    from tmm_cli.mechanics.dynamics.balancing import Balancing
+    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+    from tmm_cli.mechanics.dynamics.steady import Running
+    from tmm_cli.mechanics.kinematics.centres import Centre
+
+
+def near_dead(motion: Motion) -> Real:
+    """Positions where a group is so near to a dead position that float64 blurs its motion, but not in it."""
+    near = np.zeros(np.shape(motion.q), dtype=bool)
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        near |= at.margin < kernel.blurred
+    return near & motion.moving
+
+
+def refined(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
+    """A motion with some of its positions taken from that of the same linkage with numbers in double-doubles.
+
+    q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.
+    """
+    closer = move(linkage, tuple(kernel.rebind(linkage) for kernel in motion.kernels), q, law)
+    if not bool(np.all(closer.moving)):
+        return motion
+    return replace(spliced(motion, closer, where), finer=closer, where=where)
+
+
+# What loads, positions and tables of a file rest on: refused where it is not there, not quietly done without.
+
+
+def refuse_unmet(mechanism: Mechanism) -> None:
+    """Raises MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedsEndError."""
+    _need_strokes(mechanism)
+    _need_rows(mechanism)
+    _need_speeds(mechanism)
+
+
+def _need_strokes(mechanism: Mechanism) -> None:
+    """Strokes of the output, of which positions are counted, or in which loads act."""
+    request, driver_range = mechanism.inputs.request, mechanism.driver_range
+    loads = [x for x in mechanism.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
+    if request.start != "working stroke" and not loads:
+        return
+    strokes = mechanism.strokes
+    if request.start == "working stroke" and driver_range.full and (strokes is None or not strokes.strokes):
+        raise MissingStrokesError(strokes.link if strokes else None, ("positions", "from"))
+    for load in loads:
+        own = strokes.of_link(load.stroke_link) if strokes else None
+        if load.working_stroke_only and driver_range.full and (own is None or not own.strokes):
+            raise MissingStrokesError(own.link if own else None, ("loads", load.name, "when"))
+        if load.table is not None and load.table.against == "stroke":
+            own = strokes.of_link(load.table.stroke_link) if strokes else None
+            if own is None or not own.strokes:
+                limits = None if driver_range.full else (driver_range.start, driver_range.end)
+                path = ("loads", load.name, load.table.key)
+                raise MissingStrokesError(own.link if own else None, path, limits)
+
+
+def _need_rows(mechanism: Mechanism) -> None:
+    """A crank that comes to all rows of a load's table, rather than a table that is quietly cut."""
+    turns = mechanism.linkage.turns
+    if turns > 1 and not mechanism.driver_range.full:
+        raise NoTurnError(turns)
+    for load in mechanism.linkage.loads:
+        if load.table is None or load.table.against == "stroke":
+            continue
+        strokes = mechanism.strokes if load.table.against == "crank turn" else None
+        cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
+        for row, argument in enumerate(load.table.arguments):
+            if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
+                path = ("loads", load.name, load.table.key, "table", row, 0)
+                raise TableBeyondCycleError(path, float(argument), cycle)
+
+
+def _need_speeds(mechanism: Mechanism) -> None:
+    """A table of the driver's speeds that reaches over all positions."""
+    law, asked = mechanism.linkage.driver.law, mechanism.asked
+    if law is None:
+        return
+    unknown = ~np.isfinite(driver_motion(mechanism.linkage, float(asked[0])).speed(asked))
+    goes_round = mechanism.driver_range.full and not mechanism.inputs.request.places
+    if np.any(unknown) or (goes_round and not law.squares.closed):
+        first = float(rounded(law.squares.arguments[0]))
+        at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
+        raise SpeedsEndError(at, first, float(rounded(law.squares.arguments[-1])), 2 * np.pi * mechanism.linkage.turns)
+
+
+# Which stage needs which: structure -> assembly -> range and strokes -> motion -> forces -> lever.
+#
+# Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
+
+
+CYCLE = 720  # places over which losses are summed up
+
+Stage = Literal["structure", "kinematics", "forces"]
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
+
+    of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
+    on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
+    are there where they are asked for by name. wheels: those of the block intermittent. problem: whatever the caller
+    wants to find here again.
+    """
+
+    inputs: Inputs
+    structure: Structure
+    mechanism: Mechanism
+    numbers: tuple[int, ...] = ()
+    motion: Motion | None = None
+    loads: tuple[Applied, ...] = ()
+    reactions: Reactions | None = None
+    lever: Lever | None = None
+    friction: FrictionSolution | None = None
+    losses: Losses | None = None
+    energy: Energy | None = None
+    running: Running | SingleRun | None = None
+    balancing: Balancing | None = None
+    wheels: tuple[Intermittent, ...] | None = None
+    assemblies: tuple[Assemblies, ...] | None = None
+    centres: Mapping[int, Sequence[Centre]] | None = None
+    extremes: tuple[Extreme, ...] | None = None
+    of: tuple[str, ...] = ()
+    problem: Any = None
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.inputs.linkage
+
+    @property
+    def roles(self) -> dict[str, str]:
+        return self.mechanism.roles
+
+    @property
+    def kernels(self) -> tuple[Kernel, ...]:
+        """All groups in solving order; none where the sketch cannot be assembled."""
+        return self.mechanism.kernels if self.mechanism.assembles else ()
+
+    @property
+    def driver_range(self) -> DriverRange | None:
+        return self.mechanism.driver_range if self.mechanism.assembles else None
+
+    @property
+    def strokes(self) -> Strokes | None:
+        return self.mechanism.strokes
+
+    @property
+    def dead(self) -> tuple[DeadPosition, ...]:
+        return () if self.of else self.mechanism.dead
+
+    @property
+    def further(self) -> tuple[Strokes, ...]:
+        return () if self.of else self.mechanism.further
+
+    @property
+    def swinging(self) -> tuple[Strokes, ...]:
+        """Strokes of outputs that go there and back."""
+        return tuple(one for one in (self.strokes, *self.further) if one is not None and one.strokes)
+
+    @property
+    def travels(self) -> tuple[Travel, ...]:
+        return () if self.of else self.mechanism.travels
+
+    @property
+    def slots(self) -> tuple[Excess, ...]:
+        return () if self.of else self.mechanism.slots
+
+    @cached_property
+    def pressure(self) -> tuple[Pressure, ...]:
+        """Pressure angles of the driven links: the largest, and those at the positions."""
+        if self.of or self.motion is None:
+            return ()
+        return tuple(
+            p if p.angles.size else replace(p, angles=pressure_at(self.motion, p.group, p.link))
+            for p in self.mechanism.pressure
+        )
+
+    @property
+    def asked(self) -> Real:
+        """The driver's places of all positions that are asked for, whether they were computed or not (rad or m)."""
+        return self.mechanism.asked
+
+    @property
+    def start(self) -> float:
+        """The driver's place at position 0."""
+        return float(self.asked[0])
+
+    @property
+    def turns(self) -> int:
+        """Of the driver, after which all comes again; 0 where it goes to and fro."""
+        reach = self.driver_range
+        return reach.turns if reach is not None and reach.full and self.linkage.driver.kind == "turn" else 0
+
+    @property
+    def counts_strokes(self) -> bool:
+        """Whether strokes are counted from position 0 on: those of a longer cycle of loads, as of a four-stroke engine,
+        do not work by turns."""
+        return self.linkage.turns > 1 and not any(load.working_stroke_only for load in self.linkage.loads)
+
+    def closely(self, count: int) -> Real:
+        """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
+        driver = self.linkage.driver
+        if self.turns:
+            return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.turns, count)
+        asked = self.asked
+        return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
+
+    @property
+    def law(self) -> LawOfMotion:
+        """How the first driver moves."""
+        return driver_motion(self.linkage, self.start) if self.running is None else self.running
+
+    @property
+    def steady(self) -> Running | None:
+        """Steady running, where that is asked for."""
+        return self.running if self.running is not None and self.running.task.cyclic else None
+
+    @property
+    def single(self) -> SingleRun | None:
+        """A single run, where that is asked for."""
+        return self.running if self.running is not None and not self.running.task.cyclic else None
+
+    @property
+    def locked(self) -> Real:
+        """Positions where friction locks the mechanism."""
+        assert self.motion is not None
+        return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
+
+    @property
+    def lever_holds(self) -> bool:
+        """Whether the lever agrees with the force plan within the limit, wherever it could be computed."""
+        if self.lever is None or self.motion is None:
+            return True
+        difference = self.lever.difference[self.motion.moving & ~self.locked]
+        return bool(np.all(difference <= self.inputs.lever_limit))
+
+
+def solve(
+    inputs: Inputs, stage: Stage = "forces", positions: Sequence[int] | None = None, of: Sequence[str] = (),
+    problem: Any = None,
+) -> Results:  # fmt: skip
+    """Run the stages up to the one asked for, at all positions of the inputs or at those numbered.
+
+    of: points, links, centres of mass; then kinematics solves the groups on the way to them only. problem: see Results.
+    Raises LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and what assembly
+    raises.
+    """
+    structure = mobile(inputs.linkage)
+    results = Results(inputs, structure, Mechanism(inputs, structure), of=tuple(of), problem=problem)
+    if stage == "structure":
+        return results
+    kernels = results.mechanism.kernels
+    if of:
+        check(inputs.linkage, of)
+        kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
+    refuse_unmet(results.mechanism)
+    if inputs.dynamics is not None:
+        results = replace(results, running=law_of_motion(results.mechanism, inputs.dynamics))
+    numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
+    for number in numbers:
+        if not 0 <= number < len(results.asked):
+            raise UnknownPositionError(number, len(results.asked))
+    results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
+    if inputs.wheels and not of:
+        results = replace(results, wheels=intermittent(results.mechanism, results.running))
+    if stage == "kinematics":
+        return results
+    results = with_forces(results)
+    if inputs.balancing is None or results.motion is None:
+        return results
+    return replace(results, balancing=balancing(results.mechanism, results.motion.q, inputs.balancing))
+
+
+def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
+    """The motion, its positions near dead ones in extended precision where the machine has it."""
+    law = results.law
+    motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
+    where = near_dead(motion)
+    if results.inputs.extended is None or not np.any(where):
+        return with_limits(motion)
+    exact = results.inputs.extended()
+    asked: Any = exact.request.places
+    asked = np.stack(asked) if asked else exactly(results.asked)
+    return with_limits(refined(motion, exact.linkage, asked[list(numbers)][where], law, where))
+
+
+def with_forces(results: Results, *, cycle: bool = True) -> Results:
+    """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
+    motion = results.motion
+    assert motion is not None
+    strokes = results.strokes if results.linkage.by_strokes else None
+    loads = applied(motion, strokes)
+    bare = motion if motion.bare is None else motion.bare  # reactions have no limits in change points
+    reactions = react(bare, results.structure, loads if motion.bare is None else applied(bare, strokes))
+    reactions = replace(reactions, applied=loads)
+    if motion.finer is not None and motion.where is not None:
+        exact = applied(motion.finer, strokes)
+        structure = results.structure.rebind(motion.finer.linkage)
+        loads = spliced(loads, exact, motion.where)
+        reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
+    rubbed, lost = None, None
+    if results.linkage.friction:
+        rubbed = solve_friction(bare, results.structure, loads, reactions)
+        loads, reactions = rubbed.loads, rubbed.reactions
+        if cycle:
+            lost = cycle_losses(results)
+    drivers = power(motion, reactions)
+    return replace(
+        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
+        energy=energy(motion, loads, drivers),
+    )  # fmt: skip
+
+
+def cycle_losses(results: Results, places: int = CYCLE, *, ranges: bool = True) -> Losses:
+    """What friction takes over the cycle, summed up over so many places; ranges: with those in which it locks."""
+    whole = at_positions(results, results.closely(places + 1))
+    rubbed = _friction_at(results, whole)
+    found = losses(rubbed, whole)
+    if not found.locked or not ranges:
+        return found
+    q = whole.q
+    if results.linkage.driver.sense < 0:
+        q = q[::-1]
+        rubbed = replace(rubbed, locked=rubbed.locked[::-1], pair=rubbed.pair[::-1])
+
+    def locked_at(q: Real) -> Real:
+        return _friction_at(results, at_positions(results, q)).locked
+
+    return replace(found, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
+
+
+def _friction_at(results: Results, motion: Motion) -> FrictionSolution:
+    acting = applied(motion, results.strokes)
+    return solve_friction(motion, results.structure, acting, react(motion, results.structure, acting))
+
+
+def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
+    """The same motion at other places of the driver (trajectories)."""
+    return with_limits(move(results.linkage, results.kernels, q, results.law, order))
+
+
+def at_places(results: Results, q: Real) -> Results:
+    """The same results at other places of the driver (diagrams); with forces if they have them."""
+    moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
+    return moved if results.reactions is None else with_forces(moved, cycle=False)

@@ -1,0 +1,111 @@
+"""Points, links, centres of mass (S3 of link 3) by name: which carries each, how they move, all their values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.errors import UnknownNameError
+from tmm_cli.mechanics.forces.plan import Reactions
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import towards
+from tmm_cli.mechanics.kinematics.motion import Motion, Point
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.quantities import BALANCING, LINK, POINT, REACTION, Quantity
+
+Place = tuple[str, complex]  # a link and a place in its axes, m
+
+
+def named_points(linkage: Linkage) -> dict[str, Place]:
+    """Every named point of a moving link, once, with its link and place on it."""
+    return {
+        point: (link, local)
+        for link in reversed(linkage.moving)
+        for point, local in linkage.links[link].points.items()
+        if point not in linkage.links[FRAME].points
+    }
+
+
+def mass_centres(linkage: Linkage) -> dict[str, Place]:
+    """Centres of mass of the links that have one, named S3 after the link."""
+    links = linkage.links
+    return {f"S{name}": (name, links[name].centre) for name in linkage.moving if np.any(links[name].mass != 0)}
+
+
+def check(linkage: Linkage, names: Sequence[str]) -> None:
+    """Raises UnknownNameError."""
+    known = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
+    for name in names:
+        if name not in known:
+            raise UnknownNameError(name, tuple(known))
+
+
+def places(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) -> Mapping[str, Place]:
+    """The points and centres of mass among the names; a point on the link that takes the fewest groups to reach."""
+    points, centres = named_points(linkage), mass_centres(linkage)
+    found: dict[str, Place] = {}
+    for name in names:
+        if name in points:
+            link = min(
+                (link for link in linkage.moving if name in linkage.links[link].points),
+                key=lambda link: (len(towards(kernels, [link])), link != points[name][0]),
+            )
+            found[name] = link, linkage.local(link, name)
+        elif name in centres:
+            found[name] = centres[name]
+    return found
+
+
+def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, Point]:
+    """Motion of all named points, or of those among the names."""
+    known = named_points(linkage)
+    return {name: motion.named(name) for name in (dict.fromkeys(names) if names else known) if name in known}
+
+
+def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, Point]:
+    """Motion of all centres of mass, or of those among the names."""
+    known = mass_centres(linkage)
+    points = named_points(linkage)
+    chosen = [name for name in dict.fromkeys(names) if name not in points] if names else known
+    return {name: motion.centre(known[name][0]) for name in chosen if name in known}
+
+
+def links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
+    """The links among the names, in the order of the file; a point of the same name comes first. All without names."""
+    points = {**named_points(linkage), **mass_centres(linkage)}
+    if not names:
+        return linkage.moving
+    return tuple(link for link in linkage.moving if link in names and link not in points)
+
+
+def carriers(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) -> set[str]:
+    """All links that must be placed for what is asked."""
+    return {link for link, _ in places(linkage, kernels, names).values()} | set(links(linkage, names))
+
+
+def values(motion: Motion, reactions: Reactions | None, *, first: bool = False) -> Iterator[tuple[Quantity, str, Any]]:
+    """The leading quantities of named points, centres of mass, links, pairs and drivers: which, of what, its values.
+
+    first: a point of several links is taken as one of the first of them, not of the one on which least is lost (which
+    depends on numbers, and a tape has none).
+    """
+    linkage, told = motion.linkage, set(motion.linkage.links[FRAME].points)
+    for name in linkage.moving:
+        points = [point for point in linkage.links[name].points if point not in told]
+        told.update(points)
+        yield from _leading(LINK, name, motion.link(name))
+        for point in points:
+            yield from _leading(POINT, point, motion.named_on(name, point) if first else motion.named(point))
+        yield from _leading(POINT, f"S{name}", motion.centre(name))
+    for reaction in reactions.all if reactions is not None else ():
+        yield from _leading(REACTION, reaction.pair.name, reaction)
+    for balance in reactions.balances if reactions is not None else ():
+        yield from _leading((BALANCING,), balance.driver.link, balance)
+
+
+def _leading(quantities: Iterable[Quantity], name: str, record: Any) -> Iterator[tuple[Quantity, str, Any]]:
+    for quantity in quantities:
+        if quantity.leading and quantity.there(record):
+            yield quantity, name, quantity.value(record)

@@ -1,0 +1,223 @@
+"""Exact change points of groups in closed form: dead positions that they pass and do not turn back in.
+
+A parallelogram has two. There the determinant is zero and only its sign tells the two ways on; along the smooth one,
+on which velocities are continuous, that changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.search import assembled, check_fit, nearest_to_sketch
+from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError
+from tmm_cli.mechanics.groups.base import Closed, HingeEnd, Kernel, reach
+from tmm_cli.mechanics.groups.branch import SmoothWay, Winding
+from tmm_cli.mechanics.groups.closed_forms import CLOSED
+from tmm_cli.mechanics.groups.sequence import driven_state, drives_at, frame_state, link_states, towards
+from tmm_cli.mechanics.groups.state import Drives, Placement, Pose
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.cycle import turns_of_cycle
+from tmm_cli.mechanics.structure.group import Group
+
+SCAN = 360  # places a turn
+CLOSER = 129  # places between two of these, where it seems to come to nothing
+BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
+SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
+
+
+def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> SmoothWay | None:
+    """The way of a group through its change points; None where it has none, or they are all touched only."""
+    upto = towards((*before, kernel), kernel.group.links)
+    turns = linkage.driver.kind == "turn"
+    number = turns_of_cycle(linkage) or 1
+    for other in upto[:-1]:
+        way = other.way if isinstance(other, Closed) else None
+        if way is not None and way.cycle is not None and len(way.places) % 2:
+            number *= 2
+    half = np.pi * number if turns else reach(linkage)
+    start, step = linkage.sketch.at - half, 2 * half / (SCAN * number)
+    q = start + step * np.arange(-2, SCAN * number + 3)
+    at = link_states(linkage, upto, q, 0, blank=False).placements[-1]
+    residual = np.where(np.isfinite(at.residual), at.residual, -np.inf)
+    inner = residual[1:-1]
+    with np.errstate(invalid="ignore"):  # of places where nothing is
+        rise = np.abs(np.diff(residual))
+        near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
+    found = np.sort(_exact(linkage, upto, q[np.flatnonzero(near) + 1], float(step)))
+    if turns:
+        found = np.sort(found - 2 * half * np.floor((found - start) / (2 * half)))
+    places = found[np.diff(found, prepend=-np.inf) > step]
+    if len(places) > 1 and turns and places[0] + 2 * half - places[-1] < step:
+        places = places[:-1]
+    return SmoothWay(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
+
+
+def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float) -> Real:
+    """The change points near places (places,), to the last bit, where the group has no room to spare and can pass."""
+    if not places.size:
+        return places
+    to_spare = partial(slack, linkage, upto)
+    closer = _rows(to_spare, places, step * np.linspace(-1, 1, CLOSER))
+    with np.errstate(invalid="ignore"):
+        falls = np.abs(np.min(closer, axis=1)) <= 2 * np.max(np.abs(np.diff(closer, axis=1)), axis=1)
+    places = places[np.all(np.isfinite(closer), axis=1) & falls]
+    if not places.size:
+        return places
+    best = pinned(linkage, upto, least(to_spare, places - step, places + step)[0], step)
+    beside = best[:, None] + step * BESIDE * np.array([-2, -1, 0, 1, 2])
+    states = link_states(linkage, upto, beside.ravel(), 0, blank=False)
+    at = states.placements[-1]
+    det, dead, placed = (
+        np.broadcast_to(values, beside.size).reshape(beside.shape)
+        for values in (np.abs(at.det), at.dead, states.placed)
+    )
+    passes = (det[:, 0] <= SIMPLE * det[:, 1]) & (det[:, 4] <= SIMPLE * det[:, 3])
+    exact: Real = best[dead[:, 2] & np.all(placed, axis=1) & passes]
+    return exact
+
+
+def _rows(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
+    """Values of a function at steps from each place, (places, steps)."""
+    q = places[:, None] + steps
+    return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
+
+
+def slack(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+    """How much the last group has to spare before it cannot be assembled."""
+    return -link_states(linkage, kernels, q, 0).placements[-1].residual
+
+
+def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], places: Real, step: float) -> Real:
+    """Dead positions inside the range (places,) to the last bit: there the residual of the last group stops growing.
+
+    The least of a quantity is known to half the digits only, the root of its rate to all of them.
+    """
+    last = kernels[-1]
+    if not isinstance(last, Closed):
+        return places
+
+    def residual_rate(q: Real) -> Real:
+        before = link_states(linkage, kernels[:-1], q, 1)
+        return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
+
+    low, high = places - step, places + step
+    with np.errstate(all="ignore"):
+        changes = np.sign(residual_rate(low)) * np.sign(residual_rate(high)) < 0
+        if not np.any(changes):
+            return places
+        found = places.copy()
+        found[changes] = roots(residual_rate, low[changes], high[changes])
+    return found
+
+
+# Stage: which of its assemblies each group has, from the sketch. It is kept in every position.
+
+
+BLAMED = 0.25  # a sketched point this share of the size from its place, a link half a radian: it was sketched wrong
+FOLLOWED = 720  # places a turn at which angles are followed through
+
+
+def assemble(
+    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[Kernel, ...] = ()
+) -> tuple[Kernel, ...]:
+    """The groups with their assemblies, in solving order; like: those of a linkage whose lengths differ, which helps.
+
+    Raises AssemblyError, AmbiguousSketchError, SketchMismatchError.
+    """
+    q = np.array([linkage.sketch.at])
+    drives = drives_at(linkage, q)
+    poses = {FRAME: frame_state(q)[0]}
+    for driver in linkage.cranks:
+        poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
+    chosen: list[Kernel] = []
+    for group in structure.solved if groups is None else groups:
+        other = like[len(chosen)] if like else None
+        try:
+            kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)
+        except (AssemblyError, AmbiguousSketchError):
+            check_fit(linkage, poses, BLAMED)  # a group before it, sketched wrong, may be what keeps it from closing
+            raise
+        poses.update(zip(kernel.group.links, at.poses, strict=True))
+        chosen.append(kernel)
+    check_fit(linkage, poses)
+    return tuple(chosen)
+
+
+def _assembled(
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    like: Kernel | None,
+) -> tuple[Kernel, Placement]:  # fmt: skip
+    q = np.array([linkage.sketch.at])
+    closed = closed_form(group, linkage)
+    if closed is not None:
+        kernel, at = _choose(closed, linkage, poses, drives)
+        if kernel.assemblies > 1 and not linkage.keep_side:
+            kernel = replace(kernel, way=smooth_way(linkage, before, kernel))
+        geared = {name for mesh in linkage.meshes for name in (mesh.i, mesh.j, mesh.carrier)} & set(group.links)
+        if geared:
+            kernel = replace(kernel, winding=_winding(linkage, (*before, kernel), tuple(geared)))
+            at = kernel.place(poses, q, drives)
+        return kernel, at
+    return assembled(group, linkage, poses, drives, before, like)
+
+
+def closed_form(group: Group, linkage: Linkage) -> Closed | None:
+    """The group with its numbers, not yet assembled, if it has a closed form."""
+    return next((kind.of(group, linkage) for kind in CLOSED if kind.fits(group)), None)
+
+
+def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
+    """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
+    turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
+    half = turns * np.pi if linkage.driver.kind == "turn" else reach(linkage)
+    q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
+    motion = link_states(linkage, towards(kernels, links), q, 0)
+    middle = len(q) // 2
+    lost = np.flatnonzero(~motion.placed)
+    first = int(lost[lost < middle].max(initial=-1)) + 1
+    last = int(lost[lost > middle].min(initial=len(q)))
+    angles = {}
+    for link in links:
+        z = motion.poses[link].z[first:last]
+        angle = np.unwrap(np.angle(z))
+        here = middle - first
+        angles[link] = angle + (np.angle(z[here]) - angle[here])
+    closed = first == 0 and last == len(q) and linkage.driver.kind == "turn"
+    return Winding(q[first:last], angles, closed)
+
+
+def _choose(kernel: Closed, linkage: Linkage, poses: dict[str, Pose], drives: Drives) -> tuple[Closed, Placement]:
+    signed = [replace(kernel, sign=s) for s in (1, -1)[: kernel.assemblies]]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ways = [(one, one.closed(poses, drives)) for one in signed]
+    first = ways[0][1]
+    if not first.assembled[0] or not np.isfinite(first.a.x[0] + first.b.x[0]):
+        raise AssemblyError(kernel.group, float(first.residual[0]))
+    if len(ways) == 1:
+        return ways[0]
+    if first.dead[0]:
+        raise AmbiguousSketchError(kernel.group, {})
+    placed = [dict(zip(kernel.group.links, at.poses, strict=True)) for _, at in ways]
+    return ways[nearest_to_sketch(kernel, linkage, placed, _shift(kernel, linkage, poses))]
+
+
+def _shift(kernel: Closed, linkage: Linkage, poses: dict[str, Pose]) -> complex:
+    """How far the sketch has the hinges that the group hangs on from where they are (m).
+
+    What a sketch tells is on which side of them the group lies, so a group is compared with them put in their places.
+    """
+    shifts = []
+    for pair, end in kernel.outer_pairs:
+        if isinstance(end, HingeEnd):
+            if end.known == FRAME:
+                shifts.append(0j)
+            elif pair.point in linkage.sketch.points:
+                shifts.append(linkage.sketch.points[pair.point] - complex(poses[end.known].at(end.there)[0]))
+    return sum(shifts) / len(shifts) if shifts else 0j

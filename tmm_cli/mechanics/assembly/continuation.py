@@ -1,0 +1,265 @@
+"""Following a group from its sketch along the driver's way: here, and only here, a place needs the last one.
+
+Steps are predicted with first and second derivatives and corrected by Newton's method; a step that corrects too much,
+or changes the side of a dead position, is halved. E. L. Allgower, K. Georg, Introduction to Numerical Continuation
+Methods, ch. 2 and 6.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.corrector import CORRECTION, PATIENCE, Corrector, Node, Source, joined, places_ahead
+from tmm_cli.mechanics.assembly.crossing import EDGE, Crossings, alive
+from tmm_cli.mechanics.groups.branch import BranchTrace
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import LinkStates
+from tmm_cli.mechanics.groups.state import Pose, State
+from tmm_cli.mechanics.numerics.linear import solve
+from tmm_cli.mechanics.numerics.tolerances import LAST_STEP
+from tmm_cli.mechanics.numerics.vectors import Real
+
+FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
+LEAST_STEP = 1e-9
+TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
+SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
+FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
+HALVINGS = 80
+FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
+LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it has to be followed
+AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
+SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
+
+End = Literal["reached", "limit", "lost", "boundary"]
+
+
+class Walker:
+    """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
+
+    def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
+        self.kernel, self.source, self.scale = kernel, source, scale
+        self.corrector = Corrector(kernel, source)
+        self.at = 0.0
+        self.crossings = Crossings(kernel, source, self.corrector.node, scale)
+
+    def trace(self, start: Node, end: float) -> tuple[list[Node], End]:
+        """Nodes from one on to the place `end`, and how it ended; a limit is the last node. boundary: `end` is dead."""
+        nodes: list[Node] = []
+        here, failures, largest = start, 0, 0.0
+        way = end - start.q
+        least = LEAST_STEP * abs(way)
+        step, growth = FIRST_STEP * way / np.pi, 1.0
+        smooth = [here]  # the last nodes, found in steps that did not shrink
+        while here.q != end:
+            largest = max(largest, abs(here.det))
+            places = places_ahead(here.q, end, step, growth, LARGEST_STEP * abs(way) / np.pi)
+            q, found = places[0], self.corrector.step(smooth, places)
+            close = found is not None and found[1] < CORRECTION
+            dead = self.crossings.between([start, *nodes], found[0], largest) if found is not None and close else None
+            if dead is not None and abs(dead.q - end) < EDGE * self.scale:
+                return nodes, "boundary"
+            if dead is not None and (dead.q - end) * way < 0:
+                nodes.append(dead)
+                here, step, failures = dead, FIRST_STEP * way / np.pi, 0
+                smooth = [here]
+                continue
+            if found is not None and close and found[0].side == here.side:
+                growth = 1.6 if found[1] < CORRECTION / 8 else 1.0
+                step *= growth
+                here, failures = found[0], 0
+                nodes.append(here)
+                smooth.append(here)
+                if self.spins(here):
+                    return [*nodes, *self.beyond(here)], "lost"
+                continue
+            step = (q - here.q) / 2
+            smooth = [here]
+            failures += 1
+            if failures % PATIENCE == 0 or abs(step) < least:
+                limit = self.limit(here, float(np.sign(way)))
+                beside = abs(step) < least
+                if limit is not None and (limit.q - end) * way <= 0 and (beside or self.leads_to(here, limit)):
+                    return [*nodes, limit], "limit"
+            if abs(step) < least:
+                lost = [*nodes, *self.beyond(here)]
+                return lost, "boundary" if abs(end - here.q) < EDGE * self.scale else "lost"
+        return nodes, "reached"
+
+    def spins(self, here: Node) -> bool:
+        """Whether it goes round so much faster than the driver that there is no following it."""
+        return self.corrector.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
+
+    def beyond(self, last: Node) -> list[Node]:
+        """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
+
+        Nothing where it does not go away.
+        """
+        home = self.corrector.home or last.state
+        if self.corrector.gone(last.state)[0] > FAR:
+            far = (last.state.x - home.x).ravel()
+            k = int(np.argmax(np.abs(far)))
+            speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(far[k])  # the other part grows less
+            return [replace(last, q=last.q + float(abs(far[k]) / speed))]
+        if self.spins(last):
+            wound = (last.state.unwrapped - home.unwrapped).ravel()
+            k = int(np.argmax(np.abs(wound)))
+            return [replace(last, q=last.q + float(wound[k] / last.first.unwrapped.ravel()[k]))]
+        return []
+
+    def leads_to(self, here: Node, limit: Node) -> bool:
+        """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
+        near = self.corrector.apart(here.state, limit.state) / 2
+        share = np.sqrt(LEFT)[:, None]  # near a limit states go as the root of what is left of the way
+        starts = State(*(
+            there + share * (one - there)
+            for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
+        ))  # fmt: skip
+        found = self.corrector.nodes(limit.q + np.array(LEFT) * (here.q - limit.q), starts)
+        return all(
+            one is not None
+            and one.side == here.side
+            and self.corrector.apart(one.state, starts.part(slice(k, k + 1))) <= near
+            for k, one in enumerate(found)
+        )
+
+    def limit(self, last: Node, sense: float) -> Node | None:
+        """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
+
+        With l the direction in which the group moves, F(X, q) = 0 and l (X - X0) = s give q(s), and q' = 0 is looked
+        for.
+        """
+        kernel = self.kernel
+        if kernel.passive:
+            return None
+        with np.errstate(all="ignore"):
+            direction = _flat(last.first, kernel.size) * sense * self.scale
+            length = np.linalg.norm(direction)
+            if not np.isfinite(length) or length == 0:
+                return None
+            line = direction / length
+
+            def at(s: float, state: State, q: float) -> tuple[State, float, float] | None:
+                for _ in range(15):
+                    before = self.source(np.array([q]), 1)
+                    if not before.placed[0]:
+                        return None
+                    everything = {**before.poses, **kernel.poses_of(state)}
+                    matrix = self._bordered(everything, before, line)
+                    ahead = float(np.dot(line, _flat(state, kernel.size) - _flat(last.state, kernel.size)))
+                    right = np.concatenate([-kernel.residuals(everything, before.drives)[0], [s - ahead]])
+                    step = solve(matrix, right)
+                    if not np.all(np.isfinite(step)):
+                        return None
+                    state, q = state.moved(step[None, :-1], kernel.size), q + float(step[-1]) * self.scale
+                    if np.max(np.abs(step)) < LAST_STEP:  # its square is less than rounding
+                        break
+                before = self.source(np.array([q]), 1)
+                if not before.placed[0]:
+                    return None
+                everything = {**before.poses, **kernel.poses_of(state)}
+                unit_step = np.zeros(len(line) + 1)
+                unit_step[-1] = 1.0
+                slope = solve(self._bordered(everything, before, line), unit_step)
+                return state, q, float(slope[-1]) * sense
+
+            good = at(0.0, last.state, last.q)
+            if good is None or good[2] <= 0:
+                return None
+            low, high, best = 0.0, 1e-3, good
+            while high < FARTHEST:
+                found = at(high, best[0], best[1])
+                if found is None:
+                    return None
+                if found[2] <= 0:
+                    break
+                low, best, high = high, found, 2 * high
+            else:
+                return None
+            # false position, the slope at an end that stays twice halved (Illinois)
+            below, above, last_sign = best[2], found[2], 0.0
+            for _ in range(HALVINGS):
+                middle = low + (high - low) * below / (below - above)
+                if not low < middle < high:
+                    middle = (low + high) / 2
+                found = at(middle, best[0], best[1])
+                if found is None or middle in (low, high):
+                    break
+                sign = float(np.sign(found[2]))
+                if found[2] > 0:
+                    low, best, below, above = middle, found, found[2], above / (2 if sign == last_sign else 1)
+                else:
+                    high, above, below = middle, found[2], below / (2 if sign == last_sign else 1)
+                last_sign = sign
+                if high - low < 4 * np.finfo(float).eps * high or found[2] == 0:
+                    break
+        state, q, _ = best
+        if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
+            return None
+        return Node(q, state, last.first, last.second, 0.0, last.side)
+
+    def _bordered(self, everything: dict[str, Pose], before: LinkStates, line: Real) -> Real:
+        kernel = self.kernel
+        by_q = kernel.known(everything, {n: (r.v, r.w) for n, r in before.first.items()})[0]
+        by_q = by_q - kernel.asked(before.drives, 1, (1,))[0]
+        n = len(line)
+        matrix = np.zeros((n + 1, n + 1))
+        matrix[:n, :n] = kernel.matrix(everything)[0]
+        matrix[:n, n] = by_q * self.scale
+        matrix[n, :n] = line
+        return matrix
+
+    def follow(self, at: float, state: State, half: float, turns: bool) -> BranchTrace | None:
+        """The group's trace about the driver's place `at`: `half` a way to both sides, and round when it turns.
+
+        When all has come back to where it was after some turns, the trace is closed.
+        """
+        self.corrector.home, self.at = state, at
+        found = self.corrector.node(at, state)
+        if found is None:
+            return None
+        middle = found[0]
+        for shift in SHIFTS if turns else (0.0,):  # a cycle may begin anywhere but in a dead position
+            first, last = at - half + shift * self.scale, at + half + shift * self.scale
+            up, above = self.trace(middle, last)
+            down, below = self.trace(middle, first)
+            whole = [*reversed(down), middle, *up]
+            ends = [node for node, how in ((whole[0], below), (whole[-1], above)) if how == "reached"]
+            if "boundary" not in (above, below) and all(alive(end, whole) for end in ends):
+                break
+        nodes = whole
+        if turns and above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
+            return _traced(nodes)
+        for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
+            if turns and above == "reached":
+                more, above = self.trace(nodes[-1], last + 2 * half * turn)
+                nodes += more
+                if above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
+                    return _traced(nodes)
+        for turn in range(1, TURNS):
+            if turns and below == "reached" and above != "reached":
+                more, below = self.trace(nodes[0], first - 2 * half * turn)
+                nodes = [*reversed(more), *nodes]
+        return _traced(nodes, (below, above))
+
+
+def _flat(state: State, size: float) -> Real:
+    """A state as the unknowns of the group's equations."""
+    return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
+
+
+def _traced(nodes: list[Node], ends: tuple[End, End] | None = None) -> BranchTrace:
+    """The trace of nodes in growing order; ends: how it ended below and above, None: it is closed."""
+
+    def ended(*ways: End) -> tuple[bool, bool]:
+        return (ends[0] in ways, ends[1] in ways) if ends else (False, False)
+
+    states, first, second = (joined(getattr(node, part) for node in nodes) for part in ("state", "first", "second"))
+    dead = np.array([n.q for n in nodes if n.dead])
+    flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
+    return BranchTrace(
+        np.array([n.q for n in nodes]), states, first, second, ends is None, ended("reached"), ended("limit"),
+        ended("lost", "boundary"), dead=dead, flips=flips,
+    )  # fmt: skip

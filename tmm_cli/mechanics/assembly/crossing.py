@@ -1,0 +1,269 @@
+"""Dead positions that a group passes on a smooth way: change points, where the way of another assembly crosses its own.
+
+Near one, at a distance h, Newton's method knows a state to u/h only, and at the place itself it has no next step. So
+the smooth way is sampled on both sides from farther off, and polynomials through the samples give the state there and
+the place, a root of the determinant. E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, ch. 8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from tmm_cli.mechanics.assembly.corrector import Node, Source, joined, parts_of, predicted, stated
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.state import State
+from tmm_cli.mechanics.numerics.double_double import exactly, rounded
+from tmm_cli.mechanics.numerics.tolerances import (
+    CROSSING_AGREES,
+    CROSSING_FITTED,
+    CROSSING_KNOWN,
+    CROSSING_ROUNDED,
+    LAST_STEP,
+    NO_DETERMINANT,
+    SAMPLES_ROUNDED,
+)
+from tmm_cli.mechanics.numerics.vectors import Real
+
+RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # of the samples about the place, in scales of the driver
+SAMPLES = 28  # of Chebyshev; those in the middle are left out
+MIDDLE = 0.2
+DEGREES = (10, 13)  # of the polynomials: places of both agree
+PROBES = (1e-3, 1e-4, 1e-5, 1e-6)  # scales; a determinant that falls as h^2 leaves no digits at the last ones
+FOUND = 0.02  # a corrected state may be this far from the predicted one
+ROUNDS = 12
+SMALL = 0.3  # of the largest determinant on the way: less than this may come to nothing
+AHEAD = 1e-5  # scales of the driver, for the slope of the determinant
+CLOSER = 10  # times: a dead position that was not found is looked for again from so much nearer
+EDGE = 1e-3  # scales of the driver: this near to an end of the way a dead position is at it
+
+
+Correct = Callable[[float, State], "tuple[Node, float] | None"]
+Finest = Callable[[list[Node]], list[Node]]
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Polynomials of the states' parts (columns) and of the determinant in t = (q - middle)/radius."""
+
+    middle: float
+    radius: float
+    parts: tuple[Chebyshev, ...]
+    det: Chebyshev
+
+    def state(self, q: float, order: int = 0) -> State:
+        """The state at q, or a derivative of it by q."""
+        t = (q - self.middle) / self.radius
+        found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
+        return stated(found[None, :])
+
+
+class Crossings:
+    """Looks for them on the way of one group: `source` gives the links it hangs on, `correct` the group itself."""
+
+    def __init__(self, kernel: Newton, source: Source, correct: Correct, scale: float) -> None:
+        self.kernel, self.source, self.correct, self.scale = kernel, source, correct, scale
+        self.refused: list[tuple[float, float]] = []
+
+    def between(self, nodes: list[Node], beyond: Node, largest: float) -> Node | None:
+        """A dead position between the last node and the next one that the group passes smoothly.
+
+        largest: size of the determinant in one of the nodes.
+        """
+        here = nodes[-1]
+        if self.kernel.passive or here.dead:
+            return None
+        if beyond.side == here.side and not self._touches(here, beyond, largest):
+            return None
+        middle, span = (here.q + beyond.q) / 2, abs(beyond.q - here.q)
+        if any(abs(middle - q) < 2 * old and span > old / CLOSER for q, old in self.refused):
+            return None
+        found = crossing(self.correct, self._finest, nodes, beyond, self.scale)
+        if found is None or (found.q - here.q) * (beyond.q - here.q) <= 0:
+            self.refused.append((middle, span))
+            return None
+        return found
+
+    def _finest(self, nodes: list[Node]) -> list[Node]:
+        """The same nodes found in double-doubles, and rounded."""
+        kernel = self.kernel
+        before = self.source(exactly([n.q for n in nodes]), 0)
+        states = joined(n.state for n in nodes)
+        with np.errstate(all="ignore"):
+            states, size = kernel.close(
+                State(exactly(states.x), exactly(states.unwrapped)), before.poses, before.drives
+            )
+            det = np.linalg.det(rounded(kernel.matrix({**before.poses, **kernel.poses_of(states)})))
+        states = State(rounded(states.x), rounded(states.unwrapped))
+        return [
+            replace(n, state=states.part(slice(k, k + 1)), det=float(det[k])) if size[k] < LAST_STEP else n
+            for k, n in enumerate(nodes)
+        ]
+
+    def _touches(self, here: Node, beyond: Node, largest: float) -> bool:
+        """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.
+
+        From both of them it is so at twice the way that the tangent leads to.
+        """
+        if max(abs(here.det), abs(beyond.det)) > SMALL * largest:
+            return False
+        way, middle = beyond.q - here.q, (here.q + beyond.q) / 2
+        with np.errstate(all="ignore"):
+            ends = [n.q - 2 * n.det / self._slope(n) for n in (here, beyond)]
+        return all(abs(end - middle) < abs(way) for end in ends)
+
+    def _slope(self, node: Node) -> np.float64:
+        """Derivative of the determinant by q, roughly."""
+        step = AHEAD * self.scale
+        before, state = self.source(np.array([node.q + step]), 0), predicted(node, node.q + step)
+        moved = np.linalg.det(self.kernel.matrix({**before.poses, **self.kernel.poses_of(state)}))
+        return np.float64(moved[0] - node.det) / step
+
+
+def alive(end: Node, nodes: list[Node]) -> bool:
+    """Whether a node is not all but in a dead position."""
+    return abs(end.det) > 2 * EDGE * max(abs(n.det) for n in nodes)
+
+
+def crossing(correct: Correct, finest: Finest, nodes: list[Node], beyond: Node, scale: float) -> Node | None:
+    """The dead position between the last node and one beyond it; None where the way does not go smoothly through one.
+
+    correct: the group at a place, from a start, and how far it is from it. finest: nodes in extended precision. scale:
+    what places are counted in.
+    """
+    flips = beyond.side != nodes[-1].side
+    about = _between(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
+    best, error = None, CROSSING_KNOWN * scale
+    for radius in RADII:
+        found = _place(correct, finest, nodes, about, radius * scale, flips)
+        if found is None:
+            continue
+        dead, known, fit = found
+        known += scale * SAMPLES_ROUNDED / (MIDDLE * radius) ** (1 if flips else 2)
+        if not known < error:
+            continue
+        if not _smooth(correct, dead, fit, scale):
+            return None
+        best, error = dead, known
+        if error < CROSSING_AGREES * scale:
+            break
+    return best
+
+
+def _between(correct: Correct, low: Node, high: Node) -> float:
+    """About where the determinant is zero, by false position as far as Newton's method goes."""
+    for _ in range(ROUNDS):
+        q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
+        near = low if abs(q - low.q) < abs(high.q - q) else high
+        found = correct(q, predicted(near, q))
+        if found is None or found[1] > FOUND:
+            return q
+        if found[0].side == low.side:
+            low = found[0]
+        else:
+            high = found[0]
+    return low.q + (high.q - low.q) * low.det / (low.det - high.det)
+
+
+def _place(
+    correct: Correct, finest: Finest, nodes: list[Node], about: float, radius: float, flips: bool
+) -> tuple[Node, float, _Fit] | None:
+    """A dead position from samples at the distance `radius` about a place near it, how well it is known; the fit."""
+    for _ in range(3):
+        samples = _samples(correct, nodes, about, radius, flips)
+        if samples is None:
+            return None
+        roots = [_root(_fitted(samples, about, radius, degree), flips) for degree in DEGREES]
+        if not all(abs(root) < 1 for root in roots):
+            return None
+        if abs(roots[-1]) < MIDDLE / 4:
+            break
+        about += radius * roots[-1]
+    else:
+        return None
+    samples = finest(samples)
+    fits = [_fitted(samples, about, radius, degree) for degree in DEGREES]
+    roots, fit = [_root(each, flips) for each in fits], fits[-1]
+    if abs(fit.det(roots[-1])) > NO_DETERMINANT * max(abs(s.det) for s in samples):
+        return None
+    side = -nodes[-1].side if flips else nodes[-1].side
+    q = about + radius * roots[-1]
+    state, first, second = (fit.state(q, order) for order in range(3))
+    return Node(q, state, first, second, 0.0, side, True, flips), radius * abs(roots[0] - roots[1]), fit
+
+
+def _samples(correct: Correct, nodes: list[Node], about: float, radius: float, flips: bool) -> list[Node] | None:
+    """Nodes on both sides of a place; the first ones beyond it start from what those before it lead to."""
+    sense = np.sign(about - nodes[-1].q)
+    places = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+    places = places[np.abs(places) > MIDDLE]
+    before = [about + sense * radius * t for t in places if t < 0]
+    after = sorted((about + sense * radius * t for t in places if t > 0), key=lambda q: abs(q - about))
+    last = max((k for k, n in enumerate(nodes) if n.dead), default=0)
+    far = [n for n in nodes[last:] if abs(n.q - about) > MIDDLE * radius]
+    start = min(far or nodes[-1:], key=lambda n: abs(n.q - before[0]))
+    here = _along(correct, start, sorted(before, key=lambda q: abs(q - start.q)), nodes[-1].side)
+    if here is None:
+        return None
+    reaching = _fitted(here, about, radius, len(here) - 4)
+    first = correct(after[0], reaching.state(after[0]))
+    side = -nodes[-1].side if flips else nodes[-1].side
+    if first is None or first[1] > FOUND or first[0].side != side:
+        return None
+    there = _along(correct, first[0], after[1:], side)
+    return None if there is None else sorted([*here, first[0], *there], key=lambda n: n.q)
+
+
+def _along(correct: Correct, start: Node, places: list[float], side: float) -> list[Node] | None:
+    found: list[Node] = []
+    for q in places:
+        known = [start, *found]
+        near = known[int(np.argmin([abs(n.q - q) for n in known]))]
+        one = correct(q, predicted(near, q))
+        if one is None or one[1] > FOUND or one[0].side != side:
+            return None
+        found.append(one[0])
+    return found
+
+
+def _fitted(samples: list[Node], about: float, radius: float, degree: int) -> _Fit:
+    t = np.array([(n.q - about) / radius for n in samples])
+    parts = np.array([parts_of(n.state) for n in samples])
+    dets = np.array([n.det for n in samples])
+
+    def fit(values: Real) -> Chebyshev:
+        return Chebyshev.fit(t, values, degree, domain=[-1, 1])
+
+    return _Fit(about, radius, tuple(fit(column) for column in parts.T), fit(dets))
+
+
+def _root(fit: _Fit, flips: bool) -> float:
+    """Where the determinant is zero, or where it is least if it does not change its sign."""
+    function = fit.det if flips else fit.det.deriv()
+    slope = function.deriv()
+    t = 0.0
+    for _ in range(ROUNDS):
+        t -= float(function(t) / slope(t))
+        if not abs(t) < 2:
+            return np.inf
+    return t
+
+
+def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
+    """Whether the way goes through: beside the place, closer and closer, the group is where the polynomials say.
+
+    Where it turns back before a gap however narrow (w), it is off by w^2/h at the distance h.
+    """
+    for h in PROBES if dead.flips else PROBES[:2]:
+        places = (dead.q - h * scale, dead.q + h * scale)
+        found = [correct(q, fit.state(q)) for q in places]
+        most = CROSSING_FITTED + CROSSING_ROUNDED / h ** (1 if dead.flips else 2)
+        if any(one is None or one[1] > most for one in found):
+            return False
+        low, high = (one[0].side for one in found if one is not None)
+        if (low != high) != dead.flips:
+            return False
+    return True

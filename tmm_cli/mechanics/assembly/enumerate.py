@@ -1,0 +1,262 @@
+"""Stage: every real assembly of each group at one place of the driver, the links before it placed as in the sketch.
+
+Groups of class II have two assemblies in closed form, or one; triads those of a polynomial (assembly_triad); groups
+whose angles follow from equations of angles alone (gear trains) have one. Of all others Newton's method from many
+starts finds what it finds, in bounded work and without a proof that there are no more. Where there is more than one,
+real assemblies come in pairs, but for dead positions, in which two of them meet.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.choose import closed_form
+from tmm_cli.mechanics.assembly.search import all_assemblies, close_from_afar
+from tmm_cli.mechanics.assembly.triad import Triad, starts
+from tmm_cli.mechanics.groups.base import Closed, Kernel
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
+from tmm_cli.mechanics.groups.state import Drives, Pose, State
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.linear import least_over_largest
+from tmm_cli.mechanics.numerics.tolerances import CLOSED, DEAD, MEET, SAME_ASSEMBLY
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Group
+
+Method = Literal["closed form", "polynomial", "angles", "many starts"]
+
+STARTS, LEAST_STARTS, SMALL = 400, 60, 8  # many starts; fewer for groups of more links, as each then costs more
+ROUNDS = 4  # of many starts at most, while an odd number shows that one is missing
+STEP, STAYS = 0.02, 0.005  # sizes, rad: a step that shows whether a group moves by itself, and what it then keeps of it
+BACK = 40  # rounds that would bring it back
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """One assembly: poses of the group's links, their angles (rad), its own points (m), distance from a dead position.
+
+    of_sketch: whether it is the one in which the linkage was sketched.
+    """
+
+    poses: Mapping[str, Pose]
+    angles: Mapping[str, float]
+    points: Mapping[str, complex]
+    margin: float
+    of_sketch: bool = False
+
+
+@dataclass(frozen=True)
+class GroupAssemblies:
+    """The assemblies of a group. most: so many are possible, where that is known.
+
+    moves: the group moves by itself at this place, so that its assemblies have no end; one of them is here.
+    """
+
+    group: Group
+    assemblies: tuple[Assembly, ...]
+    method: Method
+    most: int | None = None
+    moves: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether it is proved that there are no others."""
+        return self.method != "many starts" and not self.moves
+
+    @property
+    def dead(self) -> bool:
+        """Whether two assemblies meet in one here."""
+        return any(found.margin < DEAD for found in self.assemblies)
+
+
+@dataclass(frozen=True)
+class Assemblies:
+    """All groups at the driver's place q (rad or m), position `number` if it is one; in solving order.
+
+    poses: those of all links in the assembly of the sketch. undecided: the group of which the sketch does not tell the
+    assembly; groups after it are not listed. lost: groups that hang on links that cannot be placed here.
+    """
+
+    q: float
+    number: int | None
+    poses: Mapping[str, Pose]
+    groups: tuple[GroupAssemblies, ...]
+    undecided: Group | None = None
+    lost: tuple[Group, ...] = ()
+
+
+def listed(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
+    """The groups with the names of their files: assemblies-III-2-3-4-5, with the position when there are several."""
+    found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
+    for here in places:
+        for group in here.groups:
+            number = f"-{here.number:02d}" if len(places) > 1 and here.number is not None else ""
+            name = "-".join(["assemblies", group.group.title.split("(")[0], *group.group.links])
+            stem = re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80] + number
+            stem = f"{stem}-{len(found)}" if stem in found else stem
+            found[stem] = (stem, here, group)
+    return list(found.values())
+
+
+def find_assemblies(
+    linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: float, number: int | None = None
+) -> Assemblies:
+    """All assemblies at q of the groups given as they are assembled, and of the one after them.
+
+    A group after them is there only when the sketch does not tell its assembly.
+    """
+    motion = link_states(linkage, kernels, np.array([q]), 0)
+    decided = {kernel.group.links for kernel in kernels}
+    undecided = next((group for group in structure.solved if group.links not in decided), None)
+    found, lost = [], []
+    placed = {link: motion.poses[link] for link in (FRAME, *(driver.link for driver in linkage.cranks))}
+    for group in [*(kernel.group for kernel in kernels), *([undecided] if undecided else [])]:
+        if all(bool(np.isfinite(motion.poses[link].x[0] + motion.poses[link].z[0])) for link in group.known):
+            found.append(_of_group(group, linkage, motion, dict(placed)))
+        else:
+            lost.append(group)
+        placed |= {link: motion.poses[link] for link in group.links if link in motion.poses}
+    return Assemblies(q, number, motion.poses, tuple(found), undecided, tuple(lost))
+
+
+def _of_group(group: Group, linkage: Linkage, motion: LinkStates, placed: Mapping[str, Pose]) -> GroupAssemblies:
+    kernel = closed_form(group, linkage)
+    if kernel is not None:
+        own = tuple(_of_closed(kernel, linkage, placed, motion.drives))
+        found = GroupAssemblies(group, own, "closed form", kernel.assemblies)
+    else:
+        found = _of_higher(group, linkage, placed, motion)
+    sketched = _sketched(group, motion)
+    if sketched is None:
+        return found
+    size = max((abs(p) for link in group.links for p in linkage.links[link].points.values()), default=1.0) or 1.0
+    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME_ASSEMBLY) for a in found.assemblies]
+    return replace(found, assemblies=tuple(marked))
+
+
+def _sketched(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
+    """The group's own poses in the assembly of the sketch, if it is decided and comes so far."""
+    poses = {link: motion.poses[link] for link in group.links if link in motion.poses}
+    sound = len(poses) == len(group.links) and all(np.isfinite(p.x[0] + p.z[0]) for p in poses.values())
+    return poses if sound else None
+
+
+def _apart(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
+    """How far two poses of the same links are apart; infinite where one of them is nothing."""
+    off = max(
+        abs(complex(p.x[0] - other[n].x[0])) / size + abs(complex(p.z[0] - other[n].z[0])) for n, p in one.items()
+    )
+    return float(off) if np.isfinite(off) else np.inf
+
+
+def _assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose], margin: float) -> Assembly:
+    known = {point for link in placed for point in linkage.links[link].points}
+    points = {
+        point: complex(pose.at(local)[0])
+        for link, pose in poses.items() for point, local in linkage.links[link].points.items() if point not in known
+    }  # fmt: skip
+    angles = {link: float(np.angle(pose.z)[0]) for link, pose in poses.items()}
+    return Assembly(poses, angles, points, margin)
+
+
+def _of_closed(kernel: Closed, linkage: Linkage, placed: Mapping[str, Pose], drives: Drives) -> Iterable[Assembly]:
+    """One for each sign, one in a dead position, none where it does not reach."""
+    for sign in (1, -1)[: kernel.assemblies]:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            at = replace(kernel, sign=sign).closed(placed, drives)
+        if not at.assembled[0] or not np.isfinite(at.a.x[0] + at.b.x[0]):
+            return
+        yield _assembly(linkage, placed, dict(zip(kernel.group.links, at.poses, strict=True)), float(at.margin[0]))
+        if at.dead[0]:
+            return
+
+
+def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates) -> GroupAssemblies:
+    """Groups of class III and higher, and those with higher pairs or drivers in them."""
+    kernel = Newton.of(group, linkage)
+    with np.errstate(all="ignore"):
+        states, method, most = _searched(kernel, linkage, placed, motion)
+        found: list[Assembly] = []
+        moves = False
+        for state in states:
+            poses = kernel.poses_of(state)
+            margin = float(least_over_largest(kernel.matrix({**placed, **poses}))[0])
+            if margin < DEAD and _moves(kernel, state, placed, motion.drives):
+                if moves:
+                    continue
+                moves = True
+            if not any(_same(kernel.size, poses, margin, other) for other in found):
+                found.append(_assembly(linkage, placed, poses, margin))
+    found.sort(key=lambda a: tuple(round(angle, 6) for angle in a.angles.values()))
+    return GroupAssemblies(group, tuple(found), method, most, moves)
+
+
+def _searched(
+    kernel: Newton, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
+) -> tuple[list[State], Method, int | None]:
+    """States of all assemblies (some more than once), the way they were found, and how many there are at most."""
+    drives = motion.drives
+    triad = Triad.of(kernel.group, linkage, kernel.size)
+    found = None if triad is None else starts(triad, placed)
+    if found is None and kernel.by_angle:
+        return all_assemblies(kernel, placed, drives), "angles", 1
+    if found is None:
+        return _by_many_starts(kernel, placed, motion), "many starts", None
+    start, most = found
+    number = len(start.x)
+    if not number:
+        return [], "polynomial", most
+    known = {name: pose.spread((number,)) for name, pose in placed.items()}
+    residuals = np.max(np.abs(kernel.residuals({**known, **kernel.poses_of(start)}, drives)), axis=-1)
+    near, closed = close_from_afar(kernel, placed, drives, start)
+    # exactly in a dead position Newton's method has no next step, but the root is there
+    sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or residuals[k] < CLOSED]
+    return [which.part(slice(k, k + 1)) for which, k in sound], "polynomial", most
+
+
+def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: LinkStates) -> list[State]:
+    """What many starts find, and the assembly of the sketch.
+
+    With turning pairs alone the way of a group with one lead cut is closed, so that the lead closes an even number of
+    times: an odd number shows that one is missing.
+    """
+    own = _sketched(kernel.group, motion)
+    states: list[State] = []
+    if own is not None:
+        poses = [own[link] for link in kernel.group.links]
+        states.append(State(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
+    number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
+    turning = not kernel.passive and all(c.kind == "R" for c in kernel.constraints)
+    for seed in range(1, ROUNDS + 1):
+        for state in all_assemblies(kernel, placed, motion.drives, seed, number):
+            here = kernel.poses_of(state)
+            if not any(_apart(here, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states):
+                states.append(state)
+        if not turning or len(states) % 2 == 0:
+            break
+    return states
+
+
+def _same(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
+    """Whether an assembly is there already; in a dead position both that meet are known to half the digits only."""
+    apart = _apart(poses, other.poses, size)
+    return apart < SAME_ASSEMBLY or (apart < MEET and max(margin, other.margin) < DEAD)
+
+
+def _moves(kernel: Newton, state: State, placed: Mapping[str, Pose], drives: Drives) -> bool:
+    """Whether a dead group moves by itself: closed again after a step along its free motion, it does not come back."""
+    free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
+    here = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
+    residual = np.inf
+    for _ in range(BACK):
+        poses = {**placed, **kernel.poses_of(here)}
+        residuals = kernel.residuals(poses, drives)[0]
+        residual = float(np.max(np.abs(residuals)))
+        here = here.moved(-np.linalg.pinv(kernel.matrix(poses)[0], rcond=DEAD) @ residuals, kernel.size)
+    off = max(np.max(np.abs(here.x - state.x)) / kernel.size, np.max(np.abs(here.unwrapped - state.unwrapped)))
+    return bool(residual < CLOSED and off > STAYS)

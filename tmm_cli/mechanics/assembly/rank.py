@@ -1,0 +1,337 @@
+"""Which links and pairs of a linkage with redundant constraints the structural report leaves out.
+
+Decided by the rank of the equations at one position: without what is left out the mobility is the same. Links that are
+rigid to one another count as one. Links between moving links are left out first, then pairs, then links connected to
+the frame; the later in the file before the earlier, loaded links last. Drivers, outputs and links to which the file
+attaches others stay. Where nothing more can be left out as a whole, pairs lose single conditions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations_with_replacement, islice
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.search import close_from_afar, placed_by_angles, sketched_angles
+from tmm_cli.mechanics.errors import MobilityError
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import drives_at, frame_state
+from tmm_cli.mechanics.groups.state import Pose, State
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import CONVERGED, REDUNDANT, SHARED
+from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.structure.assur import Structure, analyse, pairs_within, reduced, ties_of
+from tmm_cli.mechanics.structure.graph import Tie
+from tmm_cli.mechanics.structure.group import Group, Passive, Reduction, RedundantLink, RigidSet
+
+MOST_TRIES = 3000
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """A linkage without some links and ties, at known poses of all links."""
+
+    linkage: Linkage
+    poses: Mapping[str, Pose]
+    links: tuple[str, ...]
+    ties: frozenset[int] = frozenset()
+
+    @cached_property
+    def _kernel(self) -> Newton | None:
+        """What is left as one group; None if nothing is joined."""
+        left, dropped = {*self.links}, {tie for k, tie in enumerate(ties_of(self.linkage)) if k in self.ties}
+        names = {tie.name for tie in dropped}
+        hinges = []
+        for hinge in self.linkage.hinges:
+            loose = {tie.b for tie in dropped if tie.name == hinge.point}
+            kept = tuple(link for link in hinge.links if link in left and link not in loose)
+            if len(kept) > 1:
+                attached_to = hinge.attached_to if hinge.attached_to in kept else ""
+                hinges.append(replace(hinge, links=kept, attached_to=attached_to))
+        remaining = replace(
+            self.linkage, hinges=tuple(hinges),
+            links={name: link for name, link in self.linkage.links.items() if name in left or name == FRAME},
+            slides=tuple(s for s in self.linkage.slides if {s.carrier, s.runner} <= left and s.name not in names),
+            meshes=tuple(m for m in self.linkage.meshes if {m.i, m.j, m.carrier} <= left and m.name not in names),
+        )  # fmt: skip
+        pairs = pairs_within(remaining)
+        inner = tuple(pair for pair in pairs if FRAME not in (pair.i, pair.j))
+        outer = tuple(pair for pair in pairs if FRAME in (pair.i, pair.j))
+        drivers = tuple(d for d in self.linkage.drivers if {d.base, d.link} <= left)
+        return Newton.of(Group(self.moving, inner, outer, 0, "", drivers), remaining) if pairs else None
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The moving links that are left."""
+        return tuple(link for link in self.links if link != FRAME)
+
+    @cached_property
+    def equations(self) -> Real:
+        """The Jacobian without dimension, (rows, unknowns), with the rows of the drivers last."""
+        if self._kernel is None:
+            return np.zeros((0, 3 * len(self.moving)))
+        matrix: Real = self._kernel.matrix(self.poses)[0]
+        return matrix
+
+    @cached_property
+    def undriven(self) -> Real:
+        """The Jacobian without the rows of the drivers."""
+        drivers = 0 if self._kernel is None else len(self._kernel.group.drivers)
+        return self.equations[: len(self.equations) - drivers]
+
+    @cached_property
+    def rank(self) -> int:
+        """The rank of the pairs."""
+        return rank_of(self.undriven)
+
+    @property
+    def redundant(self) -> int:
+        """The number of redundant constraints."""
+        return len(self.undriven) - self.rank
+
+    @property
+    def moves(self) -> bool:
+        """True if the drivers move all of it, and nothing moves without them."""
+        columns, drivers = self.undriven.shape[1], len(self.linkage.drivers)
+        return bool(columns - self.rank == drivers and rank_of(self.equations) == columns)
+
+    def without(self, links: Iterable[str] = (), ties: Iterable[int] = ()) -> Remainder:
+        """The same without further links and ties."""
+        gone = {*links}
+        return replace(self, links=tuple(n for n in self.links if n not in gone), ties=self.ties | {*ties})
+
+    def rigid_sets(self) -> list[tuple[str, ...]]:
+        """Sets of links that are rigid to one another by their pairs with one another alone."""
+        free = np.linalg.svd(self.undriven)[2][self.rank :]
+        fields = {link: np.zeros(2 * len(free), complex) for link in self.links}
+        size = 1.0 if self._kernel is None else float(np.ravel(self._kernel.size)[0])
+        for k, link in enumerate(self.moving):
+            x, y, turn = (free[:, 3 * k + part] for part in range(3))
+            origin = complex(np.ravel(self.poses[link].x)[0]) / size
+            fields[link] = np.concatenate([x + 1j * y - 1j * turn * origin, turn])
+        sets = _alike(fields)
+        if sets == [self.links]:  # others may only have the same velocities at this one position
+            return sets
+        return [rigid for links in sets for rigid in replace(self, links=links).rigid_sets()]
+
+
+def rank_of(matrix: Real) -> int:
+    """The rank of equations without dimension."""
+    return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
+
+
+def _alike(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
+    """Links that have the same velocities in all motions, two or more together."""
+    sets: list[list[str]] = []
+    for link, field in fields.items():
+        like = next((s for s in sets if np.max(np.abs(fields[s[0]] - field), initial=0.0) < SHARED), None)
+        if like is None:
+            sets.append([link])
+        else:
+            like.append(link)
+    return [tuple(links) for links in sets if len(links) > 1]
+
+
+class _Selection:
+    """What is left of a linkage while redundant links and pairs are left out, one after another."""
+
+    def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
+        self.left = Remainder(linkage, poses, tuple(linkage.links))
+        self.among_rigid = {links: replace(self.left, links=links).redundant for links in self.left.rigid_sets()}
+        self.reduction = Reduction(tuple(RigidSet(links, number) for links, number in self.among_rigid.items()))
+        self.every = list(ties_of(linkage))
+        self.links: list[RedundantLink] = []
+
+    def excess(self, left: Remainder) -> int:
+        """The redundant constraints that do not lie within rigid sets."""
+        there = {*left.links}
+        return left.redundant - sum(number for links, number in self.among_rigid.items() if there.issuperset(links))
+
+    @property
+    def ties(self) -> list[int]:
+        """The ties between the bodies that are left, the last of the file first."""
+        gone = replace(self.reduction, links=tuple(self.links)).touched(self.every) | self.left.ties
+        return [k for k in reversed(range(len(self.every))) if k not in gone]
+
+    def leave_links(self, bodies: Iterable[str]) -> None:
+        """Leave out each of these bodies that is redundant."""
+        for body in bodies:
+            members = self.reduction.members(body)
+            trial = self.left.without(members)
+            excess = self.excess(self.left)
+            if excess and self.excess(trial) < excess and trial.moves:
+                self.links.append(RedundantLink(members, excess - self.excess(trial)))
+                self.left = trial
+
+    def leave_pairs(self) -> None:
+        """Leave out each pair all constraints of which are redundant."""
+        stay = _driven_and_axles(self.left.linkage)
+        for k in self.ties:
+            constraints = self.every[k].constraints
+            if constraints > self.excess(self.left) or self.every[k].name in stay:
+                continue
+            trial = self.left.without(ties=[k])
+            if self.left.redundant - trial.redundant == constraints and trial.moves:
+                self.left = trial
+
+
+def leave_out(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
+    """Rigid sets, redundant links and conditions such that what is left are Assur groups; None if there are none."""
+    selection = _Selection(linkage, poses)
+    between, on_frame = _candidates(linkage, selection.reduction)
+    selection.leave_links(between)
+    selection.leave_pairs()
+    selection.leave_links(on_frame)
+    links = sorted(selection.links, key=lambda redundant: linkage.moving.index(redundant.links[0]))
+    whole_pairs = {k: selection.every[k].constraints for k in selection.left.ties}
+    single = combinations_with_replacement(selection.ties, selection.excess(selection.left))
+    for drop in islice(single, MOST_TRIES):
+        conditions = whole_pairs | {k: drop.count(k) for k in drop}
+        reduction = replace(selection.reduction, links=tuple(links), conditions=conditions)
+        possible = all(number <= selection.every[k].constraints for k, number in conditions.items())
+        if possible and reduced(linkage, structure, reduction) is not None:
+            return reduction
+    return None
+
+
+def _driven_and_axles(linkage: Linkage) -> set[str]:
+    """Names of the pairs in which drivers work, and of those of gears, cams and followers with their carrier."""
+    on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
+    slides = {mesh.slide for mesh in linkage.meshes}
+    return {driver.joint for driver in linkage.drivers} | {name for name in on_carrier | slides if name}
+
+
+def _candidates(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
+    """Bodies that may be left out in this order: those between moving links, and those connected to the frame."""
+    on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
+    driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
+    outputs = [linkage.output_carrier(output.link) for output in linkage.outputs]
+    outputs = outputs or [link for link in on_frame if link not in driving][-1:]
+    carrying = [hinge.attached_to for hinge in linkage.hinges if hinge.attached_to]
+    stay = {reduction.body(link) for link in (FRAME, *driving, *outputs, *carrying)}
+    loaded = {reduction.body(link) for load in linkage.loads for link in (load.link, load.base)}
+    bodies = [body for body in reversed(reduction.bodies(linkage.moving)) if body not in stay]
+    bodies.sort(key=lambda body: body in loaded)
+    held = {reduction.body(link) for link in on_frame}
+    return [body for body in bodies if body not in held], [body for body in bodies if body in held]
+
+
+# Where counting says that a linkage is locked and its dimensions let it move: the numerical rank decides.
+#
+# All pairs of the linkage are closed at the sketch by least squares; the rank of their equations gives the true
+# mobility, and what is left over are passive constraints (the coupler that a parallelogram does not need, a second
+# parallel guide). They are left out of the count, which then gives groups as usual; in these groups the equations
+# agree, and are solved by least squares. J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of Multibody
+# Systems, ch. 2.
+
+
+STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both ways
+STARTS = 200
+
+
+def mobile(linkage: Linkage) -> Structure:
+    """The groups of a linkage whose drivers move all of it, by the count or the rank. Raises MobilityError."""
+    structure = analyse(linkage)
+    moving = structure if structure.sound else by_rank(linkage, structure)
+    if moving is None:
+        raise MobilityError(structure)
+    return moving
+
+
+def by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
+    """The structure with its passive constraints left out; None when the linkage is locked in truth as well."""
+    wanted = len(linkage.drivers)
+    if structure.under_constrained or structure.mobility >= wanted:
+        return None
+    kernel = _whole(linkage, structure)
+    found = _closed(kernel, linkage)
+    if found is None:
+        return None
+    state, poses = found
+    matrix = kernel.matrix({**poses, **kernel.poses_of(state)})[0]
+    undriven = matrix[: len(matrix) - wanted]
+    rank, whole = (int(np.linalg.matrix_rank(rows, rtol=REDUNDANT)) for rows in (undriven, matrix))
+    if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _moves(kernel, linkage, state):
+        return None
+    everything = {**poses, **kernel.poses_of(state)}
+    return _without_passive(linkage, structure, kernel, undriven, everything, len(undriven) - rank)
+
+
+def _whole(linkage: Linkage, structure: Structure) -> Newton:
+    """The linkage as one group on the frame."""
+    inner = tuple(p for p in structure.pairs if FRAME not in (p.i, p.j))
+    outer = tuple(p for p in structure.pairs if FRAME in (p.i, p.j))
+    return Newton.of(Group(linkage.moving, inner, outer, 0, "", linkage.drivers), linkage)
+
+
+def _closed(kernel: Newton, linkage: Linkage) -> tuple[State, Mapping[str, Pose]] | None:
+    q = np.array([linkage.sketch.at])
+    poses = {FRAME: frame_state(q)[0]}
+    drives = drives_at(linkage, q)
+    unwrapped = sketched_angles(kernel, linkage, poses, drives)
+    links = len(linkage.moving)
+    starts = np.random.default_rng(1).uniform(-np.pi, np.pi, (STARTS, links)) if unwrapped is None else unwrapped
+    state, closed = close_from_afar(kernel, poses, drives, placed_by_angles(kernel, poses, drives, starts))
+    if not bool(np.any(closed)):
+        return None
+    k = int(np.argmax(closed))
+    return state.part(slice(k, k + 1)), poses
+
+
+def _moves(kernel: Newton, linkage: Linkage, state: State) -> bool:
+    """Whether it can be closed beside the sketch too: a truss may have a mobility at one place only."""
+    step = STEP if linkage.driver.kind == "turn" else STEP * kernel.size
+    ways = []
+    for sense in (1, -1):
+        q = np.array([linkage.sketch.at + sense * step])
+        poses, drives = {FRAME: frame_state(q)[0]}, drives_at(linkage, q)
+        with np.errstate(all="ignore"):
+            there, last = kernel.close(state, poses, drives)
+            residual = np.max(np.abs(kernel.residuals({**poses, **kernel.poses_of(there)}, drives)))
+        ways.append(bool(last[0] < CONVERGED and residual < CONVERGED))
+    return any(ways)
+
+
+def _without_passive(
+    linkage: Linkage, structure: Structure, kernel: Newton, undriven: Real, poses: Mapping[str, Pose], number: int
+) -> Structure | None:
+    """Leave out so many conditions that the count is right; of what the report leaves out first, then the last ones."""
+    left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # combinations of rows that say nothing new
+    rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]
+    heavy = np.max(np.abs(left), axis=0) > SHARED
+    names = dict.fromkeys(row.name for row, there in zip(rows, heavy, strict=True) if there)
+    pairs = {p.name: p for p in structure.pairs}
+    among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))
+    keys = {pairs[name].point or name if pairs[name].kind == "R" else name for name in names}
+    every = tuple(ties_of(linkage))
+    ties = {k: tie for k, tie in enumerate(every) if tie.name in keys}
+    reduction = leave_out(linkage, poses, structure)
+    for report in (reduction, None) if reduction else (None,):
+        first = dict(report.conditions) if report else {}
+        from_ties = [k for k in ties if report is None or k in report.touched(every)]
+        choices = combinations_with_replacement(from_ties[::-1], number - sum(first.values()))
+        for drop in islice(choices, MOST_TRIES):
+            dropped = first | {k: drop.count(k) for k in drop}
+            if any(count > ties[k].constraints for k, count in dropped.items()):
+                continue
+            found = analyse(linkage, dropped)
+            if found.freedom == len(linkage.drivers) and not found.redundant_pairs and not found.under_constrained:
+                whole = replace(found, passive=tuple(_passives(found, dropped, ties, among)))
+                return reduced(linkage, whole, report or Reduction(conditions=dropped))
+    return None
+
+
+def _passives(
+    found: Structure, dropped: Mapping[int, int], ties: Mapping[int, Tie], among: tuple[str, ...]
+) -> Iterable[Passive]:
+    placed = {link: k for k, group in enumerate(found.all_groups) for link in group.links}
+    for k, count in dropped.items():
+        name = ties[k].name
+        joined = [p for p in found.pairs if name in (p.name, p.point)]
+        joined = [p for p in joined if ties[k].b in (p.i, p.j)] or joined  # in a compound hinge: that of the tie's link
+        pair = max(joined, key=lambda p: max(placed.get(p.i, -1), placed.get(p.j, -1)))
+        links = sorted((pair.i, pair.j), key=lambda n: placed.get(n, -1))
+        yield Passive(pair.name, count, (links[0], links[1]), among)

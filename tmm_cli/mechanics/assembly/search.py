@@ -1,0 +1,280 @@
+"""What the sketch shows of an assembly: which of several it is, and whether it is about that one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.continuation import Walker
+from tmm_cli.mechanics.assembly.corrector import corrected
+from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError, SketchMismatchError
+from tmm_cli.mechanics.groups.base import Kernel, reach
+from tmm_cli.mechanics.groups.branch import BranchTrace
+from tmm_cli.mechanics.groups.newton import Newton
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.groups.state import Drives, Placement, Pose, State
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.linear import least_over_largest, solve
+from tmm_cli.mechanics.numerics.tolerances import CONVERGED, DEAD_SKETCH, LAST_STEP_AFAR, SAME_ASSEMBLY, SAME_IN_SKETCH
+from tmm_cli.mechanics.numerics.vectors import Real, unit
+from tmm_cli.mechanics.structure.cycle import turns_of_cycle
+from tmm_cli.mechanics.structure.group import Group
+
+TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
+FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
+
+Shown = dict[str, complex | float]  # points (m) and angles of links (rad) by their names
+
+
+def sketchable(linkage: Linkage, poses: Mapping[str, Pose]) -> Shown:
+    """Everything about some links that a sketch may name: points and angles."""
+    shown: Shown = {}
+    for name, pose in poses.items():
+        shown |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
+        shown[name] = float(np.angle(pose.z)[0])
+    return shown
+
+
+def sketch_distance(sketched: Mapping[str, complex | float], shown: Shown, size: float) -> float:
+    """The worst deviation of the sketch from an assembly: points against the group's size, angles against a radian."""
+    worst = 0.0
+    for name, value in sketched.items():
+        if isinstance(value, complex):
+            worst = max(worst, abs(value - shown[name]) / size)
+        else:
+            worst = max(worst, abs(np.angle(np.exp(1j * (value - float(shown[name].real))))))
+    return worst
+
+
+def nearest_to_sketch(
+    kernel: Kernel, linkage: Linkage, assemblies: Sequence[Mapping[str, Pose]], shift: complex = 0j
+) -> int:  # fmt: skip
+    """Which of several assemblies the sketch shows. Raises AmbiguousSketchError when it does not tell.
+
+    shift: how far the sketch has the links that the group hangs on from where they are (m).
+    """
+    if len(assemblies) == 1:
+        return 0
+    shown = [sketchable(linkage, poses) for poses in assemblies]
+    tells = [
+        name for name in shown[0]
+        if any(abs(one[name] - shown[0][name]) > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
+               for one in shown[1:])
+    ]  # fmt: skip
+    sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
+    given = {name: sketched[name] for name in tells if name in sketched}
+    errors = [sketch_distance(given, one, kernel.size) for one in shown]
+    best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
+    if not given or errors[best] > TELLS * errors[second]:
+        choices = {name: (shown[best][name], shown[second][name]) for name in tells}
+        raise AmbiguousSketchError(kernel.group, choices, len(assemblies))
+    return best
+
+
+def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
+    """How far every sketched point is from its place, as a share of the linkage's size."""
+    places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
+    size = max(abs(p - q) for p in places for q in places) or 1.0
+    found = {}
+    for point, sketched in linkage.sketch.points.items():
+        owner = linkage.owner(point)
+        if owner in poses:
+            found[point] = abs(complex(poses[owner].at(linkage.local(owner, point))[0]) - sketched) / size
+    return found
+
+
+def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = FITS) -> None:
+    """Every sketched point and angle, whether it decided something or not, lies about where it was drawn.
+
+    Raises SketchMismatchError.
+    """
+    for point, off in sketch_deviations(linkage, poses).items():
+        if off > fits:
+            owner = linkage.owner(point)
+            found = complex(poses[owner].at(linkage.local(owner, point))[0])
+            raise SketchMismatchError(point, linkage.sketch.points[point], found)
+    for link, angle in linkage.sketch.angles.items():
+        if link in poses:
+            turned = float(np.angle(poses[link].z)[0])
+            if abs(np.angle(np.exp(1j * (angle - turned)))) > 2 * fits:  # rad
+                raise SketchMismatchError(link, angle, turned)
+
+
+# Assemblies of groups of class III and higher: from the sketch where it shows them, else all there are.
+#
+# For given angles the places of the links follow from linear equations; so starts for Newton's method are made from
+# angles, those of the sketch or many others, the same ones in every run. A triad of turning pairs has up to six
+# assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech. Design
+# (1992-1995).
+
+
+STARTS = 400  # in one round of looking for all assemblies
+MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
+QUIET = 3  # rounds without a new assembly that end the search
+MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
+ROUNDS = 60  # of damped steps from a start that may be anywhere
+STRIDE = 0.5  # rad, or of the group's size: the longest step then
+CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
+
+
+def assembled(
+    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    like: Kernel | None = None,
+) -> tuple[Newton, Placement]:  # fmt: skip
+    """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
+
+    Raises GroupTooLargeError, AssemblyError, AmbiguousSketchError.
+    """
+    if len(group.links) > MOST_LINKS:
+        raise GroupTooLargeError(group, MOST_LINKS)
+    kernel = Newton.of(group, linkage)
+    q = np.array([linkage.sketch.at])
+    state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
+    here = {**poses, **kernel.poses_of(state)}
+    if float(least_over_largest(kernel.matrix(here))[0]) < DEAD_SKETCH:
+        raise AmbiguousSketchError(group, {})
+    kernel = replace(kernel, start=state)
+    if not kernel.by_angle:
+        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state, like))
+    return kernel, kernel.place(poses, q, drives)
+
+
+def _traced(
+    kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State, like: Kernel | None
+) -> BranchTrace | None:
+    before = towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
+
+    def source(q: Real, order: int) -> LinkStates:
+        return link_states(linkage, before, q, order)
+
+    turns = linkage.driver.kind == "turn"
+    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
+    known = like.followed if like is not None else None
+    trace = corrected(kernel, source, known, linkage.sketch.at, state) if known is not None else None
+    trace = trace or Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    return trace if trace is None or turns else replace(trace, unit=kernel.size)
+
+
+def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, unwrapped: Real) -> State:
+    """Origins for given angles (..., links), as near to closing as they can come."""
+    shape, links = unwrapped.shape[:-1], len(kernel.group.links)
+    still = State(np.zeros((*shape, links), complex), unwrapped)
+    known = {name: pose.spread(shape) for name, pose in poses.items()}
+    everything = {**known, **kernel.poses_of(still)}
+    places = [3 * k + part for k in range(links) for part in (0, 1)]
+    matrix = kernel.matrix(everything)[..., places]
+    found = solve(matrix, -kernel.residuals(everything, drives))
+    return State(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
+
+
+def close_from_afar(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, state: State
+) -> tuple[State, Real]:  # fmt: skip
+    """Damped steps, then Newton's method; the states and whether each has closed."""
+    known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
+    with np.errstate(all="ignore"):
+        for _ in range(ROUNDS):
+            everything = {**known, **kernel.poses_of(state)}
+            step = solve(kernel.matrix(everything), -kernel.residuals(everything, drives))
+            size = np.max(np.abs(step), axis=-1, keepdims=True)
+            step = step * np.minimum(1.0, STRIDE / size)
+            state = state.moved(step, kernel.size)
+            if bool(np.all((size < LAST_STEP_AFAR) | ~np.isfinite(size))):
+                break
+        state, last = kernel.close(state, known, drives)
+        everything = {**known, **kernel.poses_of(state)}
+        residual = np.max(np.abs(kernel.residuals(everything, drives)), axis=-1)
+    return state, (last < CONVERGED) & (residual < CONVERGED)
+
+
+def all_assemblies(
+    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
+) -> list[State]:
+    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
+
+    Of a group that moves by itself at this place, some of them.
+    """
+    random = np.random.default_rng(seed)
+    found: list[State] = []
+    quiet = 0
+    links = len(kernel.group.links)
+    while quiet < QUIET and len(found) < MOST:
+        unwrapped = random.uniform(-np.pi, np.pi, (starts, links))
+        start = placed_by_angles(kernel, poses, drives, unwrapped)
+        states, closed = close_from_afar(kernel, poses, drives, start)
+        new = False
+        for k in np.flatnonzero(closed):
+            if len(found) == MOST:
+                break
+            state = State(states.x[k : k + 1], np.angle(unit(states.unwrapped[k : k + 1])))
+            if not any(_alike(kernel, state, other) for other in found):
+                found.append(state)
+                new = True
+        quiet = 0 if new else quiet + 1
+        if kernel.by_angle and found:
+            break
+    return sorted(found, key=lambda s: tuple(np.round(s.unwrapped[0], 9)))
+
+
+def _alike(kernel: Newton, one: State, other: State) -> bool:
+    turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
+    return bool(np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(one.x - other.x)) < SAME_ASSEMBLY * kernel.size)
+
+
+def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:
+    """The assembly that a full sketch leads to, when it stays near to it."""
+    unwrapped = sketched_angles(kernel, linkage, poses, drives)
+    if unwrapped is None:
+        return None
+    start = placed_by_angles(kernel, poses, drives, unwrapped)
+    state, closed = close_from_afar(kernel, poses, drives, start)
+    if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > CLOSE:
+        return None
+    found = sketchable(linkage, kernel.poses_of(state))
+    sketched = {**linkage.sketch.points, **linkage.sketch.angles}
+    given = {name: value for name, value in sketched.items() if name in found}
+    return state if sketch_distance(given, found, kernel.size) < CLOSE else None
+
+
+def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
+    """Angles of the group's links read off the sketch, (..., links); None when it does not show all of them."""
+    angles: dict[str, Any] = {name: np.angle(pose.z) for name, pose in poses.items()}
+    angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
+    for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
+        if driver.kind == "turn" and driver.base in angles:
+            angles[driver.link] = angles[driver.base] + drives[driver.link].value
+    known = {p: pose.at(at) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
+    points: Mapping[str, Any] = {**linkage.sketch.points, **known}
+    for link in kernel.group.links:
+        shown = [(local, points[p]) for p, local in linkage.links[link].points.items() if p in points]
+        if link in angles or len(shown) < 2:
+            continue
+        middle = sum(local for local, _ in shown) / len(shown)
+        centre = sum(place for _, place in shown) / len(shown)
+        turned = sum((place - centre) * (local - middle).conjugate() for local, place in shown)
+        if np.all(np.abs(turned) > 0):
+            angles[link] = np.angle(turned)
+    for _ in kernel.group.links:
+        for slide in linkage.slides:
+            if slide.carrier in angles and slide.runner not in angles:
+                angles[slide.runner] = angles[slide.carrier] + slide.turned
+            elif slide.runner in angles and slide.carrier not in angles:
+                angles[slide.carrier] = angles[slide.runner] - slide.turned
+    if kernel.by_angle:
+        angles = dict.fromkeys(kernel.group.links, 0.0) | angles
+    if any(link not in angles for link in kernel.group.links):
+        return None
+    still = np.zeros(np.shape(poses[FRAME].x))
+    return np.stack([angles[link] + still for link in kernel.group.links], axis=-1)
+
+
+def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State:
+    states = all_assemblies(kernel, poses, drives)
+    if not states:
+        raise AssemblyError(kernel.group)
+    if len(states) == MOST:  # places of one motion of a group that moves by itself
+        raise AmbiguousSketchError(kernel.group, {})
+    return states[nearest_to_sketch(kernel, linkage, [kernel.poses_of(state) for state in states])]

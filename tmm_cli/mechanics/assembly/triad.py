@@ -1,0 +1,272 @@
+"""All assemblies of a triad: the roots of one polynomial, of degree six at most, so that none can be missed.
+
+A triad is a link, the middle one, that hangs by three legs on links whose places are known. For the middle link at x
+with the direction z = e^(i phi), every leg is one condition:
+
+- turning pairs at both ends: a circle, |x + p z - C| = r;
+- a guide on the known link: the inner hinge stays on a line, Re(conj(n) x) = e with a constant n;
+- a guide on the middle link: the outer hinge stays on a line that turns with it, the same with n turning with z;
+- guides at both ends: z itself is known.
+
+Circles are made lines by subtracting one of them; x follows from two lines, and the third condition is a trigonometric
+polynomial in phi of the third degree at most, sampled on the unit circle. K. H. Hunt, Structural kinematics of
+in-parallel-actuated robot arms, ASME J. Mech. Transm. Autom. Des. 105 (1983); C. Gosselin, J. Sefrioui, M. Richard,
+Solutions polynomiales au probleme de la cinematique directe des manipulateurs paralleles plans, Mech. Mach. Theory 27
+(1992).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import SliderEnd, line, meet, slider_end
+from tmm_cli.mechanics.groups.state import Pose, State
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.tolerances import PARALLEL, VANISHED
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+DEGREE = 3  # of the trigonometric polynomial
+SAMPLES = 16  # places on the unit circle, more than 2 * DEGREE
+ANNULUS = 0.5  # roots farther from the unit circle than this factor are not nearly real
+NEAR = 0.03  # sizes of the group: what a place found from a root may leave of the third condition before refinement
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One end of a leg: the hinge's place on the other link and on the leg, or the sliding pair as the leg sees it."""
+
+    there: complex = 0j
+    here: complex = 0j
+    run: SliderEnd | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A leg of a triad: its link, the known link it hangs on, its outer and its inner joint."""
+
+    link: str
+    known: str
+    outer: Joint
+    inner: Joint
+
+
+@dataclass(frozen=True)
+class Triad:
+    """A group as a triad: its middle link and its legs. size (m) is what lengths are counted in."""
+
+    middle: str
+    legs: tuple[Leg, Leg, Leg]
+    order: tuple[str, ...]
+    size: float
+
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage, size: float) -> Triad | None:
+        """The group seen as a triad; None when it is another group."""
+        pairs = (*group.inner, *group.outer)
+        if len(group.links) != 4 or len(pairs) != 6 or group.drivers or any(p.kind not in ("R", "P") for p in pairs):
+            return None
+        for middle in group.links:
+            legs = [_leg(link, middle, group, linkage) for link in group.links if link != middle]
+            a, b, c = legs
+            if a and b and c and size > 0:
+                return cls(middle, (a, b, c), group.links, size)
+        return None
+
+
+def _leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
+    """The link as a leg of the triad about the middle link; None when it is none."""
+    # links of later groups may hang on a leg too: they hold nothing
+    outer = _joint(link, group.known, group.outer, linkage)
+    inner = _joint(link, (middle,), group.inner, linkage)
+    if outer is None or inner is None:
+        return None
+    both_turn = outer[1].run is None and inner[1].run is None
+    if both_turn and outer[1].here == inner[1].here:
+        return None
+    return Leg(link, outer[0], outer[1], inner[1])
+
+
+def _joint(link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage) -> tuple[str, Joint] | None:
+    """The one joint of a link with any of the others; a compound hinge counts for each two of its links."""
+    found: dict[str, tuple[str, Joint]] = {}
+    for hinge in linkage.hinges:
+        other = next((n for n in hinge.links if n in others), None)
+        if link in hinge.links and other is not None:
+            joint = Joint(linkage.local(other, hinge.point), linkage.local(link, hinge.point))
+            found[hinge.point] = (other, joint)
+    for pair in pairs:
+        if pair.kind == "P" and link in (pair.i, pair.j) and pair.other(link) in others:
+            found[pair.name] = (pair.other(link), Joint(run=slider_end(pair, link)))
+    return next(iter(found.values())) if len(found) == 1 else None
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What a leg asks of the middle link at directions z: lines Re(conj(n) x) = e, or circles |x + g| = r.
+
+    Without dimension. z: the only direction that the leg allows.
+    """
+
+    n: Vector | None = None
+    e: Real | None = None
+    g: Vector | None = None
+    r: float = 0.0
+    z: complex | None = None
+
+    def residual(self, x: Vector) -> Real:
+        """How far x is from fulfilling it."""
+        if self.g is not None:
+            distance: Real = np.abs(x + self.g) - self.r
+            return distance
+        assert self.n is not None
+        off: Real = dot(self.n, x) - self.e
+        return off
+
+
+def starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[State, int] | None:
+    """Starts for Newton's method (starts, links), one at least at every assembly, and how many there are at most.
+
+    From all roots of the polynomial, real or nearly so. None when it vanishes: then it tells nothing.
+    """
+    known = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
+    fixed = next((c.z for c in conditions(triad, known, np.ones(1, complex)) if c.z is not None), None)
+    if fixed is not None:
+        lines_only = all(leg.outer.run or leg.inner.run for leg in triad.legs)
+        directions, most = np.array([fixed]), 1 if lines_only else 2
+    else:
+        coefficients = polynomial(triad, known)
+        size = np.abs(coefficients)
+        if np.max(size) < VANISHED:
+            return None
+        most = 2 * max(k for k in range(DEGREE + 1) if size[DEGREE + k] > VANISHED * np.max(size))
+        roots = np.roots(coefficients[::-1])
+        directions = np.array([z / abs(z) for z in roots if ANNULUS < abs(z) < 1 / ANNULUS])
+    found = [(x * triad.size, z) for z in directions for x in _places(conditions(triad, known, np.array([z])))]
+    return _state(triad, known, found), most
+
+
+def polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
+    """Coefficients of z^-3 ... z^3 of the polynomial that vanishes where the triad closes (real for |z| = 1)."""
+    z = unit(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
+    values = np.broadcast_to(closure(conditions(triad, poses, z)), z.shape)
+    spectrum = np.fft.fft(values) / SAMPLES
+    return np.array([spectrum[k] for k in range(-DEGREE, DEGREE + 1)])
+
+
+def closure(three: Sequence[Condition]) -> Real:
+    """What vanishes where three conditions meet in one x."""
+    circles = [c for c in three if c.g is not None]
+    lines = [c for c in three if c.g is None]
+    if not circles:
+        (a, b, c) = lines
+        left: Real = a.e * cross(b.n, c.n) + b.e * cross(c.n, a.n) + c.e * cross(a.n, b.n)
+        return left
+    first = circles[0]
+    (n2, e2), (n3, e3) = (_line(c, first) for c in (*circles[1:], *lines))
+    beyond: Real = np.abs(e3 * n2 - e2 * n3) ** 2 - (first.r * cross(n2, n3)) ** 2
+    return beyond
+
+
+def _line(condition: Condition, circle: Condition) -> tuple[Vector, Real]:
+    """A condition as a line for w = x + g, the place of the inner hinge about the centre of a circle |w| = r."""
+    assert circle.g is not None
+    if condition.g is None:
+        assert condition.n is not None
+        return condition.n, condition.e + dot(condition.n, circle.g)
+    h = condition.g - circle.g
+    return 2 * h, condition.r**2 - circle.r**2 - np.abs(h) ** 2
+
+
+def conditions(triad: Triad, poses: Mapping[str, Pose], z: Vector) -> list[Condition]:
+    """What each leg asks at the directions z of the middle link; lengths in the triad's size."""
+    return [_condition(leg, poses, z, triad.size) for leg in triad.legs]
+
+
+def _condition(leg: Leg, poses: Mapping[str, Pose], z: Vector, size: float) -> Condition:
+    outer, inner = leg.outer, leg.inner
+    if outer.run is None and inner.run is None:
+        centre = poses[leg.known].at(outer.there)
+        return Condition(g=(inner.there * z - centre) / size, r=abs(inner.here - outer.here) / size)
+    if outer.run is not None and inner.run is not None:
+        return Condition(z=complex(_direction(leg, poses) * np.conj(unit(inner.run.turned))))
+    if outer.run is not None:
+        through, along = line(outer.run, poses)
+        through = through + (inner.here - outer.run.here) * _direction(leg, poses)
+        n = np.broadcast_to(1j * along, np.shape(z))
+        return Condition(n=n, e=dot(n, through - inner.there * z) / size)
+    assert inner.run is not None
+    centre = poses[leg.known].at(outer.there)
+    n = 1j * unit(inner.run.direction) * z
+    foot = inner.run.there - (inner.run.here - outer.here) * unit(inner.run.turned)
+    return Condition(n=n, e=dot(n, centre - foot * z) / size)
+
+
+def _direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
+    """Direction of a leg that a known link guides."""
+    assert leg.outer.run is not None
+    return poses[leg.known].z * unit(leg.outer.run.turned)
+
+
+def _places(three: Sequence[Condition]) -> list[complex]:
+    """Places x (in sizes) at one direction at which any two conditions meet and the third nearly holds."""
+    binding = [c for c in three if c.z is None]
+    places = []
+    for one, other in combinations(binding, 2):
+        third = [c for c in binding if c is not one and c is not other]
+        for x in _meet(one, other):
+            if all(abs(complex(c.residual(x)[0])) < NEAR for c in third):
+                places.append(complex(x[0]))
+    return places
+
+
+def _meet(one: Condition, other: Condition) -> list[Vector]:
+    """Places where two conditions meet, or are nearest when they just miss one another."""
+    if one.g is None:
+        one, other = other, one
+    if one.g is None:  # two lines
+        assert one.n is not None and other.n is not None
+        det = cross(one.n, other.n)
+        return [] if abs(det[0]) < PARALLEL else [1j * (other.e * one.n - one.e * other.n) / det]
+    n, e = _line(other, one)
+    if abs(n[0]) < PARALLEL:  # circles about one centre
+        return []
+    foot = n * (e / np.abs(n) ** 2)
+    half = np.sqrt(np.maximum(one.r**2 - np.abs(foot) ** 2, 0)) * 1j * n / np.abs(n)
+    if abs(foot[0]) > one.r + NEAR:
+        return []
+    return [foot + half - one.g, foot - half - one.g]
+
+
+def _state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> State:
+    """Places of all links for places x (m) and directions z of the middle one."""
+    x, z = (np.array([start[k] for start in starts], complex) for k in (0, 1))
+    places = {triad.middle: (x, z)}
+    for leg in triad.legs:
+        outer, inner = leg.outer, leg.inner
+        if outer.run is not None:
+            along = _direction(leg, poses) * np.ones(np.shape(z))
+            if inner.run is None:
+                places[leg.link] = (x + inner.there * z - inner.here * along, along)
+                continue
+            (foot, u), v = line(outer.run, poses), z * unit(inner.run.direction)
+            with np.errstate(all="ignore"):
+                places[leg.link] = (
+                    meet(foot - outer.run.here * along, u, x + inner.run.there * z - inner.run.here * along, v)[0],
+                    along,
+                )
+            continue
+        centre = poses[leg.known].at(outer.there)
+        if inner.run is not None:
+            along = z * unit(inner.run.turned)
+        else:
+            arm = (x + inner.there * z - centre) / (inner.here - outer.here)
+            along = arm / np.maximum(np.abs(arm), 1e-300)
+        places[leg.link] = (centre - outer.here * along, along)
+    ordered = [places[link] for link in triad.order]
+    return State(np.stack([p for p, _ in ordered], -1), np.stack([np.angle(d) for _, d in ordered], -1))

@@ -1,0 +1,275 @@
+"""What is asked of balancing: numbers alone, as a problem file gives them; and the shaft with masses in planes.
+
+I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 13.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.mechanics.errors import NoCycleError, UnsettledError
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import AT_REST
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a counterweight sits: on a link, `radius` from a point of it (its axes, m); 0: the radius is not told."""
+
+    link: str
+    about: complex
+    radius: float = 0.0
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane across a shaft `at` a place along it, with a mass at a radius (m; 0: its size alone counts)."""
+
+    at: float
+    radius: float = 0.0
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """Masses on a shaft: mass times radius at an angle (complex, kg m), where along it (m); planes for two others."""
+
+    sizes: Vector
+    at: Real
+    planes: tuple[Plane, ...]
+
+    def corrections(self) -> Vector:
+        """In one plane what leaves no force, in two planes what leaves no couple either (kg m, complex)."""
+        force, (first, *more) = -np.sum(self.sizes), self.planes
+        if not more:
+            return np.array([force])
+        second = -np.sum(self.sizes * (self.at - first.at)) / (more[0].at - first.at)
+        return np.array([force - second, second])
+
+    def unbalance(self, added: Vector | None = None) -> tuple[complex, complex]:
+        """Sum of mass times radius (kg m), and of its moments about the first plane (kg m2): times the square of the
+        speed force and couple on the bearings. added: corrections.
+        """
+        sizes, at = self.sizes, self.at
+        if added is not None:
+            sizes, at = np.append(sizes, added), np.append(at, [plane.at for plane in self.planes])
+        return complex(np.sum(sizes)), complex(np.sum(sizes * (at - self.planes[0].at)))
+
+
+@dataclass(frozen=True)
+class BalancingTask:
+    """Counterweights that are sought, and a shaft.
+
+    share: how much the force along the direction `along` counts, the rest of one across it. Of a crank-slider it is the
+    share of the reciprocating masses that a counterweight on the crank balances.
+    """
+
+    counterweights: tuple[Place, ...] = ()
+    share: float = 0.5
+    along: complex = 1 + 0j
+    rotor: Rotor | None = None
+
+
+# Balancing: what shakes the frame over a cycle, and the counterweights that take it away.
+#
+# The frame feels F = -sum m a of all links. It is nothing when the common centre of mass stands still, and a
+# counterweight on a link adds c z to sum m r, where c = mr exp(i angle) is given in its axes and z their direction:
+# what counterweights have to be is found linearly, for a linkage of any kind. R. S. Berkof, G. G. Lowen, A new method
+# for completely force balancing simple linkages, J. Eng. Ind. 91 (1969).
+
+
+NO_HELP = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
+ROUNDS = 200  # of masses that move pivots, whose counterweights follow from them
+ALONG = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
+SETTLED = 1e-15  # of the largest counterweight
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """What the links do to the frame by their inertia, at every position: force (N), couple about `about` (N m)."""
+
+    force: Vector
+    moment: Real
+    about: complex
+
+
+@dataclass(frozen=True)
+class Counterweight:
+    """At its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
+
+    place: Place
+    size: float
+    angle: float
+
+    @property
+    def mass(self) -> float | None:
+        """kg; None where the radius is not told."""
+        return self.size / self.place.radius if self.place.radius else None
+
+
+@dataclass(frozen=True)
+class Balanced:
+    """Counterweights, what shakes before and after over a whole cycle; alike: some of them do the same as others."""
+
+    counterweights: tuple[Counterweight, ...]
+    before: Shaking
+    after: Shaking
+    alike: bool = False
+
+    @property
+    def shakes(self) -> bool:
+        """Whether anything does without counterweights."""
+        return bool(np.any(np.nan_to_num(self.before.force) != 0))
+
+    @property
+    def left(self) -> float:
+        """Largest shaking force after, over that before."""
+        most = float(np.nanmax(np.abs(self.before.force)))
+        return float(np.nanmax(np.abs(self.after.force))) / most if most > 0 else 0.0
+
+
+def shaking(motion: Motion, about: complex = 0j, weights: Sequence[Counterweight] = ()) -> Shaking:
+    """Of all links with mass, and of counterweights.
+
+    Of one whose radius is not told mass times radius alone counts: not the mass on its pivot, nor its own inertia.
+    """
+    force, moment = np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, turning = motion.centre(name), motion.link(name)
+        force = force - link.mass * centre.a
+        moment = moment - link.mass * cross(centre.x - about, centre.a) - link.inertia * turning.epsilon
+    for weight in weights:
+        c, place = weight.size * np.exp(1j * weight.angle), weight.place
+        pivot, added, mass = motion.point(place.link, place.about), c * _turning(motion, place.link), weight.mass or 0.0
+        force = force - added - mass * pivot.a
+        moment = (
+            moment - cross(pivot.x - about, added + mass * pivot.a) - cross(c * motion.poses[place.link].z, pivot.a)
+        )
+        moment = moment - weight.size * place.radius * motion.link(place.link).epsilon
+    return Shaking(force, moment, about)
+
+
+def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanced:
+    """Counterweights that leave the least shaking force. Raises UnsettledError.
+
+    motion: over a whole cycle at even steps, without its end twice; dead positions are left out. A radius that is told
+    gives a mass, which loads the pivot: where this moves, the counterweights are found again with that mass, until they
+    stay.
+    """
+    before = shaking(motion, about)
+    if not task.counterweights:
+        return Balanced((), before, before)
+    places = task.counterweights
+    # force of a counterweight: -c times the second derivative of the link's direction
+    columns = np.stack([-_turning(motion, place.link) for place in places], axis=1)
+    fastest = float(np.max(np.square(motion.rate))) if motion.linkage.driver.kind == "turn" else 0.0
+    columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # a link that translates balances nothing
+    pivots = np.stack([-motion.point(place.link, place.about).a for place in places], axis=1)
+    per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in places])
+    found, live = (
+        np.zeros(len(places), complex),
+        motion.moving & np.isfinite(np.column_stack([columns, pivots, before.force])).all(axis=1),
+    )
+    for _ in range(ROUNDS):
+        last = found
+        found, rank = _least(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
+        if np.max(np.abs(found - last)) <= SETTLED * np.max(np.abs(found)):
+            break
+    else:
+        raise UnsettledError
+    weights = tuple(
+        Counterweight(place, float(abs(c)), _direction(complex(c))) for place, c in zip(places, found, strict=True)
+    )
+    return Balanced(weights, before, shaking(motion, about, weights), rank < 2 * len(places))
+
+
+def _least(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
+    """Counterweights (kg m, complex) that leave the least force, and how many of their parts differ in what they do."""
+    own, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
+    share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
+    matrix = np.block([[share * own.real, -share * own.imag], [other * own.imag, other * own.real]])
+    parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_HELP)
+    half = len(parts) // 2
+    return parts[:half] + 1j * parts[half:], int(rank)
+
+
+def _direction(c: complex) -> float:
+    """Its angle, rad; straight back it is pi, not -pi."""
+    return float(np.angle(c if abs(c.imag) > ALONG * abs(c) else complex(c.real)))
+
+
+def _turning(motion: Motion, link: str) -> Vector:
+    """Second derivative by time of the direction of a link's x axis, 1/s2."""
+    turning, z = motion.link(link), motion.poses[link].z
+    found: Vector = (1j * turning.epsilon - turning.omega**2) * z
+    return found
+
+
+# Balancing of a mechanism: shaking over its cycle and at its positions, at the constant speed of the driver.
+
+
+STEPS = 720  # in a turn
+
+
+@dataclass(frozen=True)
+class Balancing:
+    """What was asked, over the whole cycle at places q of the driver, and at the positions; pivot: what moments are
+    about. corrections: of the shaft with masses, kg m.
+    """
+
+    task: BalancingTask
+    q: Real
+    cycle: Balanced
+    before: Shaking
+    after: Shaking
+    pivot: str
+    corrections: Vector = field(default_factory=lambda: np.empty(0, complex))
+
+    def at(self, mechanism: Mechanism, q: Real) -> tuple[Shaking, Shaking]:
+        """What shakes at other places of the driver, without counterweights and with them."""
+        return _shaken(mechanism, self.cycle, q)
+
+
+def balancing(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> Balancing:
+    """Over the cycle from the driver's place `start` on, and at places. Raises NoCycleError, UnsettledError."""
+    linkage, whole = mechanism.linkage, mechanism.driver_range
+    driver = linkage.driver
+    if driver.kind != "turn" or not whole.full or linkage.others:
+        raise NoCycleError(("balancing",))
+
+    count = STEPS * whole.turns
+    q = start + driver.sense * 2 * np.pi * whole.turns * np.arange(count) / count
+    pivot = _pivot(linkage)
+    about = complex(linkage.local(FRAME, pivot)) if pivot else 0j
+    cycle = balanced(steadily(mechanism, q), task, about)
+    corrections = np.empty(0, complex) if task.rotor is None else task.rotor.corrections()
+    return Balancing(task, q, cycle, *_shaken(mechanism, cycle, places), pivot, corrections)
+
+
+def _shaken(mechanism: Mechanism, found: Balanced, q: Real) -> tuple[Shaking, Shaking]:
+    """What shakes at places of the driver, without counterweights and with them."""
+    motion, about = steadily(mechanism, q), found.before.about
+    return shaking(motion, about), shaking(motion, about, found.counterweights)
+
+
+def steadily(mechanism: Mechanism, q: Real) -> Motion:
+    """The motion at constant speed of the driver."""
+    driver = mechanism.linkage.driver
+    law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)
+    return move(mechanism.linkage, mechanism.kernels, q, law)
+
+
+def _pivot(linkage: Linkage) -> str:
+    """Where the crank turns on the frame; empty where it has no such point."""
+    link = linkage.driver.link
+    return next((h.point for h in linkage.hinges if {FRAME, link} <= set(h.links)), "")

@@ -1,0 +1,160 @@
+"""The flywheel that keeps the fluctuation of speed: exactly, by Wittenbauer and by Mertsalov.
+
+With E(x) the work of all moments from the beginning of the cycle, T0 the energy there and J the inertia without the
+flywheel Jf, the speed is w^2 = 2 (T0 + E) / (Jf + J). That its largest value is w1 and its least w2 are two conditions,
+linear in T0 and Jf, so the flywheel is found without trial:
+
+    Jf = (max(w2^2 J / 2 - E) - min(w1^2 J / 2 - E)) / ((w1^2 - w2^2) / 2).
+
+These are the tangents to the energy-mass diagram (J, E) of slopes w1^2 / 2 and w2^2 / 2: F. Wittenbauer, Graphische
+Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 19. In the course one takes
+w^2 (1 +- delta) for w1^2 and w2^2.
+
+N. I. Mertsalov divides the machine into a first group, the flywheel and the links with a constant speed ratio to the
+driver (inertia Jc), and a second group, all other links (inertia J - Jc). The energy of the second group is taken at
+the mean speed, so the first group has the inertia J_I = (largest less least of E - (J - Jc) w^2 / 2) / (delta w^2), and
+the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of Mechanisms and Machines (1987).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.vectors import Real
+
+NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """A line that touches the energy-mass diagram from one side.
+
+    x: where on the way; inertia, energy: of that point (kg m2, J); slope: w^2 / 2 (J / kg m2); offset: energy that it
+    has on the axis where the inertia is zero (J).
+    """
+
+    x: float
+    inertia: float
+    energy: float
+    slope: float
+
+    @property
+    def offset(self) -> float:
+        return self.energy - self.slope * self.inertia
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """A flywheel on the driver. inertia: kg m2, below zero where none is needed; energy: T0 at the beginning (J).
+
+    upper, lower: tangents of the largest and of the least speed, for this inertia.
+    """
+
+    inertia: float
+    energy: float
+    upper: Tangent
+    lower: Tangent
+
+
+def exact(machine: Reduced, work: Curve, mean: float, delta: float) -> Flywheel:
+    """Speeds between w (1 - delta/2) and w (1 + delta/2), which are both come to; work: of all moments, J."""
+    return _between(machine, work, mean * (1 - delta / 2), mean * (1 + delta / 2))
+
+
+def wittenbauer(machine: Reduced, work: Curve, mean: float, delta: float) -> Flywheel:
+    """By tangents of slopes w^2 (1 +- delta) / 2, as a course draws them."""
+    return _between(machine, work, mean * np.sqrt(max(1 - delta, 0.0)), mean * np.sqrt(1 + delta))
+
+
+def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float:
+    """Inertia J_I of the first group (kg m2), the flywheel with the links of constant speed ratio.
+
+    The energy of the other links is taken at the mean speed; what is constant in the inertia cancels in the difference.
+    """
+    slope = mean**2 / 2
+    upper, lower = touching(machine, work, slope, top=True), touching(machine, work, slope, top=False)
+    return (upper.offset - lower.offset) / (delta * mean**2)
+
+
+def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -> tuple[float, float]:
+    """Energy at the beginning (J) at which the mean of largest and least speed is this, and the fluctuation delta then.
+
+    nan where the machine does not come round at that mean speed, or has no inertia at some place.
+    """
+    places = work.places()
+    if flywheel + float(np.min(machine.inertia(places))) <= 0:
+        return float("nan"), float("nan")
+
+    def speeds(energy: Real) -> Real:
+        """The least and the largest speed, of an energy at the beginning each."""
+        square = [
+            (lowest(of, places)[1], -lowest(partial(_minus, of), places)[1])
+            for of in (partial(_square, machine, work, flywheel, float(e)) for e in np.ravel(energy))
+        ]
+        return np.asarray(np.sqrt(np.maximum(np.array(square), 0.0)))
+
+    low = -float(np.min(work(places)))
+    high = low + np.ptp(work(places)) + mean**2 * (float(np.max(machine.inertia(places))) + flywheel)
+    if speeds(np.array([low])).mean() >= mean:
+        return float("nan"), float("nan")
+    energy = roots(lambda e: speeds(e).mean(axis=1) - mean, np.array([low]), np.array([high]))
+    slowest, quickest = speeds(energy)[0]
+    return float(energy[0]), float((quickest - slowest) / mean)
+
+
+def _between(machine: Reduced, work: Curve, low: float, high: float) -> Flywheel:
+    upper = touching(machine, work, high**2 / 2, top=True)
+    lower = touching(machine, work, low**2 / 2, top=False)
+    inertia = (upper.offset - lower.offset) / (upper.slope - lower.slope)
+    # T0 + E <= slope (Jf + J) with equality where the upper tangent touches
+    return Flywheel(inertia, upper.slope * inertia - upper.offset, upper, lower)
+
+
+def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
+    """The tangent of this slope above the diagram, or below it."""
+    sign = -1.0 if top else 1.0
+
+    def height(x: Real) -> Real:
+        return sign * (work(x) - slope * machine.inertia(x))
+
+    x, __ = lowest(height, work.places())
+    rate = work.slope()
+
+    def steepness(x: Real) -> Real:
+        return sign * (rate(x) - slope * machine.slope(x))
+
+    x = sharper(steepness, x, work.length)
+    at = np.array([x])
+    return Tangent(x, float(machine.inertia(at)[0]), float(work(at)[0]), slope)
+
+
+def _square(machine: Reduced, work: Curve, inertia: float, energy: float, x: Real) -> Real:
+    """Of the speed."""
+    return 2 * (energy + work(x)) / (inertia + machine.inertia(x))
+
+
+def _minus(function: Callable[[Real], Real], x: Real) -> Real:
+    return -function(x)
+
+
+def sharper(rate: Callable[[Real], Real], x: float, length: float) -> float:
+    """The place of a minimum that is near x, between 0 and a length, to all digits: where the rate changes its sign,
+    as it does where a load jumps too. Values alone tell it to half the digits only.
+    """
+    ends = np.clip([x - NEAR, x + NEAR], 0.0, np.nextafter(length, 0.0))
+    below, above = rate(ends)
+    return float(roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
+
+
+def lowest(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:
+    """Place and value of the least of a function whose minima are farther apart than these places."""
+    values = function(places)
+    best = int(np.argmin(values))
+    x, value = least(function, float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)]))
+    return (x, value) if value < values[best] else (float(places[best]), float(values[best]))

@@ -1,0 +1,303 @@
+"""A single run: starting, stopping, a press that works once, a cylinder under pressure.
+
+J w' + J' w^2 / 2 = M + Md along the way x of the driver, by time, until that is gone or the machine stands. Works are
+integrated beside it. By the method of Dormand and Prince of order 8, in pieces at whose ends moments may jump:
+E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.10; with a motor too strong
+for its load by that of Petzold and Hindmarsh (LSODA), which is stiff.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import count, pairwise
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from scipy.integrate import OdeSolution, solve_ivp
+
+from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
+from tmm_cli.mechanics.dynamics.steady import reduced_between
+from tmm_cli.mechanics.dynamics.task import RunTask
+from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
+from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF, SAME_PLACE, SEAM
+from tmm_cli.mechanics.numerics.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+
+
+TOLERANCE = 1e-12  # of a step, relative
+STRONG = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
+MOST = 50_000  # evaluations of a run, some five seconds: those of the bank take 3 000 at the most
+NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
+
+INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
+Ending = Literal["way", "standstill", "time"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """By steps: time (s), way, speed and acceleration of the driver; kinetic energy (J), and works (J) of what drives,
+    of the loads and of the brake. ending: what ended it; steps: what the integration gives between its times."""
+
+    time: Real
+    way: Real
+    speed: Real
+    acceleration: Real
+    kinetic: Real
+    driven: Real
+    loaded: Real
+    braked: Real
+    ending: Ending
+    steps: tuple[Any, ...] = ()
+
+    @property
+    def balance(self) -> float:
+        """What the works leave of the change of kinetic energy, over the largest of these energies."""
+        parts = (self.kinetic, self.driven, self.loaded, self.braked)
+        size = max(float(np.max(np.abs(part))) for part in parts)
+        left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
+        return float(np.max(np.abs(left))) / size if size > 0 else 0.0
+
+    def at(self, way: Real) -> tuple[Real, Real]:
+        """Time (s) and speed when the driver has come so far; nan where it does not."""
+        way = np.asarray(way, float)
+        if self.steps:
+            last = float(self.steps[-1](self.steps[-1].ts[-1])[0])
+            way = np.where((way > last) & (way < last + SEAM), last, way)
+        time, speed = np.full(way.shape, np.nan), np.full(way.shape, np.nan)
+        for step in self.steps:
+            low, high = step.ts[0], step.ts[-1]
+            here = (way >= step(low)[0]) & (way <= step(high)[0])
+            if here.any():
+                missed = partial(_short_of, step, way[here])
+                found = roots(missed, low + 0 * way[here], high + 0 * way[here])
+                time[here], speed[here] = found, step(found)[1]
+        begins = way == self.way[0]  # where a search from rest would find what rounding leaves
+        return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
+
+    def closely(self, count: int) -> list[tuple[Real, Real]]:
+        """Times of each piece close together, just inside its ends, and there the way, the speed and the works of what
+        drives, of the loads and of the brake, (5, count)."""
+        ends = [(step.ts[0], step.ts[-1]) for step in self.steps]
+        inner = [np.linspace(low + INSIDE * (high - low), high - INSIDE * (high - low), count) for low, high in ends]
+        return [(times, step(times)) for times, step in zip(inner, self.steps, strict=True)]
+
+
+def run(machine: Reduced, task: RunTask) -> Run:
+    """From the beginning of the way to its end.
+
+    Raises NoInertiaError, StandstillError where it does not start, and LongRunError.
+    """
+    places = machine.inertia.places()
+    inertia = task.flywheel + machine.inertia(places)
+    if not np.min(inertia) > ROUNDOFF * np.max(inertia):
+        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
+    state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
+    if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
+        raise StandstillError(0.0)
+    times, states, steps, time, left = [], [], [], 0.0, count(MOST, -1)
+    ending: Ending = "time"
+    for low, high in _pieces(machine.moment, task.way_edges):
+        for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
+            done = _until(machine, task, (low, high), (time, end), state, left)
+            times.append(done.t)
+            states.append(done.y)
+            steps.append(done.sol)
+            time, state = float(done.t[-1]), done.y[:, -1]
+            if done.status == 1:
+                break
+        ending = "time" if done.status == 0 else "standstill" if len(done.t_events[1]) else "way"
+        if ending != "way":
+            break
+    record = _record(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
+    return replace(record, steps=tuple(steps))
+
+
+def _until(
+    machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real,
+    left: Iterator[int],
+) -> Any:  # fmt: skip
+    """A piece, to its end, to rest, or as long as that. left: evaluations. Raises LongRunError where none is left."""
+
+    last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
+
+    def rates(t: float, y: Real) -> list[float]:
+        if not next(left):
+            raise LongRunError(t, float(y[0]), MOST)
+        return _rates(machine, task, piece, min(t, last), y)
+
+    def gone(t: float, y: Real) -> float:
+        return float(y[0] - piece[1])
+
+    def rests(t: float, y: Real) -> float:
+        return float(y[1])
+
+    gone.terminal = rests.terminal = True  # type: ignore[attr-defined]
+    gone.direction, rests.direction = 1.0, -1.0  # type: ignore[attr-defined]
+    scale = max(abs(state[1]), 1e-3)
+    energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
+    method, error = ("LSODA", TOLERANCE / 10) if _stiff(machine, task) else ("DOP853", TOLERANCE)
+    exact = {"rtol": error, "atol": [error * machine.length, error * scale, *[error * energy] * 3]}
+    done = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
+    return _with_last_step(done, partial(solve_ivp, rates, method=method, dense_output=True, **exact))
+
+
+def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
+    """The same integration, its last step done again up to the event that ended it.
+
+    The step went on beyond the end of the piece, where moments are no longer smooth, and this blurs what is
+    interpolated inside it.
+    """
+    if done.status != 1 or not done.t[-1] > done.t[-2]:
+        return done
+    again = integrate((done.t[-2], done.t[-1]), done.y[:, -2])
+    if again.status != 0:
+        return done
+    done.t = np.concatenate([done.t[:-1], again.t[1:]])
+    done.y = np.concatenate([done.y[:, :-1], again.y[:, 1:]], axis=1)
+    before = done.sol.interpolants[:-1]
+    done.sol = OdeSolution([*done.sol.ts[: len(before)], *again.sol.ts], [*before, *again.sol.interpolants])
+    return done
+
+
+def _stiff(machine: Reduced, task: RunTask) -> bool:
+    """Whether a motor changes the speed much more quickly than the machine goes its way."""
+    if task.motor is None:
+        return False
+    inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.places())))
+    steepest = float(task.motor.at_slip(np.zeros(1))[1][0]) / task.motor.idle
+    return steepest * machine.length > STRONG * inertia * task.motor.idle
+
+
+def _short_of(step: Any, way: Real, time: Real) -> Real:
+    """How much the way of a step of integration is beyond another one."""
+    found: Real = step(time)[0] - way
+    return found
+
+
+def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
+    """Of the driver (rad/s2, or m/s2) at such times, ways and speeds."""
+    states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
+    return np.array([
+        _rates(machine, task, (0.0, machine.length), float(t), y)[1] if np.isfinite(t) else np.nan
+        for t, y in zip(np.ravel(time), states.reshape(-1, 5), strict=True)
+    ]).reshape(np.shape(way))  # fmt: skip
+
+
+def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
+    """Of way, speed, and the works of what drives, of the loads, of the brake."""
+    speed = float(state[1])
+    x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
+    load, driving = float(machine.moment(x)[0]), _driving(task, t, x, speed)
+    inertia = task.flywheel + float(machine.inertia(x)[0])
+    squared = speed * speed  # not **: far beyond its end a trial step may be so quick that this is infinite
+    own = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
+    return [speed, own / inertia, driving * speed, load * speed, -task.brake * speed]
+
+
+def _driving(task: RunTask, t: float, x: Real, speed: float) -> float:
+    found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0])
+    return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
+
+
+def _pieces(moment: Curve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
+    """Pieces of the way between which the moment of the loads jumps, or what drives may bend or jump."""
+    inner = moment.edges[1:-1]
+    before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
+    jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
+    edges = {edge for edge in way_edges if 0 < edge < moment.length} | set(jumps.tolist())
+    yield from pairwise([0.0, *sorted(edges), moment.length])
+
+
+def _record(machine: Reduced, task: RunTask, time: Real, states: Real, ending: Ending) -> Run:
+    way, speed, driven, loaded, braked = states
+    x = np.clip(way, 0.0, np.nextafter(machine.length, 0.0))
+    changes = acceleration(machine, task, time, way, speed)
+    kinetic = (task.flywheel + machine.inertia(x)) * speed**2 / 2
+    return Run(time, way, speed, changes, kinetic, driven, loaded, braked, ending)
+
+
+# A single run of a mechanism with its loads: a press that works once, a cylinder that lifts, starting and stopping.
+
+
+@dataclass(frozen=True, eq=False)
+class SingleRun:
+    """A run from the driver's place `first` on (rad, or m), and the law of motion that it is.
+
+    task: its drive is positive along the run.
+
+    turn: after how much a crank is at the same place again, 2 pi; None of what does not turn fully.
+    """
+
+    task: RunTask
+    machine: Reduced
+    run: Run
+    first: float
+    sense: int
+    turn: float | None
+
+    def evenly(self, count: int) -> Real:
+        """Places of the driver, from the beginning of the run to its end."""
+        return self.first + self.sense * np.linspace(0, float(self.run.way[-1]), count)
+
+    def way(self, q: Real) -> Real:
+        """How far the driver has gone at its place q."""
+        gone: Real = self.sense * (rounded(q) - self.first)
+        again = gone if self.turn is None else np.mod(gone + SAME_PLACE, self.turn) - SAME_PLACE
+        gone = np.where((gone < -SAME_PLACE) | (gone > self.machine.length + SAME_PLACE), again, gone)
+        return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_PLACE, 0.0, gone)
+
+    def driving(self, way: Real, speed: Real, accelerated: Real) -> Real:
+        """Moment (N m), or force, of what drives, where the driver moves like that on its way."""
+        machine = self.machine
+        own = (self.task.flywheel + machine.inertia(way)) * accelerated + machine.slope(way) * speed**2 / 2
+        found: Real = own + self.task.brake - machine.moment(way)
+        return found
+
+    def speed(self, q: Real) -> Real:
+        """rad/s, or m/s, with its sign; nan where the run does not come."""
+        return self.sense * self.run.at(self.way(q))[1]
+
+    def time(self, q: Real) -> Real:
+        """s, since the beginning; nan where the run does not come."""
+        return self.run.at(self.way(q))[0]
+
+    def kinetic(self, q: Real) -> Real:
+        """Kinetic energy, J; nan where the run does not come."""
+        return self.energy(self.way(q), self.speed(q))
+
+    def energy(self, way: Real, speed: Real) -> Real:
+        """Kinetic energy of such a way and speed of the driver, J."""
+        found: Real = (self.task.flywheel + self.machine.inertia(way)) * speed**2 / 2
+        return found
+
+    def acceleration(self, time: Real, way: Real, speed: Real) -> Real:
+        """Of the driver, at such times, ways and speeds in its sense."""
+        return acceleration(self.machine, self.task, time, way, speed)
+
+    def accelerated(self, q: Real) -> Real:
+        """rad/s2, or m/s2, with its sign; nan where the run does not come."""
+        way = self.way(q)
+        time, speed = self.run.at(way)
+        return self.sense * self.acceleration(time, way, speed)
+
+
+def single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
+    """Between the places of the task, or of the first and the last position asked for.
+
+    Raises NoCycleError, OutOfRangeError, StandstillError.
+    """
+    first, last = (float(asked[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
+    whole = mechanism.driver_range
+    if not whole.full and not all(whole.start - SAME_PLACE <= end <= whole.end + SAME_PLACE for end in (first, last)):
+        raise OutOfRangeError(whole.start, whole.end)
+    sense = 1 if last > first else -1
+    machine = reduced_between(mechanism, first, sense, abs(last - first))
+    task = task.along(sense)
+    turn = 2 * np.pi if whole.full and mechanism.linkage.driver.kind == "turn" else None
+    return SingleRun(task, machine, run(machine, task), first, sense, turn)

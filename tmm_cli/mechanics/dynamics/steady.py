@@ -1,0 +1,330 @@
+"""Steady running: what drives the machine, the flywheel for a fluctuation of speed, and the law of motion with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.mechanics.dynamics.flywheel import (
+    Flywheel,
+    Tangent,
+    at_mean,
+    exact,
+    lowest,
+    mertsalov,
+    sharper,
+    touching,
+    wittenbauer,
+)
+from tmm_cli.mechanics.dynamics.laws import Cycle, Law, under_constant_moment
+from tmm_cli.mechanics.dynamics.motors import Motor
+from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced, fitted, reduced
+from tmm_cli.mechanics.dynamics.task import SteadyTask
+from tmm_cli.mechanics.errors import (
+    BySpeedError,
+    NoCycleError,
+    NoFlywheelError,
+    NoInertiaError,
+    RunawayError,
+    StandstillError,
+)
+from tmm_cli.mechanics.forces.energy import energy, inertias
+from tmm_cli.mechanics.forces.jumps import jumps
+from tmm_cli.mechanics.forces.loads import applied
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.tolerances import CONSTANT_INERTIA, ROUNDOFF, SAME_PLACE, SEAM
+from tmm_cli.mechanics.numerics.vectors import Real
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+
+
+STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
+DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
+MET = 1e-12  # of a fluctuation: it is as wanted
+
+
+@dataclass(frozen=True)
+class Steady:
+    """moment: mean of what drives over the cycle (N m, or N). own: fluctuation with the given flywheel alone, nan where
+    the machine comes to rest then. work: of all moments from the beginning of the cycle (J).
+
+    found: the flywheel by tangents, beside the given one; wittenbauer: its inertia (kg m2) by the tangents of a course;
+    first_group: inertia J_I by Mertsalov of the flywheel with the links of constant speed ratio (kg m2); of a motor
+    there are none.
+    """
+
+    task: SteadyTask
+    machine: Reduced
+    moment: float
+    work: Curve
+    law: Law
+    own: float
+    found: Flywheel | None = None
+    wittenbauer: float = float("nan")
+    first_group: float = float("nan")
+
+    @property
+    def mertsalov(self) -> float:
+        """Inertia of the flywheel by Mertsalov, J_I less the links of constant speed ratio (kg m2)."""
+        return self.first_group - self.machine.constant
+
+    @property
+    def on_shaft(self) -> float:
+        """Inertia of the flywheel on its own shaft, kg m2: what is found, and a given one where nothing is."""
+        return self.law.flywheel / self.task.ratio**2
+
+    @property
+    def errors(self) -> tuple[float, float]:
+        """Of Wittenbauer's way and of Mertsalov's, shares of the exact flywheel."""
+        exact = float("nan") if self.found is None else self.found.inertia
+        return self.wittenbauer / exact - 1, self.mertsalov / exact - 1
+
+    @property
+    def diameter(self) -> float:
+        """Of the flywheel, or the mean one of its rim, m."""
+        return self.task.size.diameter(self.on_shaft)
+
+    @property
+    def width(self) -> float:
+        """Of the flywheel, m."""
+        return self.task.size.width * self.diameter
+
+    @property
+    def mass(self) -> float:
+        """Of the flywheel, kg."""
+        return self.task.size.mass(self.diameter)
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """The least and the largest speed of the driver, rad/s or m/s."""
+        return extremes(self.law)
+
+    @property
+    def delta(self) -> float:
+        """The fluctuation that there is."""
+        return fluctuation(self.law)
+
+    @property
+    def tangents(self) -> tuple[Tangent, Tangent]:
+        """To the energy-mass diagram, from where the inertia is -Jf and the energy -T0: of the largest and the least
+        speed, whatever drives."""
+        start = float(self.law.energy(np.zeros(1))[0])
+        low, high = (self._touching(x, speed, start) for x, speed in extreme_places(self.law))
+        return high, low
+
+    def _touching(self, x: float, speed: float, start: float) -> Tangent:
+        inertia = float(self.machine.inertia(np.array([x]))[0])
+        return Tangent(x, inertia, (self.law.flywheel + inertia) * speed**2 / 2 - start, speed**2 / 2)
+
+    @property
+    def at_mean(self) -> tuple[Tangent, Tangent]:
+        """By Mertsalov: tangents of the mean speed above the diagram and below it; the inertia is that of the second
+        group, the links without a constant speed ratio."""
+        slope = self.task.mean**2 / 2
+        tangents = (touching(self.machine, self.work, slope, top=top) for top in (True, False))
+        upper, lower = (replace(line, inertia=line.inertia - self.machine.constant) for line in tangents)
+        return upper, lower
+
+
+def extremes(law: Law) -> tuple[float, float]:
+    """The least and the largest speed over the cycle, both searched for at once."""
+    places, signs = law.energy.places(), np.array([1.0, -1.0])
+    values = law.speed(places)
+    best = np.argmin(signs[:, None] * values, axis=1)
+    low, high = (places[np.clip(best + side, 0, len(places) - 1)] for side in (-1, 1))
+    found = least(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
+    slowest, quickest = signs * np.minimum(found, signs * values[best])
+    return float(slowest), float(quickest)
+
+
+def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where on the way the speed is least and largest, each with that speed."""
+    places = law.energy.places()
+    (slowest, low), (quickest, high) = lowest(law.speed, places), lowest(lambda x: -law.speed(x), places)
+    length = law.energy.length
+    return (
+        (sharper(law.acceleration, slowest, length), low),
+        (sharper(lambda x: -law.acceleration(x), quickest, length), -high),
+    )
+
+
+def fluctuation(law: Law) -> float:
+    """The largest speed less the least, over the mean of both."""
+    low, high = extremes(law)
+    return 2 * (high - low) / (high + low)
+
+
+def steady(machine: Reduced, task: SteadyTask) -> Steady:
+    """Steady running of a machine. Raises StandstillError, NoFlywheelError, NoInertiaError."""
+    if task.motor is not None:
+        return _driven(machine, task, task.motor)
+    moment = -machine.work_of_cycle / machine.length
+    work = fitted(lambda x: (machine.work(x) + moment * x,), machine.work.edges)[0]
+    energy, own = at_mean(machine, work, task.mean, task.flywheel)
+    if task.delta is None:
+        if np.isnan(energy):
+            raise StandstillError(lowest(work, work.places())[0])
+        law = under_constant_moment(machine, task.flywheel, energy, moment)
+        return Steady(task, machine, moment, work, law, own)
+    given = (machine, work, task.mean, task.delta)
+    found = exact(*given)
+    if found.inertia <= task.flywheel:
+        raise NoFlywheelError(task.delta, own)
+    law = under_constant_moment(machine, found.inertia, found.energy, moment)
+    return Steady(task, machine, moment, work, law, own, found, wittenbauer(*given).inertia, mertsalov(*given))
+
+
+def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
+    """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
+
+    cycle, places = Cycle.of(machine, motor), machine.inertia.places()
+    inertia = machine.inertia(places)
+    heaviest, lightest = float(np.max(inertia)), float(np.min(inertia))
+    if task.delta is None and not task.flywheel + lightest > ROUNDOFF * heaviest:
+        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
+
+    def delta_of(flywheel: float) -> float:
+        if not flywheel + lightest > ROUNDOFF * heaviest:  # all masses rest somewhere on the driver's way
+            return STANDS
+        try:
+            return fluctuation(cycle.law(flywheel))
+        except (StandstillError, RunawayError):
+            return STANDS
+
+    own = delta_of(task.flywheel)
+    flywheel = task.flywheel
+    if task.delta is not None:
+        if own <= task.delta:
+            raise NoFlywheelError(task.delta, own)
+        flywheel = _searched(task.delta, delta_of, task.flywheel, heaviest)
+    law = cycle.law(flywheel)
+    gained = law.energy.coefficients.copy()
+    gained[0] -= law.energy(np.zeros(1))[0]
+    work = Curve(law.energy.edges, gained)
+    return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
+
+
+def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
+    """The inertia with which the fluctuation is delta; with the least one, low, it is larger.
+
+    One over the fluctuation grows with the flywheel nearly evenly, so that few trials are enough.
+    """
+
+    def over(flywheel: Real) -> Real:
+        found = delta / delta_of(float(flywheel[0])) - 1
+        return np.array([0.0 if abs(found) <= MET else found])
+
+    below, above = np.array([low]), np.array([low + unit])
+    for _ in range(DOUBLINGS):
+        if over(above)[0] > 0:
+            return float(roots(over, below, above)[0])
+        below, above = above, 2 * above
+    raise NoFlywheelError(delta, float("nan"))
+
+
+# The machine reduced to its driver, and its steady running, from a mechanism with its loads.
+
+
+CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertia of a link is compared
+
+
+def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
+    """Over a cycle from the driver's place `start` on (rad), by the way in its sense.
+
+    Raises NoCycleError, BySpeedError.
+    """
+    linkage, whole = mechanism.linkage, mechanism.driver_range
+    if linkage.driver.kind != "turn" or not whole.full:
+        raise NoCycleError
+    length = 2 * np.pi * whole.turns
+    machine = reduced_between(mechanism, start, linkage.driver.sense, length)
+    return replace(machine, constant=_constant_inertia(mechanism, start, length))
+
+
+def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> float:
+    """Reduced inertia of the links with a constant speed ratio to the driver over a cycle, kg m2.
+
+    A link counts if its reduced inertia does not change: the crank, gears on the frame, links of parallelograms.
+    """
+    q = start + mechanism.linkage.driver.sense * np.linspace(0, length, CONSTANT_SAMPLES, endpoint=False)
+    motion = move(
+        mechanism.linkage, mechanism.kernels, q, DriverMotion(start, 1.0, 0.0, mechanism.linkage.driver.sense)
+    )
+    inertia = [np.broadcast_to(rounded(own), q.shape) for own, _ in inertias(motion).values()]
+    return float(sum(np.mean(own) for own in inertia if np.ptp(own) <= CONSTANT_INERTIA * np.max(own)))
+
+
+def reduced_between(mechanism: Mechanism, start: float, sense: int, length: float) -> Reduced:
+    """Over a way of this length (rad, or m) of the driver from `start` on, in a sense.
+
+    Raises NoCycleError, BySpeedError.
+    """
+    linkage = mechanism.linkage
+    if linkage.others:
+        raise NoCycleError
+    if linkage.by_speed is not None:
+        raise BySpeedError(linkage.by_speed)
+    strokes = mechanism.strokes if linkage.by_strokes else None
+
+    def sample(x: Real) -> tuple[Real, Real, Real]:
+        motion = move(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
+        found = energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
+        return found.inertia, sense * found.slope, sense * found.moment
+
+    places = np.array([*jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
+    inner = np.sort(np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns))
+    inner = inner[np.diff(inner, prepend=-1.0) > SAME_PLACE]
+    return reduced(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
+
+
+@dataclass(frozen=True)
+class Running:
+    """Steady running of a mechanism, and the law of motion of its driver from the place `start` on (rad)."""
+
+    steady: Steady
+    start: float
+    sense: int
+
+    @property
+    def task(self) -> SteadyTask:
+        return self.steady.task
+
+    def way(self, q: Real) -> Real:
+        """How far the driver has gone in the cycle at its place q, rad."""
+        gone = np.mod(self.sense * (rounded(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
+        return np.asarray(np.maximum(gone, 0.0))
+
+    def speed(self, q: Real) -> Real:
+        """rad/s, with its sign."""
+        return self.sense * self.steady.law.speed(self.way(q))
+
+    def accelerated(self, q: Real) -> Real:
+        """rad/s2, with its sign."""
+        return self.sense * self.steady.law.acceleration(self.way(q))
+
+    def time(self, q: Real) -> Real:
+        """s, since the beginning of the cycle."""
+        return self.steady.law.time(self.way(q))
+
+    def driving(self, q: Real) -> Real:
+        """Moment of what drives, along the sense of the driver, N m."""
+        return self.steady.law.driving(self.way(q))
+
+    def work(self, q: Real) -> Real:
+        """Of all moments since the beginning of the cycle, J."""
+        return self.steady.work(self.way(q))
+
+
+def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
+    """Of a mechanism with its loads, from the driver's place `start` on (rad).
+
+    Raises NoCycleError, BySpeedError, StandstillError, NoFlywheelError.
+    """
+    return Running(steady(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)

@@ -1,0 +1,77 @@
+"""Power balance, kinetic energy, and the mechanism reduced to its driver.
+
+With q the first driver's place: T = J q'^2 / 2, J = sum(m |dx/dq|^2 + I (dphi/dq)^2); M = sum(F dx/dq + M dphi/dq); the
+drivers give J q'' + J_q q'^2 / 2 - M. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 15. It takes the
+lever's transfer functions another way (through the reduced inertia), so it checks accelerations, which the lever uses
+as given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.numerics.vectors import Real, dot, square
+
+
+@dataclass(frozen=True)
+class Energy:
+    """The mechanism reduced to its first driver, and its powers, at every position.
+
+    Reduced inertia (kg m2, or kg for a cylinder) and its derivative by q, reduced moment (or force) of all loads but
+    inertia (N m, N), kinetic energy (J) and its rate (W), power (W) of drivers, weights, loads and friction. balance:
+    what is left when the rate of kinetic energy is taken from all powers, against the largest of them.
+    """
+
+    inertia: Real
+    slope: Real
+    moment: Real
+    kinetic: Real
+    rate: Real
+    drivers: Real
+    weights: Real
+    loads: Real
+    friction: Real
+    balance: Real
+
+
+def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
+    """From the motion, the loads, and what the drivers do per unit of the first one's motion (N m, N)."""
+    still = np.zeros(np.shape(motion.q))
+    inertia, slope = still, still
+    for own, rate_of_own in inertias(motion).values():
+        inertia, slope = inertia + own, slope + rate_of_own
+    powers = dict.fromkeys(("weight", "load", "friction"), still)
+    for load in loads:
+        if load.kind != "inertia":
+            powers[load.kind] = powers[load.kind] + reduced_moment(motion, load)
+    moment = powers["weight"] + powers["load"] + powers["friction"]
+    rate = motion.rate
+    change = (inertia * motion.acceleration + slope * rate**2 / 2) * rate
+    parts = [drivers * rate, *(work * rate for work in powers.values())]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        size = max(np.nanmax(np.abs(part), initial=0.0) for part in (*parts, change))
+        balance = (sum(parts) - change) / size if size > 0 else still
+    return Energy(
+        inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance
+    )  # fmt: skip
+
+
+def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
+    """Of each moving link its inertia reduced to the first driver, and the derivative of it by q."""
+    found = {}
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, turning = motion.centre(name), motion.link(name)
+        slope = 2 * (link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second)
+        found[name] = link.mass * square(centre.first) + link.inertia * turning.first**2, slope
+    return found
+
+
+def reduced_moment(motion: Motion, load: Applied) -> Real:
+    """What a load does per unit of the first driver's motion, N m or N."""
+    found: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
+    return found

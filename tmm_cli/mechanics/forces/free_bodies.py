@@ -1,0 +1,367 @@
+"""What acts on some links of a position taken together: loads, reactions in pairs with other links, drivers."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from tmm_cli.language import printed, symbol
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.plan import Balance, Reaction, Reactions
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.numerics.vectors import cross, dot, unit
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+Kind = Literal[
+    "absolute", "relative", "normal", "tangential", "coriolis", "sliding", "load", "inertia", "reaction", "inner"
+]
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A letter with its indices, as formulas have it: a, BA below, n above."""
+
+    letter: str
+    below: str = ""
+    above: str = ""
+
+    @property
+    def name(self) -> str:
+        """In one line: R₃₄ᵗ."""
+        below = f"({self.below})" if "," in self.below else self.below.translate(BELOW)
+        return self.letter + below + self.above.translate(_ABOVE)
+
+    @property
+    def plain(self) -> str:
+        """With its index on the line: U3."""
+        return self.letter + self.below
+
+    @property
+    def primed(self) -> Symbol:
+        """P′ of P."""
+        return Symbol(f"{self.letter}′", self.below, self.above)
+
+
+class Lettered(Symbol):
+    """A quantity by the letter that a course writes in the language that is spoken where it is read: M_d is M_д."""
+
+    mark: str
+
+    def __init__(self, mark: str) -> None:
+        object.__setattr__(self, "mark", mark)
+
+    @property
+    def letter(self) -> str:
+        return symbol(self.mark).partition("_")[0]
+
+    @property
+    def below(self) -> str:
+        return symbol(self.mark).partition("_")[2]
+
+
+BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_ABOVE = str.maketrans("τn", "ᵗⁿ")
+
+
+def subscript(text: str) -> str:
+    """Figures below the line where the name is a number, else in brackets."""
+    return text.translate(BELOW) if text.isdecimal() and text.isascii() else f"({text})"
+
+
+def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
+    """R₃₄: from link 3 on link 4; part: τ tangential, n normal; letter: M of the couple that a guide or a cam bears."""
+    by, on = printed(by), printed(on)
+    return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
+
+
+def lettered(mark: str, index: str = "") -> Symbol:
+    """A quantity with an index by the letter that the course of the language gives it: U₃ is Φ₃ in Russian."""
+    letter, _, below = symbol(mark).partition("_")
+    return Symbol(letter, below + index)
+
+
+def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
+    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
+    index = link if several else ""
+    return lettered("M_b", index) if turns else lettered("F_b", index)
+
+
+FAR = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
+DRIVE = "drive"
+SHORT = 2  # letters after the first one of a name that is an index of it: Fc, Fcut is a word
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A force (N) at a place (m) of a link; or a couple (N m), which has no force.
+
+    pair: the name of the pair, or DRIVE, that it comes from; empty of loads.
+    """
+
+    symbol: Symbol
+    kind: Kind
+    link: str
+    at: complex
+    force: complex
+    moment: float = 0.0
+    pair: str = ""
+
+    @property
+    def couple(self) -> bool:
+        return self.force == 0
+
+    @property
+    def size(self) -> float:
+        """N, or N m of a couple."""
+        return abs(self.moment) if self.couple else abs(self.force)
+
+    def about(self, centre: complex) -> float:
+        """Its moment about a place, N m, positive counterclockwise."""
+        return self.moment + float(cross(self.at - centre, self.force))
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A position under its forces; size of the linkage, m."""
+
+    motion: Motion
+    reactions: Reactions
+    k: int
+    size: float
+
+    @classmethod
+    def at(cls, motion: Motion, reactions: Reactions, k: int) -> Loaded:
+        """A position by its index. Its size is that of the moving points, at least the longest link.
+
+        In one position all moving points may coincide but for rounding.
+        """
+        moving = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
+        bodies = [moving, *([complex(p) for p in link.points.values()] for link in motion.linkage.links.values())]
+        return cls(
+            motion, reactions, k, max((abs(p - q) for body in bodies for p in body for q in body), default=0.0) or 1.0
+        )
+
+    def place(self, link: str, local: complex) -> complex:
+        """A point of a link, m."""
+        return complex(local) if link == FRAME else complex(self.motion.poses[link].at(local)[self.k])
+
+    def hinge(self, point: str) -> complex:
+        """A named point, m."""
+        link = self.motion.linkage.owner(point)
+        return self.place(link, self.motion.linkage.local(link, point))
+
+    def pair(self, pair: Pair) -> complex:
+        """A hinge, or the running point of a sliding pair, m."""
+        return self.hinge(pair.point) if pair.slide is None else self.place(pair.slide.runner, pair.slide.at)
+
+    def guide(self, pair: Pair) -> complex:
+        """The direction of a sliding pair's guide."""
+        assert pair.slide is not None
+        carrier = pair.slide.carrier
+        turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
+        return complex(turned * unit(pair.slide.direction))
+
+    def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[Acting, ...]:
+        """All that acts on these links from without; what is zero beside the largest is left out.
+
+        axes: directions, by the names of hinges, along which and across which their reactions are parted.
+        """
+        found = [*self._loads(links), *self._drives(links)]
+        for reaction in self.reactions.all:
+            if (reaction.on in links) != (reaction.by in links):
+                link = reaction.on if reaction.on in links else reaction.by
+                found += self._reaction(reaction, link, axes.get(reaction.pair.name))
+        return there(found, self.size)
+
+    def given(self) -> tuple[Acting, ...]:
+        """The loads of all links, and what balances each driver, on the link that it drives."""
+        drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
+        return there([*self._loads(self.motion.linkage.moving), *drives], self.size)
+
+    def _loads(self, links: Collection[str]) -> Iterable[Acting]:
+        for load in self.reactions.applied:
+            if load.link in links:
+                kind = kind_of(load)
+                at = complex(self.motion.point(load.link, load.at).x[self.k])
+                force, couple = load_symbols(load)
+                yield Acting(force, kind, load.link, at, complex(load.force[self.k]))
+                yield Acting(couple, kind, load.link, at, 0j, float(load.moment[self.k]))
+
+    def _drives(self, links: Collection[str]) -> Iterable[Acting]:
+        for balance in self.reactions.balances:
+            driver = balance.driver
+            if driver.link in links and driver.base not in links:
+                yield self._drive(balance, driver.link, 1)
+            elif driver.base in links and driver.link not in links:
+                yield self._drive(balance, driver.base, -1)
+
+    def _drive(self, balance: Balance, link: str, sense: int) -> Acting:
+        driver, k, turns = balance.driver, self.k, balance.kind == "moment"
+        symbol = balance_symbol(driver.link, len(self.reactions.balances) > 1, turns=turns)
+        if sense < 0:
+            symbol = symbol.primed
+        if turns:
+            moment = sense * float(balance.generalized[k])
+            return Acting(symbol, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
+        force = sense * complex(balance.vector[k])
+        return Acting(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
+
+    def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[Acting]:
+        """On one of its two links: a guide's where it acts, a hinge's in two parts where it has an axis."""
+        k, pair, own = self.k, reaction.pair, link == reaction.on
+        by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
+        couple = 0.0
+        if reaction.couple is not None:
+            if pair.slide is None:  # of a cam; a couple may stand anywhere on its link
+                at = self.place(link, 0j)
+            back = -reaction.couple if reaction.back is None else reaction.back
+            couple = float((reaction.couple if own else back)[k])
+        if reaction.arm is not None and abs(reaction.arm[k]) < FAR * self.size:
+            at, couple = at + float(reaction.arm[k]) * self.guide(pair), 0.0
+        if axis is None:
+            yield Acting(reaction_symbol(by, link), "reaction", link, at, force, pair=pair.name)
+            yield Acting(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
+        else:
+            tangential = part_across(force, axis)
+            if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
+                tangential = complex(reaction.tangential[k])
+            yield Acting(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
+            yield Acting(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
+
+
+def part_across(force: complex, axis: complex) -> complex:
+    """The part of a force that is across an axis."""
+    across = axis * 1j / abs(axis)
+    return across * float(dot(across, force))
+
+
+def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
+    """Without what is zero but for rounding beside the largest; size: of the linkage, m."""
+    acting = tuple(acting)
+    largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
+    return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
+
+
+def kind_of(load: Applied) -> Kind:
+    """As vectors of plans have it."""
+    return "inertia" if load.kind == "inertia" else "load"
+
+
+def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
+    """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
+    if load.kind == "weight":
+        return lettered("G", load.link), lettered("G", load.link)
+    if load.kind == "inertia":
+        return lettered("U", load.link), lettered("M", load.link)
+    names = load.name, load.couple_name or load.name
+    if load.kind == "friction":
+        return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
+    if load.ambiguous:
+        return Symbol("P", load.name), Symbol("M", load.name)
+    return named(names[0], "P"), named(names[1], "M")
+
+
+def load_names(load: Applied) -> tuple[str, str]:
+    """The same on one line, as tables of the results have them; one that is given has its name of the file."""
+    if load.kind == "load":
+        return load.name, load.couple_name or load.name
+    force, couple = load_symbols(load)
+    return force.plain, couple.plain
+
+
+def named(name: str, letter: str) -> Symbol:
+    """F of F, F₅ of F5, F_c of Fc or F_c; of a word this letter with the word below it: P_press of press."""
+    base = name.rstrip("'")
+    first, rest = base[:1], base[1:].removeprefix("_")
+    short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= SHORT)
+    symbol = Symbol(first, rest) if first.isalpha() and short else Symbol(letter, base)
+    return symbol.primed if name != base else symbol
+
+
+# Leads of a group: the outer hinges and guides by which it hangs on other links; the point of Assur of three leads.
+
+
+STEEP = 0.02  # sine: lines that meet under less have their special point off any paper
+
+
+@dataclass(frozen=True)
+class Lead:
+    """An outer pair with all links that turn as one with its own (they slide on one another).
+
+    axis: along which the normal part of a hinge's reaction is, if it is parted. about: the point about which moments of
+    these links give the tangential part. rest: a line (place and direction) that has what is not found by then.
+    """
+
+    pair: Pair
+    links: tuple[str, ...]
+    axis: complex | None = None
+    about: str | None = None
+    rest: tuple[complex, complex] | None = None
+
+    @property
+    def open_part(self) -> Kind:
+        """Which part of the reaction has its line in `rest`."""
+        if self.pair.slide is not None:
+            return "reaction"
+        return "tangential" if self.about is None else "normal"
+
+
+def leads_of(here: Loaded, group: Group) -> tuple[Lead, ...]:
+    """Its outer lower pairs, in its own order."""
+    return tuple(_lead(here, group, pair) for pair in group.outer if pair.lower)
+
+
+def hinges_of(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
+    """Points in which these links are hinged to others."""
+    return list(dict.fromkeys(p.point for p in pairs if p.kind == "R" and len({p.i, p.j} & {*links}) == 1))
+
+
+def _lead(here: Loaded, group: Group, pair: Pair) -> Lead:
+    own = group.own(pair)
+    links = _sliding_together(group, own)
+    inner = hinges_of(group.inner, links)
+    if pair.slide is not None:
+        hinges = hinges_of(group.inner, (own,))
+        rest = (here.hinge(hinges[0]), 1j * here.guide(pair)) if len(hinges) == 1 else None
+        return Lead(pair, links, rest=rest)
+    at = here.hinge(pair.point)
+    outer = [p for p in group.outer if group.own(p) in links]
+    if len(inner) == 1 and len(outer) == 1:
+        axis = here.hinge(inner[0]) - at
+        return Lead(pair, links, axis, inner[0], (at, axis)) if axis else Lead(pair, links)
+    driven = {link for driver in group.drivers for link in (driver.base, driver.link)}
+    slides = [p for p in group.inner if own in (p.i, p.j)]
+    if len(slides) == 1 and slides[0].slide is not None and own not in driven:
+        axis = here.guide(slides[0])  # nothing else holds the link along its guide
+        others = [p.point for p in outer if p != pair and p.kind == "R"]
+        if not inner and len(others) == len(outer) - 1 == 1:
+            return Lead(pair, links, axis, others[0])
+        return Lead(pair, links, axis if len(group.outer) > 2 else None, rest=(at, 1j * axis))
+    return Lead(pair, links)
+
+
+def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
+    """Links that turn as one with a link of the group."""
+    found = {link}
+    for _ in group.links:
+        for pair in group.inner:
+            if pair.slide is not None and {pair.i, pair.j} & found:
+                found |= {pair.i, pair.j}
+    return tuple(n for n in group.links if n in found)
+
+
+def assur_point(here: Loaded, group: Group, leads: Sequence[Lead]) -> tuple[Lead, complex] | None:
+    """The lead that moments of a group with three leads give next, and where what is open of the other two meets."""
+    if len(leads) != 3 or len(group.outer) != 3 or group.drivers or any(lead.rest is None for lead in leads):
+        return None
+    for lead in sorted(leads, key=lambda lead: lead.open_part == "normal"):
+        (p, u), (q, v) = (other.rest for other in leads if other is not lead and other.rest is not None)
+        sine = cross(u, v) / (abs(u) * abs(v))
+        if abs(sine) > STEEP:
+            centre = p + u * cross(q - p, v) / cross(u, v)
+            if abs(centre - here.pair(lead.pair)) < FAR * here.size:
+                return lead, complex(centre)
+    return None

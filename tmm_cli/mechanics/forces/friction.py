@@ -1,0 +1,234 @@
+"""Coulomb friction in pairs: the force plan whose friction agrees with its own reactions.
+
+A hinge with a journal of radius r resists by the moment mu R r, a guide by the force mu N; both against the relative
+motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. Where a greater reaction needs more friction than
+it can overcome there is no such plan: the mechanism locks itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.plan import Reaction, Reactions, power, react
+from tmm_cli.mechanics.kinematics.motion import Motion, moving_parts
+from tmm_cli.mechanics.linkage import FRAME, Friction
+from tmm_cli.mechanics.numerics.double_double import array
+from tmm_cli.mechanics.numerics.linear import solve
+from tmm_cli.mechanics.numerics.tolerances import FRICTION_AGREES, FRICTION_LOCKS, FRICTION_ROUNDED
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, unit, without_rounding
+from tmm_cli.mechanics.structure.assur import Structure
+
+STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
+ROUNDS = 40  # of Newton's method in each
+HALVINGS = 16  # of the distance between two positions, in which a locked range ends
+OUTER = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
+
+
+@dataclass(frozen=True)
+class FrictionSolution:
+    """Reactions with friction. locked: positions where the mechanism locks itself; pair: the one that rubs most there.
+
+    Where it locks there are no forces with which it would move: they are nan.
+
+    work: power of friction per unit of the first driver's motion (N m or N, negative), pair by pair.
+    """
+
+    reactions: Reactions
+    loads: tuple[Applied, ...]
+    locked: Real
+    pair: tuple[str, ...]
+    work: dict[str, Real]
+    drivers: Real
+
+
+@dataclass(frozen=True)
+class LockedRange:
+    """Driver coordinates (rad or m, start < end) between which the mechanism locks itself; pair: with most friction."""
+
+    start: float
+    end: float
+    pair: str
+
+
+@dataclass(frozen=True)
+class Losses:
+    """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
+
+    Where the mechanism locks itself there is no work to be summed up, and no efficiency.
+    """
+
+    drivers: float
+    pairs: dict[str, float]
+    locked: bool
+    ranges: tuple[LockedRange, ...] = ()
+
+    @property
+    def efficiency(self) -> float | None:
+        """What is not lost of the drivers' work; None when they do none or are locked."""
+        if self.locked or not self.drivers > 0:
+            return None
+        useful = without_rounding(self.drivers + sum(self.pairs.values()), self.drivers)
+        return float(useful / self.drivers)
+
+
+def losses(rubbed: FrictionSolution, motion: Motion) -> Losses:
+    """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
+    pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
+    drivers = without_rounding(_over(rubbed.drivers, motion), _over(np.abs(rubbed.drivers), motion))
+    return Losses(float(drivers), pairs, bool(np.any(rubbed.locked)))
+
+
+def _over(work: Real, motion: Motion) -> float:
+    """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
+    values = np.where(motion.moving & np.isfinite(work), work, 0.0)
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
+
+
+def find_locked_ranges(
+    q: Real, rubbed: FrictionSolution, locked_at: Callable[[Real], Real], *, cyclic: bool
+) -> tuple[LockedRange, ...]:
+    """Ranges of the driver in which the mechanism locks itself, their ends by bisection.
+
+    Args:
+        q: rising driver coordinates (rad or m) of the solution; if cyclic, the last is the first of the next cycle.
+        locked_at: True for each driver coordinate at which it locks.
+    """
+    locked, pairs = rubbed.locked, np.array(rubbed.pair)
+    if not np.any(locked):
+        return ()
+    if np.all(locked):
+        return (LockedRange(float(q[0]), float(q[-1]), str(pairs[0])),)
+    if cyclic:  # from a coordinate at which it moves, so that no range is cut in two
+        first, cycle = int(np.argmin(locked[:-1])), q[-1] - q[0]
+        q = np.concatenate([q[first:-1], q[: first + 1] + cycle])
+        locked, pairs = (np.concatenate([x[first:-1], x[: first + 1]]) for x in (locked, pairs))
+    begins = np.flatnonzero(locked & ~np.concatenate([[False], locked[:-1]]))
+    ends = np.flatnonzero(locked & ~np.concatenate([locked[1:], [False]]))
+    inside = np.concatenate([q[begins], q[ends]])
+    outside = np.concatenate([q[np.maximum(begins - 1, 0)], q[np.minimum(ends + 1, len(q) - 1)]])
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        here = locked_at(middle)
+        inside, outside = np.where(here, middle, inside), np.where(here, outside, middle)
+    found = zip(inside[: len(begins)], inside[len(begins) :], pairs[(begins + ends) // 2], strict=True)
+    return tuple(LockedRange(float(start), float(end), str(pair)) for start, end, pair in found)
+
+
+def solve_friction(
+    motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions
+) -> FrictionSolution:
+    """The force plan whose friction is that of its own reactions.
+
+    Reactions follow friction in proportion, so one plan for each pair's friction, of 1 N in its pair, tells all of it;
+    the sizes f of the pairs' forces then solve f = |R0 + sum f_k R_k|, position by position.
+    """
+    given = motion.linkage.friction
+    names = [f.pair for f in given]
+    ones = np.ones(np.shape(motion.q))
+    units = [tuple(_loads(f, motion, free, ones)) for f in given]
+    response = array([_forces(react(motion, structure, unit), names) for unit in units])  # friction, pair, position
+    start = _forces(free, names)
+    reactions, locked = free, np.zeros(np.shape(motion.q), dtype=bool)
+    rubbed: tuple[Applied, ...] = ()
+    for _ in range(OUTER):
+        sizes, locked = _solved(start, response)
+        rubbed = tuple(load for f, size in zip(given, sizes, strict=True) for load in _loads(f, motion, free, size))
+        reactions = react(motion, structure, (*loads, *rubbed))
+        new = _forces(reactions, names)
+        with np.errstate(invalid="ignore"):
+            off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
+        if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
+            break
+        start = new - np.sum(response * sizes[:, None], axis=0)
+    work = {f.pair: _work(f, motion, reactions) for f in given}
+    stacked = np.nan_to_num(np.abs(array(list(work.values()))))
+    worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
+    locked = locked & motion.moving
+    if bool(np.any(locked)):
+        rubbed = tuple(_nowhere(load, locked) for load in rubbed)
+        reactions = react(motion, structure, (*loads, *rubbed))
+        work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
+    return FrictionSolution(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
+
+
+def _forces(reactions: Reactions, names: list[str]) -> Vector:
+    """Forces in the given pairs, (pair, position)."""
+    found: Vector = array([reactions.of(name).force for name in names])
+    return found
+
+
+def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
+    """Sizes f of f = |start + sum f_k response_k| (pair, position), and positions where there are none: it locks.
+
+    Friction is let in little by little, and each time Newton's method starts from the last answer.
+    """
+    number, count = start.shape
+    sizes = np.abs(start)
+    locked = np.zeros(count, dtype=bool)
+    with np.errstate(all="ignore"):
+        for stage in range(1, STAGES + 1):
+            part = response * (stage / STAGES)
+            last = np.full(count, np.inf)
+            for _ in range(ROUNDS):
+                force = start + np.sum(part * sizes[:, None], axis=0)
+                along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
+                slope = (np.conj(along)[None] * part).real  # of |force j| by f_k
+                matrix = np.eye(number)[None] - np.moveaxis(slope, (0, 1, 2), (2, 1, 0))
+                step = solve(matrix, (np.abs(force) - sizes).T).T
+                sizes = sizes + step
+                last = np.max(np.abs(step), axis=0) / (np.max(np.abs(sizes), axis=0) + 1e-300)
+                if not bool(np.any(last > FRICTION_ROUNDED)):
+                    break
+            # a size below zero, or none that agrees: more friction than the driver can overcome
+            locked |= ~(last < FRICTION_LOCKS) | np.any(sizes < -FRICTION_LOCKS * np.max(np.abs(sizes), axis=0), axis=0)
+    return np.where(locked, np.abs(start), sizes), locked
+
+
+def _nowhere(load: Applied, lost: Real) -> Applied:
+    """A load that is nothing where the mechanism does not move."""
+    return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
+
+
+def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
+    """Direction of the relative motion (+1, 0, -1) and its size per unit of the driver, of link `on` against `by`."""
+    largest = motion.largest
+    if pair.pair.slide is not None:
+        slide = pair.pair.slide
+        slip = motion.slide(slide).first * (1 if slide.runner == pair.on else -1)
+        moving = moving_parts(slip, largest.speed)
+    else:
+        moving = moving_parts(motion.first[pair.on].w - motion.first[pair.by].w, largest.speed / largest.size)
+    return np.sign(moving * motion.rate), np.abs(moving)
+
+
+def _loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[Applied]:
+    """Friction on both links of a pair."""
+    pair = reactions.of(friction.pair)
+    sign, _ = _slip(pair, motion)
+    still = np.zeros(np.shape(motion.q))
+    for link, sense in ((pair.on, -1.0), (pair.by, 1.0)):
+        if link == FRAME:
+            continue
+        name = f"T{friction.pair}{link}"  # as v_A3 is the velocity at A of link 3
+        if pair.pair.slide is None:
+            moment = sense * friction.coefficient * friction.radius * force * sign
+            yield Applied(name, "friction", link, motion.linkage.local(link, pair.pair.point), still + 0j, moment, name)
+        else:
+            slide = pair.pair.slide
+            u = motion.poses[slide.carrier].z * unit(slide.direction)
+            push = sense * friction.coefficient * force * sign * u
+            # at the running point; seen from the carrier that wanders, so its moment is given apart
+            arm = pair.at - motion.poses[link].x
+            moment = arm.real * push.imag - arm.imag * push.real
+            yield Applied(name, "friction", link, 0j, push, moment, f"M{name}")
+
+
+def _work(friction: Friction, motion: Motion, reactions: Reactions) -> Real:
+    pair = reactions.of(friction.pair)
+    _, slip = _slip(pair, motion)
+    arm = friction.radius if pair.pair.slide is None else 1.0
+    return -friction.coefficient * np.abs(pair.force) * arm * slip

@@ -1,0 +1,116 @@
+"""Places of the driver where loads jump or bend: sums over the way are exact between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.mechanics.forces.loads import motion_on_base, setting_off
+from tmm_cli.mechanics.groups.sequence import DriverMotion, towards
+from tmm_cli.mechanics.kinematics.driver_range import SCAN
+from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.kinematics.strokes import OutputCurve
+from tmm_cli.mechanics.linkage import Load, LoadTable
+from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
+from tmm_cli.mechanics.numerics.vectors import Real, dot
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+
+
+def jumps(mechanism: Mechanism) -> Iterable[float]:
+    """Places of a crank that turns fully (rad), in any order and turn."""
+    linkage = mechanism.linkage
+    sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
+    main = mechanism.strokes
+    for strokes in () if main is None else (main, *main.others):
+        for stroke in strokes.strokes:
+            yield from (stroke.start, stroke.start + sense * stroke.length)
+    for load in linkage.loads:
+        if load.window is not None:
+            yield from (place + cycle * k for place in load.window for k in _cycles(mechanism))
+        if load.table is not None:
+            yield from _reached(mechanism, load.table, (*load.table.arguments, 0.0))
+        if load.resists:
+            yield from _turns_back(mechanism, load)
+
+
+def table_jumps(mechanism: Mechanism) -> Iterable[float]:
+    """Driver coordinates (rad) at which tables of loads jump, in any order and turn."""
+    for load in mechanism.linkage.loads:
+        if load.table is not None and load.table.jumps:
+            rows = [load.table.arguments[k] for k in load.table.jumps]
+            yield from _reached(mechanism, load.table, rows)
+
+
+def _cycles(mechanism: Mechanism) -> range:
+    """Numbers of the cycles of the loads in the cycle of the motion."""
+    return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
+
+
+def _reached(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+    """Driver coordinates (rad) at which these arguments of a table are reached."""
+    if table.against == "stroke":
+        yield from _reached_in_strokes(mechanism, table, arguments)
+        return
+    linkage = mechanism.linkage
+    begin, sense, cycle = 0.0, 1, 2 * np.pi * linkage.turns
+    if table.against == "crank turn":
+        strokes = mechanism.strokes.strokes if mechanism.strokes else ()
+        begin, sense = strokes[0].start if strokes else linkage.sketch.at, linkage.driver.sense
+    yield from (begin + sense * argument + cycle * k for argument in arguments for k in _cycles(mechanism))
+
+
+def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+    """Driver coordinates (rad) at which a link reaches arguments of a table against its stroke, within strokes."""
+    linkage, strokes = mechanism.linkage, mechanism.strokes
+    strokes = strokes and strokes.of_link(table.stroke_link)
+    if strokes is None or not strokes.strokes:
+        return
+    curve = OutputCurve(linkage, towards(mechanism.kernels, [linkage.output_carrier(strokes.link)]), strokes.link)
+    first = strokes.strokes[0]
+    for stroke in strokes.strokes:
+        middle = stroke.low + stroke.run / 2
+        for row in arguments:
+            wanted = first.low + (first.run if table.shares else np.sign(first.run)) * row
+            # at the ends themselves the output rests: rounding would put the row a little beside them
+            if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):
+                end = stroke.start + linkage.driver.sense * stroke.length
+                yield float(roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
+
+
+def _missed(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
+    """How far the output is from a place; an angle is counted about the middle of its stroke."""
+
+    def missed(q: Real) -> Real:
+        place = curve.place(q)
+        if curve.swings:
+            place = middle + np.angle(np.exp(1j * (place - middle)))
+        return place - wanted
+
+    return missed
+
+
+def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
+    """Where what a friction resists turns back."""
+    linkage, whole = mechanism.linkage, mechanism.driver_range
+    law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
+
+    def moved(q: Real, order: int) -> Motion:
+        return move(linkage, mechanism.kernels, q, law, order)
+
+    q = np.linspace(whole.start, whole.end, SCAN * whole.turns + 1)
+    half = (q[1] - q[0]) / 2  # a place of the scan may be the end itself: a little beyond it there is no doubt
+    along, turning = setting_off(load, moved(q, 2))
+    if load.force:
+        back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)
+        before = along[back]
+        yield from roots(
+            lambda places: dot(motion_on_base(load, moved(places, 1))[0], before), q[back], q[back + 1] + half
+        ).tolist()
+    if load.moment:
+        back = np.flatnonzero(turning[1:] * turning[:-1] < 0)
+        yield from roots(lambda places: motion_on_base(load, moved(places, 1))[1], q[back], q[back + 1] + half).tolist()

@@ -1,0 +1,257 @@
+"""One thing that acts on a link besides reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_cli.mechanics.kinematics.motion import Motion, moving_parts
+from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable, Spring
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SEAM
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, pi, unit
+
+
+@dataclass(frozen=True)
+class Applied:
+    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position.
+
+    ambiguous: the name of a load of the task is also the symbol of another quantity, such as M3, the couple of inertia
+    of link 3: formulas then write the whole name below the line.
+    """
+
+    name: str
+    kind: Literal["weight", "inertia", "load", "friction"]
+    link: str
+    at: complex
+    force: Vector
+    moment: Real
+    couple_name: str = ""
+    ambiguous: bool = False
+
+    @property
+    def has_force(self) -> bool:
+        """Somewhere; positions that are not come to, with nan, do not count."""
+        return bool(np.any(np.abs(self.force) > 0))
+
+    @property
+    def has_moment(self) -> bool:
+        return bool(np.any(np.abs(self.moment) > 0))
+
+
+# What springs, and cylinders that only push, do to the two links that they join.
+
+
+def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """The equal and opposite loads of each spring; on the frame they are left out."""
+    still = np.zeros(np.shape(motion.q))
+    moving = motion.linkage.moving
+    for spring in motion.linkage.springs:
+        if spring.turns:
+            pull = _twist(spring, motion)
+            pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
+        else:
+            i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
+            length = np.abs(j.x - i.x)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                along = np.where(length > 0, (j.x - i.x) / length, 0.0)
+            longer = dot(along, j.v - i.v)
+            pull = spring.preload + spring.rate * (length - spring.free) + spring.damping * longer
+            pairs = ((spring.j, spring.at_j, -pull * along, still), (spring.i, spring.at_i, pull * along, still))
+        for link, at, force, moment in pairs:
+            if link in moving:
+                name = spring.name if link == spring.j or spring.j not in moving else f"{spring.name}'"
+                yield Applied(name, "load", link, at, force, moment, name)
+
+
+def twisted(spring: Spring, motion: Motion) -> Real:
+    """Angle by which a torsion spring is turned from its free angle, within half a turn (rad)."""
+    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
+    found: Real = np.angle(turned)
+    return found
+
+
+def _twist(spring: Spring, motion: Motion) -> Real:
+    """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
+    speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
+    return spring.preload + spring.rate * twisted(spring, motion) + spring.damping * speed
+
+
+# The loads of the task: what they are tabulated against, where they act, and what resists a motion.
+
+
+BEFORE_END = 1e-3  # of the stroke: a table that ends before its end by less is rounded
+BEYOND_END = 0.02  # of the stroke: likewise beyond it
+
+
+def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """The loads of the task, each with its opposite on the other link if that moves.
+
+    Those of working strokes act always where there are none.
+    """
+    for load in motion.linkage.loads:
+        size = _size(load, motion, strokes)
+        along: Vector | float = motion.poses[load.link].z if load.follows else 1.0
+        turning: Real | float = 1.0
+        if load.resists:
+            velocity, turned = setting_off(load, motion)
+            along, turning = -velocity, -turned
+        force, moment = load.force * size * along, load.moment * size * turning
+        yield Applied(load.name, "load", load.link, load.at, force, moment, load.name)
+        if load.base != FRAME:
+            yield _opposite(load, motion, force, moment)
+
+
+def _size(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
+    """What its force and moment are multiplied by."""
+    size = np.ones(np.shape(motion.q))
+    if load.table is not None:
+        size = load.table(table_argument(load.table, motion, strokes))
+    return size if acts_always(load, strokes) else np.where(acts(load, motion.q, motion.linkage, strokes), size, 0.0)
+
+
+def acts(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
+    """True at the positions of the driver in which a load acts, which is always if there are no strokes."""
+    if load.window is not None:
+        return in_window(load.window, q, linkage)
+    if acts_always(load, strokes):
+        return np.ones(np.shape(q), dtype=bool)
+    assert strokes is not None
+    return strokes.of_link(load.stroke_link).share(q, linkage.driver.sense)
+
+
+def acts_always(load: Load, strokes: Strokes | None) -> bool:
+    """True if a load acts at all positions: it is limited neither to a window nor to working strokes that there are."""
+    if load.window is not None:
+        return False
+    return not load.working_stroke_only or strokes is None or not strokes.of_link(load.stroke_link).strokes
+
+
+def _opposite(load: Load, motion: Motion, force: Vector, moment: Real) -> Applied:
+    """What the other link has of it: at the point that both share, or along the same line."""
+    name, points = f"{load.name}'", motion.linkage.links[load.base].points
+    if load.point in points:
+        return Applied(name, "load", load.base, points[load.point], -force, -moment, name)
+    arm = motion.poses[load.link].at(load.at) - motion.poses[load.base].x
+    return Applied(name, "load", load.base, 0j, -force, -moment - cross(arm, force), name)
+
+
+def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
+    """Direction in which the point of a load moves, and the sense in which its link turns, as its base sees them.
+
+    In an end of its way a thing has the direction in which it sets off from there; what stays at rest has none: 0.
+    """
+    largest = motion.largest
+    velocity, spin = motion_on_base(load, motion)
+    velocity, spin = moving_parts(velocity, largest.speed), moving_parts(spin, largest.speed / largest.size)
+    if motion.order > 1:
+        pose, other = motion.poses[load.link], motion.second[load.base]
+        arm, far = load.at * pose.z, pose.at(load.at) - motion.poses[load.base].x
+        second = motion.second[load.link]
+        gain = second.at(arm, motion.first[load.link].w) - other.at(far, motion.first[load.base].w)
+        velocity = np.where(velocity == 0, moving_parts(gain, largest.acceleration), velocity)
+        spin = np.where(spin == 0, moving_parts(second.e - other.e, largest.acceleration / largest.size), spin)
+    length = np.abs(velocity)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(length > 0, velocity / length, 0j), np.sign(spin)
+
+
+def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
+    """Velocity of the point of a load and turning of its link on the base, in units of the driver's motion."""
+    sense = np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
+    pose, first, base = motion.poses[load.link], motion.first[load.link], motion.first[load.base]
+    far = pose.at(load.at) - motion.poses[load.base].x
+    return sense * (first.at(load.at * pose.z) - base.at(far)), sense * (first.w - base.w)
+
+
+def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
+    """Whether each place of the crank lies between two angles of it; that which is come to first does, the last not."""
+    low, high = window
+    first = low if linkage.driver.sense > 0 else high
+    cycle = 2 * np.pi * linkage.turns
+    gone = np.mod(linkage.driver.sense * (q - first) + SAME_PLACE, cycle) - SAME_PLACE
+    inside: Real = gone < np.mod(high - low, cycle) - SAME_PLACE
+    return inside
+
+
+def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) -> Real:
+    """What a load is tabulated against: run of a link from where its working stroke starts, or the crank.
+
+    A run is in m or rad, or a share of the working stroke.
+    """
+    driver = motion.linkage.driver
+    if table.against == "crank angle":
+        return _turned(motion.q, 2 * motion.linkage.turns * pi(motion.q))
+    first = strokes.strokes[0] if strokes and strokes.strokes else None
+    if table.against == "crank turn":
+        start = first.start if first else motion.linkage.sketch.at
+        cycle = strokes.cycle if strokes else 2 * np.pi * motion.linkage.turns
+        return _turned(driver.sense * (motion.q - start), cycle)
+    assert strokes is not None
+    strokes = strokes.of_link(table.stroke_link)
+    first = strokes.strokes[0]
+    run: Real = output_place(motion, strokes.link) - first.low
+    if strokes.kind == "swing":
+        turns = np.round((run - first.run / 2) / (2 * np.pi))
+        run = run - 2 * pi(run) * turns
+    worked: Real = run / first.run if table.shares else run * np.sign(first.run)
+    return worked
+
+
+def reach_of_tables(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
+    """Each load tabulated against the stroke in lengths or angles, its last row and the stroke (m or rad).
+
+    Both are arrays (variants, 1) where the linkage is one of many variants.
+    """
+    for load in () if strokes is None else linkage.loads:
+        assert strokes is not None
+        if load.table is not None and load.table.against == "stroke" and not load.table.shares:
+            for stroke in strokes.of_link(load.table.stroke_link).strokes[:1]:
+                yield load, load.table.arguments[-1], np.abs(stroke.run)
+
+
+def ends_with_stroke(last: Any, stroke: Any) -> Any:
+    """Whether the last row of a table is at the end of the stroke, neither before nor beyond it."""
+    return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
+
+
+def _turned(angle: Real, cycle: Real | float) -> Real:
+    """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
+    to the other side."""
+    seam = SEAM * (1 + np.abs(angle))
+    return np.mod(angle + seam, cycle) - seam
+
+
+# All that acts on the links besides reactions: weights, inertia, the loads of the task.
+
+
+BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are written
+
+
+def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
+    """All that acts on each moving link but friction, in the order of the links."""
+    order = {name: k for k, name in enumerate(motion.linkage.links)}
+    found = [load for kind in KINDS for load in kind(motion, strokes)]
+    symbols = {*BALANCING, *(name for load in found if load.kind != "load" for name in (load.name, load.couple_name))}
+    found = [replace(a, ambiguous=True) if a.kind == "load" and a.name.rstrip("'") in symbols else a for a in found]
+    return tuple(sorted(found, key=lambda a: order[a.link]))
+
+
+def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+    """Weights in the centres of mass, and inertia about them. Massless links carry nothing."""
+    still = np.zeros(np.shape(motion.q))
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        if np.any(link.mass != 0):
+            weight = link.mass * motion.linkage.gravity + still
+            yield Applied(f"G{name}", "weight", name, link.centre, weight, still)
+        if np.any(link.mass != 0) or np.any(link.inertia != 0):
+            inertia = -link.mass * motion.centre(name).a
+            moment = -link.inertia * motion.link(name).epsilon
+            yield Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}")
+
+
+KINDS = (weights_and_inertia, given_loads, spring_loads)  # what acts on links, each from a motion and its strokes

@@ -1,0 +1,349 @@
+"""Stage: the force plan. Groups are walked backward, each under its loads and the reactions found before it.
+
+Kinetostatics by d'Alembert: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever mechanisms, MATI 2006,
+section 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
+
+import numpy as np
+
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.groups.state import PairReaction, Wrench
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics.pressure import Lead, followers
+from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage
+from tmm_cli.mechanics.numerics.tolerances import INFINITELY_FAR, NO_FORCE
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """What link `by` does to link `on` in a pair: force (N) at the place `at` (m), and couple (N m) if it slides.
+
+    arm: where a guide's force really acts, along the guide from the running point (m; infinite for a pure couple).
+    signed: a guide's force, positive to the left of the guide. tangential, normal: parts of an outer hinge's force.
+    back: the couple on `by` where it is not the opposite (a swinging follower of a cam given by its law). angle: of the
+    force (rad), in `Reactions.directed` alone.
+    """
+
+    pair: Pair
+    on: str
+    by: str
+    at: Vector
+    force: Vector
+    couple: Real | None = None
+    tangential: Vector | None = None
+    normal: Vector | None = None
+    signed: Real | None = None
+    arm: Real | None = None
+    back: Real | None = None
+    angle: Real | None = None
+
+    def onto(self, link: str) -> Vector:
+        """The force on one of the two links, N."""
+        return self.force if link == self.on else -self.force
+
+
+@dataclass(frozen=True)
+class PinForce:
+    """What the pin of a compound hinge does to one of its links (N), however the hinge is counted as pairs."""
+
+    point: str
+    link: str
+    pairs: tuple[str, ...]
+    force: Vector
+
+
+@dataclass(frozen=True)
+class GroupForces:
+    """The force plan of a group: its reactions; loads and the reactions of later groups that it bears are inputs."""
+
+    group: Group
+    outer: tuple[Reaction, ...]
+    inner: tuple[Reaction, ...]
+    borne: tuple[Reaction, ...]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """A driver: balancing moment (N m) or force (N, on the crank's end across it, or along the cylinder).
+
+    For a crank both are given, `force` being moment / arm; the frame's reaction belongs to the one asked for. It acts
+    on the driven link, and with the opposite sign on the base. `generalized` is what works with the driver's place: the
+    moment of a crank, the force of a cylinder.
+    """
+
+    driver: Driver
+    kind: str
+    moment: Real | None
+    force: Real
+    vector: Vector
+    at: Vector
+    arm: float
+
+    @property
+    def generalized(self) -> Real:
+        return self.force if self.moment is None else self.moment
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """The whole force plan. frames: of the pairs in which cranks stand on the frame; balances: of all drivers."""
+
+    applied: tuple[Applied, ...]
+    groups: tuple[GroupForces, ...]
+    frames: tuple[Reaction, ...]
+    balances: tuple[Balance, ...]
+    borne: Mapping[str, tuple[Reaction, ...]]
+
+    @property
+    def balance(self) -> Balance:
+        """Of the first driver."""
+        return self.balances[0]
+
+    @property
+    def loaded(self) -> bool:
+        """Whether anything acts: where nothing has weight, inertia or a load all reactions are zero."""
+        return any(load.has_force or load.has_moment for load in self.applied)
+
+    @property
+    def all(self) -> tuple[Reaction, ...]:
+        """Every pair's reaction, the drivers' first, then groups in solving order."""
+        return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
+
+    @cached_property
+    def directed(self) -> tuple[Reaction, ...]:
+        """The same with the angles of their forces; one that is zero to rounding has neither angle nor arm (nan)."""
+        sizes = [np.abs(r.force) for r in self.all]
+        least, found = NO_FORCE * reduce(np.maximum, sizes), []
+        for r, size in zip(self.all, sizes, strict=True):
+            arm = None if r.arm is None else np.where(size > least, r.arm, np.nan)
+            found.append(replace(r, angle=np.where(size > least, np.angle(r.force), np.nan), arm=arm))
+        return tuple(found)
+
+    def of(self, name: str) -> Reaction:
+        """The reaction in a pair, by the pair's name."""
+        return next(r for r in self.all if r.pair.name == name)
+
+    def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
+        """The forces of the pins of compound hinges on each of their links; those of one pin come to nothing."""
+        return tuple(
+            PinForce(hinge.point, link, tuple(r.pair.name for r in self._at_pin(hinge.point, link)),
+                     self.pin_force(hinge.point, link))
+            for hinge in linkage.hinges if len(hinge.links) > 2 for link in hinge.links
+        )  # fmt: skip
+
+    def pin_force(self, point: str, link: str) -> Vector:
+        """The force (N) of the pin of a compound hinge on one of its links."""
+        return reduce(np.add, [reaction.onto(link) for reaction in self._at_pin(point, link)])
+
+    def _at_pin(self, point: str, link: str) -> list[Reaction]:
+        return [r for r in self.all if r.pair.kind == "R" and r.pair.point == point and link in (r.on, r.by)]
+
+
+def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:
+    """Reactions in all pairs and what balances the drivers, at every position of the motion."""
+    linkage = motion.linkage
+    applied = {
+        name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links
+    }
+    for acting in _by_place(loads):
+        link, arm = acting[0].link, acting[0].at * motion.poses[acting[0].link].z
+        force = reduce(np.add, [load.force for load in acting])
+        applied[link] += Wrench(force, cross(arm, force) + reduce(np.add, [load.moment for load in acting]))
+    borne: dict[str, list[Reaction]] = {name: [] for name in linkage.links}
+    groups: list[GroupForces] = []
+    frames: list[Reaction] = []
+    balances: dict[str, Balance] = {}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for kernel, at in zip(reversed(motion.kernels), reversed(motion.placements), strict=True):
+            group = kernel.group
+            found = kernel.reactions(at, motion.poses, tuple(applied[link] for link in group.links))
+            parts = zip(group.outer, found.outer, strict=True)
+            outer = tuple(_reaction(motion, pair, group.own(pair), part) for pair, part in parts)
+            parts = zip(group.inner, found.inner, strict=True)
+            inner = tuple(_reaction(motion, pair, kernel.inner_on(pair), part) for pair, part in parts)
+            groups.append(GroupForces(group, outer, inner, tuple(r for link in group.links for r in borne[link])))
+            for reaction in outer:
+                applied[reaction.by] += _opposite(reaction, motion)
+                borne[reaction.by].append(reaction)
+            for driver in group.drivers:
+                balance = balances[driver.link] = _driven(motion, driver, found.drives[driver.link])
+                for link, sense in ((driver.base, -1), (driver.link, 1)):
+                    if link not in group.links:
+                        applied[link] += _driving(motion, balance, link, sense)
+        for driver in linkage.cranks:
+            frame, balances[driver.link] = _drive(motion, structure, driver, applied[driver.link])
+            frames.append(frame)
+    return Reactions(
+        loads, tuple(reversed(groups)), tuple(frames), tuple(balances[d.link] for d in linkage.drivers),
+        {name: tuple(reactions) for name, reactions in borne.items()},
+    )  # fmt: skip
+
+
+def _by_place(loads: tuple[Applied, ...]) -> list[list[Applied]]:
+    """Loads that act at the same point of a link, such as weight and inertia, together."""
+    found: dict[tuple[str, int], list[Applied]] = {}
+    for load in loads:
+        found.setdefault((load.link, id(load.at)), []).append(load)
+    return list(found.values())
+
+
+def power(motion: Motion, reactions: Reactions) -> Real:
+    """What all drivers do per unit of the first one's motion; with one driver its balancing moment or force."""
+    total = np.zeros(np.shape(motion.q))
+    for balance in reactions.balances:
+        total = total + balance.generalized * motion.drives[balance.driver.link].first
+    return total
+
+
+def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reaction:
+    other = pair.other(own)
+    if pair.mesh is not None:
+        assert found.at is not None
+        return Reaction(pair, own, other, found.at, found.force, found.couple, back=found.back)
+    if pair.slide is None:
+        at = motion.poses[own].at(motion.linkage.local(own, pair.point))
+        return Reaction(pair, own, other, at, found.force, None, found.tangential, found.normal)
+    assert found.couple is not None
+    slide = pair.slide
+    at = motion.poses[slide.runner].at(slide.at)
+    u = motion.poses[slide.carrier].z * unit(slide.direction)
+    signed = dot(1j * u, found.force)
+    # on the carrier both force and couple change sign, and the arm stays
+    arm = _arm(motion, found.couple, signed)
+    return Reaction(pair, own, other, at, found.force, found.couple, signed=signed, arm=arm)
+
+
+def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
+    """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
+    far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
+    arm = couple / signed
+    return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
+
+
+def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
+    """The same reaction on the other link, reduced to that link's origin."""
+    by, pair = motion.poses[reaction.by], reaction.pair
+    own = pair.slide is None and pair.mesh is None
+    arm = motion.linkage.local(reaction.by, pair.point) * by.z if own else reaction.at - by.x
+    moment = cross(arm, -reaction.force)
+    if reaction.back is not None:
+        moment = moment + reaction.back
+    elif reaction.couple is not None:
+        moment = moment - reaction.couple
+    return Wrench(-reaction.force, moment)
+
+
+def _driven(motion: Motion, driver: Driver, size: Real) -> Balance:
+    """A driver between two moving links, from its row in their group."""
+    linkage = motion.linkage
+    if driver.kind == "turn":
+        at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
+        return Balance(driver, "moment", size, size * np.nan, size * 0j, at, float("nan"))
+    u, at = _guide(motion, driver)
+    return Balance(driver, "force", None, size, size * u, at, 1.0)
+
+
+def _guide(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
+    """Along which direction a cylinder drives its link, and at which point (m)."""
+    slide = motion.linkage.slide(driver.joint)
+    u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
+    return u, motion.poses[slide.runner].at(slide.at)
+
+
+def _driving(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
+    """What a driver does to its link (sense 1) or to its base (-1), reduced to that link's origin."""
+    if balance.moment is not None:
+        return Wrench(balance.moment * 0j, sense * balance.moment)
+    force = sense * balance.vector
+    return Wrench(force, cross(balance.at - motion.poses[link].x, force))
+
+
+def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
+    """A link driven from the frame, under all that acts on it."""
+    linkage = motion.linkage
+    pair = structure.driving_pair(driver)
+    pose = motion.poses[driver.link]
+    if driver.kind == "turn":
+        pivot = pose.at(linkage.local(driver.link, driver.joint))
+        moment = -total.about(pivot - pose.x)
+        end = _end(linkage, driver)
+        radius = pose.at(end) - pivot
+        arm = np.abs(end - linkage.local(driver.link, driver.joint))
+        size = moment / arm
+        vector = 1j * radius * (moment / (arm * arm))
+        force = -total.force - (vector if driver.balance == "force" else 0)
+        return (
+            Reaction(pair, driver.link, FRAME, pivot, force),
+            Balance(driver, driver.balance, moment, size, vector, pivot + radius, arm),
+        )
+    u, at = _guide(motion, driver)
+    size = -dot(total.force, u)
+    guide = -1j * u * dot(total.force, 1j * u)
+    # the balancing force acts in the line of the running point, so moments about it leave the guide's couple
+    couple = -total.about(at - pose.x)
+    signed = dot(1j * u, guide)
+    return (
+        Reaction(pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=_arm(motion, couple, signed)),
+        Balance(driver, "force", None, size, size * u, at, 1.0),
+    )
+
+
+def _end(linkage: Linkage, driver: Driver) -> complex:
+    """The crank's end in its axes: the point named for it, or the first that is not its pivot."""
+    points = linkage.links[driver.link].points
+    if driver.end:
+        return points[driver.end]
+    pivot = points[driver.joint]
+    return next((p for name, p in points.items() if name != driver.joint and np.any(p != pivot)), pivot + 1.0)
+
+
+# The part of the driving force that moves a driven link: Q = P cos(pressure angle).
+
+
+@dataclass(frozen=True)
+class TransmittedForce:
+    """The reaction that drives a link and its component along the velocity of its point, both (positions,), N.
+
+    group, link, pair: names. driving: size P of the reaction in the pair. useful: size of its component Q along the
+    velocity; without weights, inertia and friction Q = P cos(pressure angle).
+    """
+
+    group: str
+    link: str
+    pair: str
+    driving: Real
+    useful: Real
+
+
+def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[TransmittedForce, ...]:
+    """Compute P and Q of every link that is driven in one pair.
+
+    The direction of the velocity is that of a rotation about the pivot that holds the link, or of its guide, so that it
+    is there where the link rests, too.
+    """
+    leads = [(kernel.group, lead) for kernel in motion.kernels for lead in followers(kernel.group)]
+    return tuple(_transmitted(motion, reactions, group.title, lead) for group, lead in leads if len(lead[2]) == 1)
+
+
+def _transmitted(motion: Motion, reactions: Reactions, group: str, lead: Lead) -> TransmittedForce:
+    link, outer, (pair,) = lead
+    reaction = reactions.of(pair.name)
+    force = reaction.onto(link)
+    if outer.slide is not None:
+        along = motion.poses[outer.slide.carrier].z * unit(outer.slide.direction)
+        work = dot(force, along)
+    else:
+        radius = reaction.at - motion.poses[link].at(motion.linkage.local(link, outer.point))
+        couple = 0.0 if reaction.couple is None else reaction.couple * (1 if reaction.on == link else -1)
+        with np.errstate(all="ignore"):  # a pair on the pivot drives by its couple alone, at no radius
+            work = (dot(force, 1j * radius) + couple) / np.abs(radius)
+    return TransmittedForce(group, link, pair.name, np.abs(force), np.abs(work))

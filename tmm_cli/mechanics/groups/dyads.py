@@ -1,0 +1,13 @@
+"""The groups of two links, one file a type."""
+
+from typing import Any
+
+from tmm_cli.mechanics.groups.base import Dyad
+from tmm_cli.mechanics.groups.prp import PRP
+from tmm_cli.mechanics.groups.rpp import RPP
+from tmm_cli.mechanics.groups.rpr import RPR
+from tmm_cli.mechanics.groups.rrp import RRP
+from tmm_cli.mechanics.groups.rrr import RRR
+
+AnyDyad = Dyad[Any, Any, Any]
+DYADS: dict[str, type[AnyDyad]] = {dyad.type: dyad for dyad in (RRR, RRP, RPR, PRP, RPP)}

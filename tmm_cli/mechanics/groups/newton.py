@@ -1,0 +1,338 @@
+"""Groups of any class: Newton's method on the equations of the group's own pairs, all positions at once.
+
+Unknowns are the origins and angles of the group's links, lengths counted in the group's size. One matrix serves places,
+velocities, accelerations and, transposed, reactions. E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical
+Systems, ch. 3 and 4. Where a group has more equations than unknowns (passive constraints) they are solved by least
+squares, which is exact as long as they agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, reduce
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Kernel, reach, spread
+from tmm_cli.mechanics.groups.branch import BranchTrace
+from tmm_cli.mechanics.groups.pairs import PAIRS
+from tmm_cli.mechanics.groups.pairs.lower import Constraint, Driven, JacobianRow
+from tmm_cli.mechanics.groups.state import (
+    Accel,
+    Accels,
+    Drives,
+    GroupReactions,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    State,
+    Wrench,
+)
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.numerics.double_double import DoubleDouble, exactly, rounded
+from tmm_cli.mechanics.numerics.linear import least_over_largest, signed_determinant, solve
+from tmm_cli.mechanics.numerics.tolerances import (
+    BLURRED_PASSIVE,
+    CONVERGED,
+    LAST_STEP,
+    LAST_STEP_EXTENDED,
+    NEAR_SINGULAR,
+    ROUNDINGS,
+    SINGULAR,
+    TRUNCATED,
+)
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, roundoff, unit
+from tmm_cli.mechanics.structure.group import Group
+
+ROUNDS = 12  # of Newton's method at most
+
+
+@dataclass(frozen=True)
+class Newton(Kernel):
+    """A group with its pairs and drivers as constraints: outer pairs, inner pairs, drivers, in the group's order."""
+
+    constraints: tuple[Constraint, ...]
+    start: State | None = None
+    trace: BranchTrace | None = None
+    passive: bool = False
+    order: Mapping[str, int] = field(default_factory=dict)
+
+    near = NEAR_SINGULAR
+
+    @property
+    def blurred(self) -> float:
+        """With passive constraints more than near a dead position: there motion follows from equations that agree to
+        the last bit of float64 only, which angles lose by 1/margin and accelerations by its square."""
+        return BLURRED_PASSIVE if self.passive else self.near
+
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage) -> Newton:
+        """The group with its numbers, which may be arrays, not yet assembled."""
+        pairs = tuple(PAIRS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
+        drives = tuple(Driven.of(driver, linkage) for driver in group.drivers)
+        size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *group.known})])
+        size = size if np.any(size > 0) else reach(linkage)
+        rows = sum(len(c.lengths) for c in (*pairs, *drives))
+        order = {link: k for k, link in enumerate(group.links)}
+        return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
+
+    def rebind(self, linkage: Linkage) -> Newton:
+        return replace(Newton.of(self.group.rebind(linkage), linkage), start=self.start, trace=self.trace)
+
+    @property
+    def followed(self) -> BranchTrace | None:
+        return self.trace
+
+    @cached_property
+    def by_angle(self) -> bool:
+        """Whether the angles follow from equations of angles alone: then there is one assembly, wherever one starts."""
+        still = {name: Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1)) for name in self._all}
+        rows = []
+        for constraint in self.constraints:
+            of_links = constraint.jacobian_rows(still) if constraint.kind in "GPD" else {}
+            for k, length in enumerate(constraint.lengths):
+                if not length and of_links:
+                    rows.append(
+                        [float(np.ravel(of_links[n][k][1])[0]) if n in of_links else 0.0 for n in self.group.links]
+                    )
+        return bool(rows) and int(np.linalg.matrix_rank(np.array(rows))) == len(self.group.links)
+
+    @property
+    def _all(self) -> set[str]:
+        return {link for constraint in self.constraints for link in constraint.links} | set(self.group.links)
+
+    @cached_property
+    def _scale(self) -> Real:
+        return _stacked([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
+
+    @cached_property
+    def _columns(self) -> Real:
+        return _stacked([self.size, self.size, 1.0] * len(self.group.links))
+
+    @property
+    def unit(self) -> Real:
+        """The size on an axis of its own."""
+        return _stacked([self.size])
+
+    def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
+        """Rows of all pairs as a matrix (..., rows, unknowns), without dimension."""
+        matrix: Real = np.zeros_like(like, shape=(*np.shape(like), self._scale.shape[-1], 3 * len(self.group.links)))
+        row = 0
+        for constraint, of_links in zip(self.constraints, parts, strict=True):
+            for link, lines in of_links.items():
+                if link in self.order:
+                    at = 3 * self.order[link]
+                    for k, (c, m) in enumerate(lines):
+                        constant = isinstance(c, complex)  # along an axis, or nothing
+                        if not constant or c.real:
+                            matrix[..., row + k, at] = c.real
+                        if not constant or c.imag:
+                            matrix[..., row + k, at + 1] = c.imag
+                        matrix[..., row + k, at + 2] = m
+            row += len(constraint.lengths)
+        matrix = matrix * (self._scale[..., :, None] * self._columns[..., None, :])
+        return matrix  # noqa: RET504  typed
+
+    def matrix(self, poses: Poses) -> Real:
+        """The Jacobian without dimension, (..., rows, unknowns)."""
+        x = poses[self.group.links[0]].x
+        return self._fill(self._rows(poses), x.real + 0 * self.size)
+
+    def _rows(self, poses: Poses) -> list[Mapping[str, Sequence[JacobianRow]]]:
+        return [c.jacobian_rows(poses) for c in self.constraints]
+
+    def residuals(self, poses: Poses, drives: Drives) -> Real:
+        """What is short of closing, without dimension, (..., rows)."""
+        return _stacked([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
+
+    def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
+        """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
+        shape = np.shape(poses[self.group.links[0]].x)
+        rows: list[Real] = []
+        nothing = np.zeros(shape)
+        for constraint in self.constraints:
+            total: list[Real] = [nothing] * len(constraint.lengths)
+            outer = [link for link in constraint.links if link not in self.order]
+            of_links = constraint.jacobian_rows(poses) if outer else {}
+            for link, lines in of_links.items():
+                if link not in self.order:
+                    v, w = motion[link]
+                    total = [t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
+                             for t, (c, m) in zip(total, lines, strict=True)]  # fmt: skip
+            rows += total
+        return _stacked(rows) * self._scale
+
+    def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
+        """Derivative of each row that the drivers ask for, without dimension."""
+        if not self.group.drivers:
+            return np.zeros((*shape, self._scale.shape[-1]))
+        rows = [value for c in self.constraints for value in c.asked(drives, order)]
+        return _stacked([np.zeros(shape), *rows])[..., 1:] * self._scale
+
+    def poses_of(self, state: State) -> dict[str, Pose]:
+        """A state as poses."""
+        x, z, unwrapped = state.x, unit(state.unwrapped), state.unwrapped
+        return {link: Pose(x[..., k], z[..., k], unwrapped[..., k]) for link, k in self.order.items()}
+
+    def close(self, start: State, poses: Poses, drives: Drives, rounds: int = ROUNDS) -> tuple[State, Real]:
+        """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
+        state = start
+        if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
+            state = State(exactly(start.x), exactly(start.unwrapped))
+        size = np.full(np.shape(start.x)[:-1], np.inf)
+        for _ in range(rounds):
+            near = size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)
+            everything = {**poses, **self.poses_of(state)}
+            step = solve(rounded(self.matrix(everything)), -rounded(self.residuals(everything, drives)))
+            size = np.max(np.abs(step), axis=-1)
+            state = state.moved(step, self.unit)
+            if bool(np.all(near | ~np.isfinite(size))):
+                break
+        return state, size
+
+    def begun(self, poses: Poses, q: Real, drives: Drives) -> tuple[State, Real]:
+        """States from which Newton's method begins, and how far q is beyond where the group goes (see BranchTrace)."""
+        if self.trace is not None:
+            start, residual = self.trace.start(q)
+            nothing = (residual > 0)[..., None]  # is there to be found
+            return State(start.x, np.where(nothing, np.nan, start.unwrapped)), residual
+        assert self.start is not None
+        shape = (*np.shape(q), len(self.group.links))
+        start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
+        return start, np.full(np.shape(q), -1.0)
+
+    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+        start, residual = self.begun(poses, q, drives)
+        with np.errstate(all="ignore"):
+            state, step = self.close(start, poses, drives)
+        dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))
+        if self.trace is not None:  # in a dead position that it passes the group is where its way leads through
+            dead, side = self.trace.in_dead(q, ROUNDINGS**2 * roundoff(start.unwrapped)), self.trace.side(q)
+            through = dead[..., None]
+            state = State(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
+        own = self.poses_of(state)
+        everything = {**poses, **own}
+        matrix = self.matrix(everything)
+        margin = least_over_largest(matrix)
+        missed = np.max(np.abs(self.residuals(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
+        lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
+        slack = np.full(np.shape(q), ROUNDINGS * roundoff(state.unwrapped))
+        residual = np.where(
+            lost & (residual < -slack), np.maximum(np.where(np.isfinite(step), step, 1.0), missed), residual
+        )
+        residual = np.where(dead, 0.0, residual)
+        residual = np.where(
+            margin < (TRUNCATED if self.passive else SINGULAR), np.where(residual > slack, residual, 0.0), residual
+        )
+        det = signed_determinant(matrix) * margin * side
+        return Placement(
+            tuple(own[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
+        )  # fmt: skip
+
+    def _all_poses(self, at: Placement, poses: Poses) -> dict[str, Pose]:
+        return {**poses, **dict(zip(self.group.links, at.poses, strict=True))}
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        everything = self._all_poses(at, poses)
+        return self.rates_at(everything, self.matrix(everything), at.det, rates, drives)
+
+    def rates_at(self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        """Velocities of its links from the poses of all links and the matrix there; nan where det is."""
+        known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
+        found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
+        return tuple(Rate(v, w) for v, w in self._by_link(found, det))
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        everything = self._all_poses(at, poses)
+        return self.accelerations_at(everything, self.matrix(everything), at.det, rates, accels, drives)
+
+    def accelerations_at(
+        self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        """Accelerations of its links, likewise; rates holds those of its own links too."""
+        known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
+        bend = _stacked(self.velocity_terms(everything, rates)) * self._scale
+        found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
+        return tuple(Accel(a, e) for a, e in self._by_link(found, det))
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
+        """Second derivative of each row when no link accelerates."""
+        return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
+
+    def _by_link(self, found: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
+        """The unknowns with their dimensions, of each link; nan where det is."""
+        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
+        for k in range(0, found.shape[-1], 3):
+            yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
+
+    def _by_constraint(self, found: Sequence[Real]) -> list[tuple[Constraint, list[Real]]]:
+        """The multipliers of each pair and driver, from those of each row."""
+        each, row = [], 0
+        for constraint in self.constraints:
+            each.append((constraint, list(found[row : row + len(constraint.lengths)])))
+            row += len(constraint.lengths)
+        return each
+
+    def _apart(self, everything: Poses, found: Sequence[Real]) -> dict[str, Wrench]:
+        """Forces on the group's links that follow from those of the teeth and do no work."""
+        total: dict[str, Wrench] = {}
+        for constraint, here in self._by_constraint(found):
+            apart = constraint.apart(everything, here)
+            if apart is None:
+                continue
+            point, force = apart
+            for link, sense in ((constraint.links[1], 1.0), (constraint.links[0], -1.0)):
+                if link in self.order:
+                    more = Wrench(sense * force, sense * cross(point - everything[link].x, force))
+                    total[link] = total[link] + more if link in total else more
+        return total
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
+        everything = self._all_poses(at, poses)
+        under = self._transposed(at, everything)
+        found = under(applied)
+        more = self._apart(everything, found)
+        if more:
+            both = zip(self.group.links, applied, strict=True)
+            found = under([wrench + more[link] if link in more else wrench for link, wrench in both])
+        return self.given_by(everything, self._by_constraint(found))
+
+    def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
+        """What gives the multipliers of all rows under wrenches on the group's links."""
+        pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
+        turned = np.swapaxes(pushes, -1, -2)
+
+        def under(wrenches: Sequence[Wrench]) -> Sequence[Real]:
+            borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
+            found = solve(turned, -_stacked(borne) * self._columns)
+            found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
+            return [found[..., row] for row in range(found.shape[-1])]
+
+        return under
+
+    def given_by(self, everything: Poses, multipliers: Sequence[tuple[Constraint, list[Real]]]) -> GroupReactions:
+        """Reactions from the multipliers of each pair and driver."""
+        reaction = [constraint.reaction(everything, here) for constraint, here in multipliers]
+        outer, inner = len(self.group.outer), len(self.group.inner)
+        for k, pair in enumerate(self.group.outer):
+            if pair.i in self.order:
+                reaction[k] = reaction[k].opposite
+        drives = {
+            driver.link: here[0]
+            for driver, (_, here) in zip(self.group.drivers, multipliers[outer + inner :], strict=True)
+        }
+        return GroupReactions(tuple(reaction[:outer]), tuple(reaction[outer : outer + inner]), drives)
+
+
+def _stacked(values: Sequence[Any]) -> Real:
+    """Numbers, or arrays of them, on a last axis."""
+    if len({np.shape(value) for value in values}) > 1:
+        values = np.broadcast_arrays(*values)
+    return np.stack(values, axis=-1)

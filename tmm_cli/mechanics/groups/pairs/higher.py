@@ -1,0 +1,333 @@
+"""Two toothed wheels on a common carrier, fixed or turning (planetary), in outer or inner mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.pairs.lower import Guided, HigherPair, JacobianRow, Teeth, axis
+from tmm_cli.mechanics.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.mechanics.linkage import Linkage, Slide
+from tmm_cli.mechanics.numerics.tolerances import AT_EDGE_OF_CAM, NO_JUMP_OF_CAM
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, pi, unit
+from tmm_cli.mechanics.structure.group import Pair
+
+
+@dataclass(frozen=True)
+class Gear(Teeth):
+    """Row: angle of j from the carrier less offset and ratio times that of i.
+
+    The teeth push at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the wheels i and j, where
+    both wheels have one velocity; across the line of axes first, the part along it (`pressure`) afterwards. That pushes
+    an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one. So the force on j is from
+    axis i to axis j in an outer mesh and the other way in an inner one, whichever is the smaller.
+    """
+
+    axis_i: complex  # on the carrier, m
+    axis_j: complex
+
+    kind = "G"
+    away = 1j
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Gear:
+        mesh = pair.mesh
+        assert mesh is not None
+        return cls(pair.name, mesh, axis(linkage, mesh.i, mesh.carrier), axis(linkage, mesh.j, mesh.carrier))
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (False,)
+
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        mesh = self.mesh
+        i, j, c = (poses[name].turned for name in (mesh.i, mesh.j, mesh.carrier))
+        return ((j - c) - mesh.ratio * (i - c) - mesh.offset,)
+
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
+        ratio = self.mesh.ratio
+        return {
+            self.mesh.i: ((0j, -ratio),), self.mesh.j: ((0j, 1.0),), self.mesh.carrier: ((0j, ratio - 1.0),),
+        }  # fmt: skip
+
+    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
+        mesh = self.mesh
+        if link == mesh.carrier:
+            return (angles[mesh.j] - mesh.ratio * angles[mesh.i] - mesh.offset) / (1 - mesh.ratio)
+        carrier = angles[mesh.carrier]
+        if link == mesh.j:
+            return carrier + mesh.ratio * (angles[mesh.i] - carrier) + mesh.offset
+        return carrier + (angles[mesh.j] - carrier - mesh.offset) / mesh.ratio
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        return (np.zeros(np.shape(rates[self.mesh.i].w)),)
+
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
+        ratio, carrier = self.mesh.ratio, poses[self.mesh.carrier]
+        here = (self.axis_i - ratio * self.axis_j) / (1 - ratio)
+        line = (self.axis_j - self.axis_i) / abs(self.axis_j - self.axis_i)
+        return carrier.at(here), 1j * (line * carrier.z)
+
+
+# A toothed wheel that rolls on a rack; both are held by a common carrier.
+
+
+@dataclass(frozen=True)
+class Rack(Teeth):
+    """Row: run of the rack on the carrier less offset and ratio (m a radian) times the angle of the wheel from it.
+
+    The slide may have the rack as its runner or as its carrier. The teeth push at the pitch point, where wheel and rack
+    have one velocity: the wheel's radius |ratio| away from its axis, square to the guide.
+    """
+
+    slide: Slide
+    axis: complex  # of the wheel, on the carrier, m
+
+    kind = "K"
+    away = -1j
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Rack:
+        mesh = pair.mesh
+        assert mesh is not None
+        return cls(pair.name, mesh, linkage.slide(mesh.slide), axis(linkage, mesh.i, mesh.carrier))
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (True,)
+
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        here = Guided.at(self.slide, poses)
+        turned = poses[self.mesh.i].turned - poses[self.mesh.carrier].turned
+        return (dot(here.u, here.off) - self.mesh.ratio * turned - self.mesh.offset,)
+
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
+        here = Guided.at(self.slide, poses)
+        rows = {name: [row] for name, row in here.jacobian_rows(self.slide, here.u).items()}
+        c, m = rows[self.mesh.carrier][0]
+        rows[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
+        return rows | {self.mesh.i: [(0j, -self.mesh.ratio)]}
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.bend(self.slide, rates)),)
+
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
+        """The pitch point, and the direction in which the rack's run grows."""
+        here = Guided.at(self.slide, poses)
+        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
+
+
+# A cam and its follower, given by the follower's law of motion instead of the shape of the cam.
+
+
+@dataclass(frozen=True)
+class Cam(HigherPair):
+    """Row: run (or angle) of the follower on the carrier less offset and the law of the cam's angle from the carrier.
+
+    The carrier is the frame, or a moving link with the guide of the follower: then the cam changes a length of it. The
+    law does not say where cam and follower touch. A sliding follower is taken as flat-faced: it touches the cam
+    ds/da from the cam's axis and the force is along its guide (I. I. Artobolevsky, ch. 26). A swinging one is loaded by
+    a couple and the cam by the couple of the same power.
+    """
+
+    slide: Slide | None
+    axis: complex  # of the cam, on the carrier, m
+
+    kind = "C"
+
+    @classmethod
+    def of(cls, pair: Pair, linkage: Linkage) -> Cam:
+        mesh = pair.mesh
+        assert mesh is not None
+        slide = linkage.slide(mesh.slide) if mesh.slide else None
+        return cls(pair.name, mesh, slide, axis(linkage, mesh.i, mesh.carrier))
+
+    @property
+    def lengths(self) -> tuple[bool, ...]:
+        return (self.slide is not None,)
+
+    def _law(self, poses: Poses) -> tuple[Real, Real, Real]:
+        assert self.mesh.law is not None
+        return self.mesh.law(poses[self.mesh.i].turned - poses[self.mesh.carrier].turned)
+
+    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+        want = self._law(poses)[0] + self.mesh.offset
+        if self.slide is None:
+            residual = poses[self.mesh.j].z * np.conj(unit(want))
+            return (np.arctan2(residual.imag, residual.real),)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.off) - want,)
+
+    def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
+        slope = self._law(poses)[1]
+        rows: dict[str, JacobianRow] = {self.mesh.i: (0j, -slope), self.mesh.carrier: (0j, slope)}
+        if self.slide is None:
+            own: Mapping[str, JacobianRow] = {self.mesh.j: (0j, 1.0)}
+        else:
+            here = Guided.at(self.slide, poses)
+            own = here.jacobian_rows(self.slide, here.u)
+        for name, (place, angle) in own.items():
+            other = rows.get(name, (0j, 0.0))
+            rows[name] = (place + other[0], angle + other[1])
+        return {name: (row,) for name, row in rows.items()}
+
+    def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
+        bend = -self._law(poses)[2] * (rates[self.mesh.i].w - rates[self.mesh.carrier].w) ** 2
+        if self.slide is None:
+            return (bend,)
+        here = Guided.at(self.slide, poses)
+        return (dot(here.u, here.bend(self.slide, rates)) + bend,)
+
+    def contact(self, poses: Poses) -> tuple[Vector, Vector]:
+        """Where a flat-faced follower touches, and the direction in which its run grows."""
+        assert self.slide is not None
+        here = Guided.at(self.slide, poses)
+        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        return poses[self.mesh.carrier].at(self.axis) - 1j * self._law(poses)[1] * forward, forward
+
+    def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
+        return self.jacobian_rows(poses) if self.slide is None else super().pushes(poses)
+
+    def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
+        if self.slide is not None:
+            return super().reaction(poses, multipliers)
+        n = multipliers[0]
+        return PairReaction(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
+
+
+# Laws of motion of a cam's follower: rise, dwell and return, piece by piece over a turn of the cam.
+#
+# A piece of rise h over the angle d with x = (a - start)/d from 0 to 1 follows s = h f(x). Sources of f: I. I.
+# Artobolevsky, Theory of Mechanisms and Machines, ch. 25 (parabolic, cosine, sine); R. L. Norton, Cam Design, ch. 3
+# (3-4-5 and 4-5-6-7 polynomials).
+
+
+Rise = Callable[[Any], tuple[Any, Any, Any]]
+TAU = 2 * np.pi
+
+
+def _linear(x: Any) -> tuple[Any, Any, Any]:
+    return x, 1 + np.zeros_like(x), np.zeros_like(x)
+
+
+def _parabolic(x: Any) -> tuple[Any, Any, Any]:
+    early = x < 0.5 - AT_EDGE_OF_CAM
+    rest = 1 - x
+    return (
+        np.where(early, 2 * x * x, 1 - 2 * rest * rest),
+        np.where(early, 4 * x, 4 * rest),
+        np.where(early, 4.0, -4.0) + np.zeros_like(x),
+    )
+
+
+def _cosine(x: Any) -> tuple[Any, Any, Any]:
+    half = pi(x)
+    return (1 - np.cos(half * x)) / 2, half / 2 * np.sin(half * x), half**2 / 2 * np.cos(half * x)
+
+
+def _sine(x: Any) -> tuple[Any, Any, Any]:
+    whole = 2 * pi(x)
+    # 2 sin^2(pi x) is 1 - cos(2 pi x), which rounds to zero before the follower rests
+    return x - np.sin(whole * x) / whole, 2 * np.sin(pi(x) * x) ** 2, whole * np.sin(whole * x)
+
+
+def _polynomial5(x: Any) -> tuple[Any, Any, Any]:
+    return (
+        x**3 * (10 + x * (-15 + 6 * x)),
+        30 * x * x * (1 - x) ** 2,
+        60 * x * (1 - x) * (1 - 2 * x),
+    )
+
+
+def _polynomial7(x: Any) -> tuple[Any, Any, Any]:
+    return (
+        x**4 * (35 + x * (-84 + x * (70 - 20 * x))),
+        140 * x**3 * (1 - x) ** 3,
+        420 * x * x * (1 - x) ** 2 * (1 - 2 * x),
+    )
+
+
+SHAPES: dict[str, Rise] = {
+    "linear": _linear, "parabolic": _parabolic, "cosine": _cosine, "sine": _sine, "3-4-5": _polynomial5,
+    "4-5-6-7": _polynomial7,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A rise (m or rad, negative for a return, zero for a dwell) over an angle of the cam (rad)."""
+
+    over: float
+    rise: float
+    shape: str = "sine"
+
+
+@dataclass(frozen=True)
+class CamLaw:
+    """Pieces one after another from the cam's angle `start` (rad); together a full turn, and back where they began.
+
+    sense: in which the cam turns. Where pieces meet, the acceleration is that of the piece which then begins.
+    """
+
+    pieces: tuple[Piece, ...]
+    start: float = 0.0
+    sense: int = 1
+
+    @cached_property
+    def _mirrored(self) -> CamLaw:
+        """The law by the angle that grows clockwise: all laws are symmetric about the middle of their piece."""
+        return CamLaw(tuple(replace(p, rise=-p.rise) for p in reversed(self.pieces)), -self.start)
+
+    @cached_property
+    def _table(self) -> tuple[Real, Real, Real, Real]:
+        """Of each piece: where it starts (rad, from the law's start), its angle, the run there, its rise.
+
+        They are (pieces,), or (pieces, variants) where they vary.
+        """
+        both = np.broadcast_arrays(*(p.over for p in self.pieces), *(p.rise for p in self.pieces))
+        over, rise = np.stack(both[: len(self.pieces)]), np.stack(both[len(self.pieces) :])
+        return np.cumsum(over, axis=0) - over, over, np.cumsum(rise, axis=0) - rise, rise
+
+    def jumps(self) -> tuple[float, ...]:
+        """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
+        slopes = [SHAPES[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
+        ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
+        most = max(abs(piece.rise) for piece in self.pieces)
+        found = [
+            float(np.mod(start + self.start, TAU))
+            for start, now, before in zip(self._table[0], ends, [ends[-1], *ends[:-1]], strict=True)
+            if abs(now[0] - before[1]) > NO_JUMP_OF_CAM * most
+        ]
+        return tuple(sorted(found))
+
+    def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
+        """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
+        if self.sense < 0:
+            value, first, second = self._mirrored(-angle)
+            return value, -first, second
+        turn = 2 * pi(angle)
+        turned, ahead = np.mod(angle - self.start, turn), np.mod(angle - self.start + AT_EDGE_OF_CAM, turn)
+        turned = np.where(ahead < turned, 0.0, turned)  # a turn is over but for rounding
+        starts, overs, lows, rises = self._table
+        passed = np.searchsorted(starts, ahead, side="right") if starts.ndim == 1 else np.sum(starts <= ahead, axis=0)
+        number = np.clip(passed - 1, 0, len(self.pieces) - 1)
+        over, rise, start, low = (_of(part, number) for part in (overs, rises, starts, lows))
+        x = np.clip((turned - start) / over, 0.0, 1.0)
+        value, first, second = (np.zeros(np.shape(turned)) for _ in range(3))
+        shapes = [p.shape for p in self.pieces]
+        for shape in dict.fromkeys(shapes):
+            here = np.array([name == shape for name in shapes])[number]
+            s, ds, dds = SHAPES[shape](x)
+            value, first, second = np.where(here, s, value), np.where(here, ds, first), np.where(here, dds, second)
+        return low + rise * value, rise / over * first, rise / over**2 * second
+
+
+def _of(part: Real, number: Real) -> Real:
+    """Numbers of the pieces with these numbers."""
+    return part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]

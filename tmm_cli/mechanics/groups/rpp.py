@@ -1,0 +1,107 @@
+"""RPP: link a hangs on A; b slides along a guide of a known link and along a.
+
+Both angles follow from the known link; a's place from A; b lies where the two guides meet: every result is divided by
+det, the sine of the angle between them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import (
+    Dyad,
+    HingeEnd,
+    SliderEnd,
+    line,
+    meet,
+    parallel,
+    slide_acceleration,
+    slide_rate,
+    split,
+)
+from tmm_cli.mechanics.groups.state import (
+    Accel,
+    Accels,
+    Drives,
+    GroupReactions,
+    PairReaction,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+)
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, unit
+
+
+@dataclass(frozen=True)
+class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
+    """Two lines: one assembly only."""
+
+    type = "RPP"
+    assemblies = 1
+
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, run = self.parts
+        Q, v = line(b, poses)
+        zb = poses[b.known].z * unit(b.turned)
+        za = zb * unit(-run.turned)
+        A = a.place(poses)
+        pose_a = Pose(A - a.here * za, za)
+        u = za * unit(run.direction)
+        # b's origin runs along both guides
+        origin, det = meet(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
+        residual, slack = parallel(det)
+        return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), residual, slack)
+
+    def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector]:
+        """Directions of the guides on a and on the known link."""
+        _, b, run = self.parts
+        return at.a.z * unit(run.direction), line(b, poses)[1]
+
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, _ = self.parts
+        u, v = self._frame(at, poses)
+        w = rates[b.known].w
+        vA = a.velocity(poses, rates)
+        rate_a = Rate.through(vA, w, a.here * at.a.z)
+        by_a = rate_a.at(at.b.x - at.a.x)
+        by_g = rates[b.known].at(at.b.x - poses[b.known].x)
+        return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        a, b, _ = self.parts
+        u, v = self._frame(at, poses)
+        w, e = rates[b.known].w, accels[b.known].e
+        aA = a.acceleration(poses, rates, accels)
+        accel_a = Accel.through(aA, e, w, a.here * at.a.z)
+        rate_a, rate_b = (rates[link] for link in self.group.links)
+        by_a = slide_acceleration(at.b.x, rate_b.v, (at.a.x, u, rate_a, accel_a))
+        by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
+        return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
+        on_a, on_b = applied
+        a, b, run = self.parts
+        u, v = self._frame(at, poses)
+        inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link
+        RA = inner - on_a.force
+        # a carries the opposite of `inner` and of its couple, both at the running point
+        arm_a = a.here * at.a.z
+        on_own = run.there * at.a.z if not run.runs_here else at.b.at(run.here) - at.a.x
+        couple = on_a.about(arm_a) - cross(on_own - arm_a, inner)
+        arm = run.runner_arm(at.b, {run.known: at.a})
+        moment = on_b.about(arm) + couple
+        reaction = b.runner_arm(at.b, poses) - arm
+        return GroupReactions(
+            (PairReaction(RA), PairReaction(guide, -moment - cross(reaction, guide))), (PairReaction(inner, couple),)
+        )

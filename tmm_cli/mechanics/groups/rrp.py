@@ -1,0 +1,113 @@
+"""RRP: link a hangs on A and is hinged to b at C; b slides along a guide of a known link.
+
+With ra = C - A and u along the guide every result is divided by det = u . ra.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Dyad, HingeEnd, SliderEnd, line
+from tmm_cli.mechanics.groups.state import (
+    Accel,
+    Accels,
+    Drives,
+    GroupReactions,
+    PairReaction,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+)
+from tmm_cli.mechanics.numerics.tolerances import ROUNDINGS
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, roundoff, square, unit
+
+
+@dataclass(frozen=True)
+class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
+    """A circle and a line: the sign tells on which side of the foot of A on the guide the hinge C lies."""
+
+    type = "RRP"
+
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        a, b, c = self.parts
+        A = a.place(poses)
+        Q, u = line(b, poses)
+        zb = poses[b.known].z * unit(b.turned)
+        arm = c.there - a.here
+        la = np.abs(arm)
+        start = Q + (c.here - b.here) * zb  # C runs on the parallel line through here
+        off = A - start
+        y, run = cross(u, off), dot(u, off)
+        half = self.sign * np.sqrt(np.maximum((la - y) * (la + y), 0))
+        ra = u * (half - 1j * y)
+        za = ra * (np.conj(arm) / (la * la))
+        C = start + u * (run + half)
+        residual = np.abs(y) - la
+        slack = roundoff(y) * (ROUNDINGS * la + 2 * (np.abs(A) + np.abs(start)))
+        return Placement(
+            (Pose(A - a.here * za, za), Pose(C - c.here * zb, zb)), half, np.abs(half) / la, residual, slack
+        )
+
+    def _arms(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
+        """ra, u, and C from the origin of the guide's link."""
+        a, b, c = self.parts
+        _, u = line(b, poses)
+        return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
+
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        a, b, c = self.parts
+        Q, u = line(b, poses)
+        A = a.place(poses)
+        start = Q + (c.here - b.here) * poses[b.known].z * unit(b.turned)
+        away: Real = cross(u, a.velocity(poses, rates) - rates[b.known].at(A - poses[b.known].x))
+        rate: Real = np.sign(cross(u, A - start)) * away
+        return rate
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        a, b, c = self.parts
+        ra, u, onto = self._arms(at, poses)
+        vA = a.velocity(poses, rates)
+        carried = rates[b.known].at(onto)
+        w = carried - vA
+        wa = cross(u, w) / at.det
+        vC = carried - u * (dot(w, ra) / at.det)
+        wb = rates[b.known].w
+        return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vC, wb, c.here * at.b.z)
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        a, b, c = self.parts
+        ra, u, onto = self._arms(at, poses)
+        wa, wb = rates[self.group.links[0]].w, rates[b.known].w
+        vC = rates[self.group.links[1]].at(c.here * at.b.z)
+        sliding = dot(u, vC - rates[b.known].at(onto))
+        aA = a.acceleration(poses, rates, accels)
+        carried = accels[b.known].at(onto, wb) + 2j * wb * sliding * u
+        w = carried - (aA - wa * wa * ra)
+        ea = cross(u, w) / at.det
+        aC = carried - u * (dot(w, ra) / at.det)
+        eb = accels[b.known].e
+        return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
+        on_a, on_b = applied
+        a, b, c = self.parts
+        ra, u, _ = self._arms(at, poses)
+        tau = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
+        rest = on_a.force + on_b.force + tau
+        normal = ra * (-dot(rest, u) / at.det)
+        guide = 1j * u * (-dot(rest + normal, 1j * u))
+        inner = -(guide + on_b.force)
+        arm_c = c.here * at.b.z
+        couple = -on_b.about(arm_c) - cross(b.runner_arm(at.b, poses) - arm_c, guide)
+        return GroupReactions(
+            (PairReaction(tau + normal, tangential=tau, normal=normal), PairReaction(guide, couple)),
+            (PairReaction(inner),),
+        )

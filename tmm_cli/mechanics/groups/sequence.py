@@ -1,0 +1,247 @@
+"""The groups one after another: places of all links, and how these change with the driver's place.
+
+Every place of the driver is found alone. First and second derivatives by it are the transfer functions; with the
+driver's speed kinematics/motion.py makes velocities and accelerations of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.state import Accel, Drive, Drives, Placement, Pose, Rate
+from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, unit
+
+
+@dataclass(frozen=True)
+class DriverMotion:
+    """How the driver moves: from `start` at t = 0 with a rate and an acceleration, both in its sense."""
+
+    start: float
+    rate: float
+    acceleration: float
+    sense: int
+
+    def time(self, q: Real) -> Real:
+        """t (s) at which the driver comes to q; nan where it stops before."""
+        gone = self.sense * (q - self.start)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            root = np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
+            return np.where(gone == 0, 0.0, 2 * gone / (self.rate + root))
+
+    def accelerated(self, q: Real) -> Real:
+        """d2q/dt2 at q, with its sign."""
+        return np.zeros(np.shape(q)) + self.sense * self.acceleration
+
+    def speed(self, q: Real) -> Real:
+        """dq/dt at q, with its sign; nan where the driver stops before."""
+        if self.acceleration == 0:
+            return np.zeros(np.shape(q)) + self.sense * self.rate
+        with np.errstate(invalid="ignore"):
+            gone = self.sense * (q - self.start)
+            return self.sense * np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
+
+
+class LawOfMotion(Protocol):
+    """Speed, acceleration (with their signs) and time of a driver by its place."""
+
+    def speed(self, q: Real) -> Real: ...
+    def accelerated(self, q: Real) -> Real: ...
+    def time(self, q: Real) -> Real: ...
+
+
+@dataclass(frozen=True)
+class LinkStates:
+    """Links at the places q of the first driver. Arrays are (positions,); nan where `placed` or `moving` is False.
+
+    poses, and first and second, their derivatives by q, are by the names of links; placements one a group. placed: all
+    groups are assembled; moving: and none of them is dead. dead, missing: positions that a group, by its title, is the
+    first to lose. drives say where all drivers are. order: 0 places only, 1 first derivatives too, 2 second ones too;
+    asking for what was not computed is NotComputed.
+    """
+
+    linkage: Linkage
+    kernels: tuple[Kernel, ...]
+    q: Real
+    poses: Mapping[str, Pose]
+    first: Mapping[str, Rate]
+    second: Mapping[str, Accel]
+    placements: tuple[Placement, ...]
+    placed: Real
+    moving: Real
+    dead: Mapping[str, Real] = field(default_factory=dict)
+    missing: Mapping[str, Real] = field(default_factory=dict)
+    drives: Mapping[str, Drive] = field(default_factory=dict)
+    order: int = 2
+
+    def spot(self, point: str) -> Vector:
+        """Place of a named point, m."""
+        link = self.linkage.owner(point)
+        return self.poses[link].at(self.linkage.local(link, point))
+
+    def angle(self, name: str) -> Real:
+        """Angle of a link, rad: in -pi..pi, of a crank that is driven as it is."""
+        own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
+        return self.drives[name].value if own else np.angle(self.poses[name].z)
+
+    def run(self, slide: Slide) -> Real:
+        """Run in a sliding pair, m."""
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        run: Real = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
+        return run
+
+    def slope(self, slide: Slide) -> Real:
+        """First transfer function of the run in a sliding pair."""
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        arm = runner.at(slide.at) - carrier.x
+        relative = self.first[slide.runner].at(slide.at * runner.z) - self.first[slide.carrier].at(arm)
+        slope: Real = dot(carrier.z * unit(slide.direction), relative)
+        return slope
+
+
+class NotComputed(LookupError):  # noqa: N818  it says what is the matter
+    """Velocities or accelerations of a motion that was computed without them."""
+
+
+class Absent(dict[str, Any]):
+    """In the place of what was not computed."""
+
+    def __init__(self, what: str) -> None:
+        super().__init__()
+        self.what = what
+
+    def __missing__(self, link: str) -> Any:
+        raise NotComputed(f"{self.what} were not computed")
+
+
+def towards(kernels: Iterable[Kernel], links: Iterable[str]) -> tuple[Kernel, ...]:
+    """The groups that lie on the way from the drivers to some links, in solving order."""
+    wanted, kept = set(links), []
+    for kernel in reversed(tuple(kernels)):
+        group = kernel.group
+        if not wanted.isdisjoint(group.links):
+            pairs = (*group.outer, *group.inner)
+            wanted.update(link for pair in pairs for link in (pair.i, pair.j))
+            wanted.update(pair.mesh.carrier for pair in pairs if pair.mesh is not None)
+            wanted.update(link for driver in group.drivers for link in (driver.link, driver.base))
+            kept.append(kernel)
+    return tuple(reversed(kept))
+
+
+def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
+    """The frame's pose and its rest, one value a position."""
+    zero, one = np.zeros(np.shape(q), dtype=complex), np.ones(np.shape(q), dtype=complex)
+    return Pose(zero, one, zero.real), Rate(zero, zero.real), Accel(zero, zero.real)
+
+
+def driven_state(linkage: Linkage, driver: Driver, drive: Drive) -> tuple[Pose, Rate, Accel]:
+    """Pose of a link that is driven from the frame, and its transfer functions."""
+    q = drive.value
+    zero = np.zeros(np.shape(q))
+    if driver.kind == "turn":
+        pivot, here = linkage.local(FRAME, driver.joint), linkage.local(driver.link, driver.joint)
+        z = unit(q)
+        arm = -here * z
+        pose, v, bend, w = Pose(pivot + arm, z, q), 1j * arm, -arm, zero + 1
+    else:
+        slide = linkage.slide(driver.joint)
+        if slide.runner == driver.link:
+            z = unit(zero + slide.turned)
+            u = unit(slide.direction)
+            origin = slide.through + q * u - slide.at * z
+        else:
+            z = unit(zero - slide.turned)
+            u = -unit(slide.direction) * z
+            origin = slide.at + q * u - slide.through * z
+        pose, v, bend, w = Pose(origin, z), zero + u, zero + 0j, zero
+    first, second = drive.first, drive.second
+    return pose, Rate(v * first, w * first), Accel(bend * first**2 + v * second, w * second)
+
+
+def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
+    """Where each driver is when the first one is at q, by the driven link.
+
+    Several drivers move by their own speeds and pass together through the places of the sketch; their speeds are those
+    of that moment.
+    """
+    zero = np.zeros(np.shape(q))
+    found = {linkage.driver.link: Drive(q, zero + 1, zero)}
+    if linkage.others:
+        lead = linkage.driver
+        law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+        time, speed = law.time(q), law.speed(q)
+        for driver in linkage.others:
+            value = driver.at + driver.sense * time * (driver.rate + driver.acceleration * time / 2)
+            first = driver.sense * (driver.rate + driver.acceleration * time) / speed
+            second = (driver.sense * driver.acceleration - first * lead.sense * lead.acceleration) / speed**2
+            found[driver.link] = Drive(value, first, second)
+    return found
+
+
+def link_states(
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, order: int = 2, *, blank: bool = True,
+    drives: Drives | None = None,
+) -> LinkStates:  # fmt: skip
+    """All links at the first driver's places q (rad or m), each found alone.
+
+    Of the given groups only, which must include those they hang on (see towards); order: 0 places alone, 1 with
+    velocities, 2 with accelerations.
+
+    A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it. blank:
+    whether there are no numbers in such positions, but nan; else they are what the formulas give. drives: where the
+    drivers are, if by another parameter than q.
+    """
+    kernels = tuple(kernels)
+    q = np.atleast_1d(q)
+    poses: dict[str, Pose] = {}
+    first: dict[str, Rate] = {} if order > 0 else Absent("velocities")
+    second: dict[str, Accel] = {} if order > 1 else Absent("accelerations")
+
+    def put(link: str, pose: Pose, rate: Rate, accel: Accel) -> None:
+        poses[link] = pose
+        if order > 0:
+            first[link] = rate
+        if order > 1:
+            second[link] = accel
+
+    put(FRAME, *frame_state(q))
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        drives = drives_at(linkage, q) if drives is None else drives
+        for driver in linkage.cranks:
+            put(driver.link, *driven_state(linkage, driver, drives[driver.link]))
+    placed = np.ones(np.shape(q), dtype=bool)
+    moving = placed.copy()
+    placements, dead, missing = [], {}, {}
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        for kernel in kernels:
+            at = kernel.place(poses, q, drives)
+            sound = at.assembled & np.isfinite(sum(pose.x + pose.z for pose in at.poses))
+            # with its stone exactly on its pivot a link may lie in any direction: it has no place, and is dead
+            missing[kernel.group.title] = placed & ~sound & ~at.dead
+            dead[kernel.group.title] = placed & at.dead
+            placed = placed & sound
+            moving = moving & placed & ~at.dead
+            if blank:
+                det = np.where(at.dead, np.nan, at.det)
+                at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
+            links = kernel.group.links
+            poses.update(zip(links, at.poses, strict=True))
+            if order > 0:
+                first.update(zip(links, kernel.rates(at, poses, first, drives), strict=True))
+            if order > 1:
+                second.update(zip(links, kernel.accelerations(at, poses, first, second, drives), strict=True))
+            placements.append(at)
+    return LinkStates(
+        linkage, kernels, q, poses, first, second, tuple(placements), placed, moving, dead, missing, drives, order
+    )
+
+
+def _without(pose: Pose, lost: Real) -> Pose:
+    """A pose that is nothing where it is lost."""
+    unwrapped = None if pose.unwrapped is None else np.where(lost, np.nan, pose.unwrapped)
+    return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), unwrapped)

@@ -1,0 +1,268 @@
+"""A telescope and an arm: three links, two of which slide along one another as a driver between them says.
+
+With the run of the drive they are one body, so the group is placed as a group of two links: the arm, and the telescope
+in the axes of its link m that hangs on another, on which the pin of its link n, the one that holds the arm, has moved.
+A point of n moves as if n hung on a link that moves as m's does and along the guide besides: so velocities and
+accelerations come from those of the two links too, and reactions as if both parts were one body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Any, Self
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Closed, HingeEnd, SliderEnd, seen, spread
+from tmm_cli.mechanics.groups.dyads import DYADS, AnyDyad
+from tmm_cli.mechanics.groups.state import (
+    Accel,
+    Accels,
+    Drive,
+    Drives,
+    GroupReactions,
+    PairReaction,
+    Placement,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+)
+from tmm_cli.mechanics.linkage import Driver, Linkage, Slide
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+UNDER = "\0under m"  # the link that m hangs on, as n sees it: no link of a file is called so
+
+
+@dataclass(frozen=True)
+class TelescopeParts:
+    """The links of such a group: arm, n and m, and the dyad they are when n does not slide on m; its inner pair is n's.
+
+    Links of the dyad are the arm and m in the order of their outer pairs, those that turn first.
+    """
+
+    arm: str
+    n: str
+    m: str
+    slide: Slide
+    dyad: Group
+
+    @classmethod
+    def of(cls, group: Group) -> TelescopeParts | None:
+        """None where the group is no such chain."""
+        if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
+            return None
+        driven = [pair for pair in group.inner if pair.slide and pair.name == group.drivers[0].joint]
+        if not driven or not all(pair.lower for pair in (*group.inner, *group.outer)):
+            return None
+        (joint,) = (pair for pair in group.inner if pair is not driven[0])
+        common = {joint.i, joint.j} & {driven[0].i, driven[0].j}
+        own = {group.own(pair): pair for pair in group.outer}
+        n = common.pop()
+        m, arm = driven[0].other(n), joint.other(n)
+        if common or set(own) != {m, arm}:
+            return None
+        links = sorted((link for link in group.links if link != n), key=lambda link: own[link].kind == "P")
+        outer = tuple(own[link] for link in links)
+        slide = driven[0].slide
+        assert slide is not None
+        return cls(
+            arm, n, m, slide, Group(tuple(links), (joint,), outer, 2, outer[0].kind + joint.kind + outer[1].kind)
+        )
+
+    @property
+    def joint(self) -> Pair:
+        """The pair of n and the arm."""
+        return self.dyad.inner[0]
+
+
+@dataclass(frozen=True)
+class Telescope(Closed):
+    """Such a group. dyad: its two links with the joint of n where n itself has it; hung: what m hangs on."""
+
+    chain: TelescopeParts
+    dyad: AnyDyad
+    hung: str
+    pin: complex
+
+    @classmethod
+    def fits(cls, group: Group) -> bool:
+        chain = TelescopeParts.of(group)
+        return chain is not None and chain.dyad.type in DYADS
+
+    @classmethod
+    def of(cls, group: Group, linkage: Linkage) -> Self:
+        chain = TelescopeParts.of(group)
+        assert chain is not None
+        kind, (a, b), outer = DYADS[chain.dyad.type], chain.dyad.links, chain.dyad.outer
+        first, last = seen(outer[0], a, linkage), seen(outer[1], b, linkage)
+        size = reduce(np.maximum, [spread(linkage, link) for link in (*group.links, first.known, last.known)])
+        inner = seen(chain.joint, b if b == chain.arm else chain.n, linkage)
+        hung = (first if a == chain.m else last).known
+        ends = (replace(first, known=UNDER), last) if a == chain.m else (first, replace(last, known=UNDER))
+        pin = linkage.local(chain.n, chain.joint.point) if chain.joint.slide is None else 0j
+        return cls(group, size, chain, kind(chain.dyad, size, ends, inner), hung, pin)
+
+    @property
+    def assemblies(self) -> int:
+        return self.dyad.assemblies
+
+    @property
+    def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
+        return tuple(
+            (pair, replace(end, known=self.hung) if end.known == UNDER else end) for pair, end in self.dyad.outer_pairs
+        )
+
+    @property
+    def driver(self) -> Driver:
+        """That of the telescope."""
+        return self.group.drivers[0]
+
+    @property
+    def _along(self) -> Vector:
+        """Where n goes along m as the run grows, in m's axes."""
+        slide = self.chain.slide
+        direction: Vector = (
+            unit(slide.direction) if slide.carrier == self.chain.m else -unit(slide.direction - slide.turned)
+        )
+        return direction
+
+    def _of_n(self, run: Real) -> tuple[Vector, float]:
+        """Origin (m) and angle (rad) of n in m's axes at a run of the drive."""
+        slide = self.chain.slide
+        if slide.carrier == self.chain.m:
+            return slide.through + run * unit(slide.direction) - slide.at * unit(slide.turned), slide.turned
+        there = slide.through + run * unit(slide.direction)
+        return slide.at - there * unit(-slide.turned), -slide.turned
+
+    def _locked(self, run: Real) -> AnyDyad:
+        """The group of two links that it is at a run of the drive."""
+        origin, angle = self._of_n(run)
+        of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
+        known = self.chain.m if of_m else self.chain.arm
+        turned = unit(angle)
+        there = origin + inner.there * turned if of_m else inner.there
+        here = inner.here if of_m else origin + inner.here * turned
+        moved = replace(inner, known=known, there=there, here=here)
+        if isinstance(moved, SliderEnd):  # angles of a guide are against m now
+            moved = replace(
+                moved, direction=moved.direction + angle * of_m, turned=moved.turned + (angle if of_m else -angle)
+            )
+        return replace(self.dyad, inner=moved, sign=self.sign)
+
+    def _two(self, at: Placement) -> Placement:
+        """Places of the two links alone."""
+        own = dict(zip(self.group.links, at.poses, strict=True))
+        return replace(at, poses=tuple(own[link] for link in self.chain.dyad.links))
+
+    def _poses(self, poses: Poses) -> dict[str, Pose]:
+        return {**poses, UNDER: poses[self.hung]}
+
+    def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
+        """Of the three links in the group's order."""
+        own = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
+        return tuple(own[link] for link in self.group.links)
+
+    def _drive(self, drives: Drives) -> Drive:
+        return drives[self.driver.link]
+
+    def closed(self, poses: Poses, drives: Drives) -> Placement:
+        run = self._drive(drives).value
+        at = self._locked(run).closed(self._poses(poses), drives)
+        own = dict(zip(self.chain.dyad.links, at.poses, strict=True))
+        origin, angle = self._of_n(run)
+        m = own[self.chain.m]
+        return replace(at, poses=self._ordered(own[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
+
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+        drive, known = self._drive(drives), self._poses(poses)
+        dyad = self._locked(drive.value)
+        # what is short of closing is measured where the two links lie as in a dead position
+        flat = replace(dyad, sign=0).closed(known, drives)
+        z = flat.poses[self.chain.dyad.links.index(self.chain.m)].z
+        slid = drive.first * self._along * z / np.abs(z)
+        return dyad.residual_rate(flat, known, self._rates(rates, slid), drives)
+
+    def _rates(self, rates: Rates, slid: Vector) -> dict[str, Rate]:
+        """Of the known links, with that on which n hangs as if m were a part of it."""
+        hung = rates[self.hung]
+        return {**rates, UNDER: Rate(hung.v + slid, hung.w)}
+
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+        drive = self._drive(drives)
+        m, off = self._m(at)
+        slid = drive.first * self._along * m.z
+        found = self._locked(drive.value).rates(self._two(at), self._poses(poses), self._rates(rates, slid), drives)
+        own = dict(zip(self.chain.dyad.links, found, strict=True))
+        body = own[self.chain.m]  # n, at m's origin
+        ordered: tuple[Rate, ...] = self._ordered(
+            own[self.chain.arm], Rate(body.at(off), body.w), Rate(body.v - slid, body.w)
+        )
+        return ordered
+
+    def _m(self, at: Placement) -> tuple[Pose, Vector]:
+        """m's place, and the origin of n from its origin."""
+        own = dict(zip(self.group.links, at.poses, strict=True))
+        m = own[self.chain.m]
+        return m, own[self.chain.n].x - m.x
+
+    def accelerations(
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+    ) -> tuple[Accel, ...]:
+        drive = self._drive(drives)
+        m, off = self._m(at)
+        of_m, hung = rates[self.chain.m], accels[self.hung]
+        u = self._along * m.z
+        slid = drive.first * u
+        more = drive.second * u + 2j * of_m.w * slid  # Coriolis
+        moving = {**self._rates(rates, slid), self.chain.m: Rate(of_m.v + slid, of_m.w)}
+        found = self._locked(drive.value).accelerations(
+            self._two(at), self._poses(poses), moving, {**accels, UNDER: Accel(hung.a + more, hung.e)}, drives
+        )
+        own = dict(zip(self.chain.dyad.links, found, strict=True))
+        body = own[self.chain.m]
+        ordered: tuple[Accel, ...] = self._ordered(
+            own[self.chain.arm], Accel(body.at(off, of_m.w), body.e), Accel(body.a - more, body.e)
+        )
+        return ordered
+
+    def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
+        """Those of the two links; then n alone gives what the guide and the driver do to it."""
+        chain, slide = self.chain, self.chain.slide
+        pose = dict(zip(self.group.links, at.poses, strict=True))
+        borne = dict(zip(self.group.links, applied, strict=True))
+        m, n = pose[chain.m], pose[chain.n]
+        on_n = borne[chain.n]
+        whole = borne[chain.m] + Wrench(on_n.force, on_n.moment + cross(n.x - m.x, on_n.force))
+        carrier, runner = pose[slide.carrier], pose[slide.runner]
+        u, point = carrier.z * unit(slide.direction), runner.at(slide.at)
+        run = dot(u, point - carrier.at(slide.through))
+        two = {chain.arm: borne[chain.arm], chain.m: whole}
+        reaction = self._locked(run).reactions(
+            self._two(at), self._poses(poses), tuple(two[link] for link in chain.dyad.links)
+        )
+        outer = {
+            pair.name: PairReaction(part.force, part.couple)
+            for pair, part in zip(chain.dyad.outer, reaction.outer, strict=True)
+        }
+        joint = reaction.inner[0]  # on the dyad's second link
+        on_arm = joint if chain.dyad.links[1] == chain.arm else joint.opposite
+        back = on_arm.opposite
+        force = on_n.force + back.force
+        guide = chain.joint.slide
+        joint_at = n.at(self.pin) if guide is None else pose[guide.runner].at(guide.at)
+        moment = on_n.about(point - n.x) + cross(joint_at - point, back.force)
+        moment = moment if back.couple is None else moment + back.couple
+        sense = -1.0 if slide.runner == chain.n else 1.0  # what holds n, on the runner
+        push, across = sense * dot(u, force), sense * dot(1j * u, force)
+        inner = {
+            slide.name: PairReaction(1j * u * across, sense * moment),
+            chain.joint.name: on_arm if chain.joint.j == chain.arm else back,
+        }
+        return GroupReactions(
+            tuple(outer[pair.name] for pair in self.group.outer), tuple(inner[pair.name] for pair in self.group.inner),
+            {self.driver.link: push},
+        )  # fmt: skip

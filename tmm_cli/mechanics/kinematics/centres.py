@@ -1,0 +1,141 @@
+"""Instantaneous centres: the point of two links that moves alike on both, and how Kennedy's theorem finds it.
+
+The places come from velocities, so that they are there for every linkage; what is told beside them is the construction:
+the centres of three links lie on a line, so a centre is where two such lines cross. A. B. W. Kennedy, The Mechanics of
+Machinery (1886).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.sequence import LinkStates
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.vectors import cross, unit
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Pair
+
+FAR = 1e6  # sizes of the mechanism: what is farther is at infinity
+STILL = 1e-10  # of the largest velocities: links that move so little beside one another stand still
+SHARP = 1e-3  # rad: lines that cross under less are no construction
+NEAR = 1e-6  # of the size: centres that are nearer than that are one
+
+Links = tuple[str, str]
+Line = tuple[Links, Links]
+Place = tuple[complex | None, complex | None]  # m; or a direction of unit size, where it is at infinity
+
+
+@dataclass(frozen=True)
+class Centre:
+    """Of two links in one position: its place (m), or the direction of unit size in which it is at infinity; neither
+    where they do not move beside one another. pair: a kinematic pair of theirs that shows it; lines: pairs of centres
+    whose lines cross in it.
+    """
+
+    links: Links
+    place: complex | None
+    direction: complex | None
+    pair: str = ""
+    lines: tuple[Line, ...] = ()
+
+
+def centres(states: LinkStates, structure: Structure, k: int) -> list[Centre]:
+    """All centres in a position: those of pairs, then the others in the order in which Kennedy's lines find them."""
+    names = (FRAME, *states.linkage.moving)
+    size = _size(states, k)
+    motion = {name: _about(states, name, k) for name in names}
+    least = STILL * max(max(abs(v), abs(w) * size) for v, w in motion.values())
+    places = {(i, j): _place(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
+    pairs = {_pair(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"}  # a cam shows no centre
+    for links, pair in pairs.items():
+        places[links] = _of_pair(states, pair, k) or places[links]
+    told = [Centre(links, *places[links], pair=pairs[links].name) for links in places if links in pairs]
+    known = {centre.links for centre in told}
+    while True:
+        step = [
+            Centre(links, *places[links], lines=lines)
+            for links in places
+            if links not in known and (lines := _crossing(links, names, places, known, size))
+        ]
+        if not step:
+            break
+        told += step
+        known |= {centre.links for centre in step}
+    return [*told, *(Centre(links, *places[links]) for links in places if links not in known)]
+
+
+def _of_pair(states: LinkStates, pair: Pair, k: int) -> Place | None:
+    """Of a hinge or a guide: it is there also where the links do not move beside one another."""
+    if pair.slide is not None:
+        guide = complex(states.poses[pair.slide.carrier].z[k]) * complex(unit(pair.slide.direction))
+        return None, 1j * guide
+    link = pair.j if pair.j != FRAME else pair.i
+    return (complex(states.poses[link].at(states.linkage.local(link, pair.point))[k]), None) if pair.lower else None
+
+
+def _size(states: LinkStates, k: int) -> float:
+    linkage = states.linkage
+    points = [
+        complex(states.poses[n].at(complex(p))[k]) for n in linkage.moving for p in linkage.links[n].points.values()
+    ]
+    points += [complex(p) for p in linkage.links[FRAME].points.values()]
+    return max(abs(p - points[0]) for p in points) or 1.0
+
+
+def _place(one: tuple[complex, float], other: tuple[complex, float], size: float, least: float) -> Place:
+    """Place, or direction at infinity, of two links by their motions; least: what one that stands has."""
+    slip, turn = one[0] - other[0], one[1] - other[1]
+    if abs(turn) * size <= max(least, abs(slip) / FAR):
+        return None, None if abs(slip) <= least else 1j * slip / abs(slip)
+    return 1j * slip / turn, None
+
+
+def _about(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
+    """Velocity of the link's point in the origin, and its angular velocity, by the driver."""
+    if name == FRAME:
+        return 0j, 0.0
+    pose, rate = states.poses[name], states.first[name]
+    v, w, x = (np.broadcast_to(part, np.shape(states.q))[k] for part in (rate.v, rate.w, pose.x))
+    return complex(v - 1j * w * x), float(w)
+
+
+def _crossing(
+    links: Links, names: tuple[str, ...], places: dict[Links, Place],
+    known: set[Links], size: float,
+) -> tuple[Line, ...]:  # fmt: skip
+    """Two lines through known centres that cross in this one; one pair of them where it lies in both."""
+    i, j = links
+    ways: list[tuple[Line, complex]] = []
+    for k in names:
+        if k in links:
+            continue
+        line = _pair(i, k, names), _pair(k, j, names)
+        if not known.issuperset(line):
+            continue
+        along = _along(places[line[0]], places[line[1]], size)
+        if along is None:
+            continue
+        if along == 0:  # one point: a compound hinge
+            return (line,)
+        ways.append((line, along))
+    for (one, along), (other, across) in combinations(ways, 2):
+        if abs(cross(along, across)) > SHARP:
+            return one, other
+    return ()
+
+
+def _pair(i: str, j: str, names: tuple[str, ...]) -> Links:
+    return (i, j) if names.index(i) < names.index(j) else (j, i)
+
+
+def _along(one: Place, other: Place, size: float) -> complex | None:
+    """The direction of the line through two centres; 0 where they are one, None where they tell no line."""
+    (p, u), (q, v) = one, other
+    if p is not None and q is not None:
+        return (q - p) / abs(q - p) if abs(q - p) > NEAR * size else 0j
+    if p is None and q is None:
+        return None
+    return u if p is None else v

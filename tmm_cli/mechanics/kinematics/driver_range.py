@@ -1,0 +1,399 @@
+"""Stage: how far the driver can go, and the dead positions on its way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.mechanics.assembly.choose import pinned, slack
+from tmm_cli.mechanics.groups.base import Closed, Kernel, reach
+from tmm_cli.mechanics.groups.branch import Winding
+from tmm_cli.mechanics.groups.sequence import DriverMotion, LinkStates, link_states, towards
+from tmm_cli.mechanics.linkage import Linkage, Slide
+from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.tolerances import CAME_BACK, DEAD, END_OF_SLOT
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.cycle import MOST, turns_of_cycle
+
+SCAN = 1440  # places looked at in a first round; what lies between is refined
+PARTS = 64  # into which an interval is cut at once
+ALMOST = 1e-5  # of its way: so near to infinity a group is not found
+
+
+@dataclass(frozen=True)
+class DriverLimit:
+    """An end of the driver's range: its place, the group that stops it, or `driver` where the first one itself stops.
+
+    The latter only with several drivers, whose places follow from the time.
+    """
+
+    place: float
+    group: str
+    driver: str = ""
+
+
+@dataclass(frozen=True)
+class DriverRange:
+    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
+
+    turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
+    False when no such number was found. inclusive: both ends are those of the driver's stroke, and no dead positions.
+    """
+
+    start: float
+    end: float
+    full: bool
+    limits: tuple[DriverLimit, ...] = ()
+    turns: int = 1
+    repeats: bool = True
+    inclusive: bool = False
+
+
+@dataclass(frozen=True)
+class DeadPosition:
+    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there.
+
+    passed: the group was followed through it on a smooth way, on which its determinant may change sign.
+    """
+
+    place: float
+    group: str
+    margin: float
+    passed: bool = False
+
+
+def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+    """The driver's range about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
+    driver_range = _reach(linkage, kernels)
+    stroke = linkage.driver.stroke
+    if stroke is None:
+        return driver_range
+    low, high = stroke
+    if not driver_range.full:
+        low, high = max(driver_range.start, low), min(driver_range.end, high)
+    kept = tuple(limit for limit in driver_range.limits if low <= limit.place <= high)
+    return DriverRange(low, high, False, kept, inclusive=(low, high) == stroke)
+
+
+def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+    at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
+    cycle = cycle_of(linkage, kernels) if turns else 1
+    number = cycle or 1
+    half = np.pi * number if turns else reach(linkage)
+    low, high = _looked_at(kernels, at, half)
+    steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
+    # np.unique would import masked arrays, which costs more than all the rest of this stage
+    steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
+    side = [np.sign(p.det[0]) for p in link_states(linkage, kernels, np.array([at]), 0).placements]
+    scan = link_states(linkage, kernels, at + steps, 0)
+    steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
+    lost = _lost(link_states(linkage, kernels, at + steps, 0), side)
+    stopped = _stopped(linkage, at + steps)
+    if not bool(np.any(lost)) and not bool(np.any(stopped)):
+        back = cycle is not None and (not turns or _returned(linkage, kernels, at, half))
+        return DriverRange(at - half, at + half, turns, turns=number, repeats=back)
+    blocked = np.flatnonzero(np.any(lost, axis=0) | stopped)
+    middle = int(np.argmin(np.abs(steps)))
+
+    def limit(index: int, towards: int) -> DriverLimit:
+        good, bad = at + steps[index - towards], at + steps[index]
+        first = kernels[int(np.argmax(lost[:, index]))]
+        for end in _ends(first):  # found to the last bit when the group was followed
+            if min(good, bad) <= end <= max(good, bad):
+                return DriverLimit(end, first.group.title)
+        while True:
+            between = np.linspace(good, bad, PARTS + 1)[1:-1]
+            between = between[(between != good) & (between != bad)]
+            if not between.size:
+                break
+            gone = np.any(_lost(link_states(linkage, kernels, between, 0), side), axis=0) | _stopped(linkage, between)
+            found = np.flatnonzero(gone)
+            places = np.array([good, *between, bad])
+            there = int(found[0]) + 1 if found.size else len(places) - 1
+            good, bad = places[there - 1], places[there]
+        if stopped[index]:
+            return DriverLimit(float(good), "", linkage.driver.link)
+        return DriverLimit(_at_infinity(first, float(good), towards), first.group.title)
+
+    below, above = blocked[blocked < middle], blocked[blocked > middle]
+    first = limit(int(below[-1]), -1) if below.size else None
+    last = limit(int(above[0]), 1) if above.size else None
+    around = turns and cycle is not None
+    if around and first is None and last is not None:  # the places that are blocked straddle the scan's end
+        first = limit_from(last, blocked, steps, (at, 2 * half), limit)
+    if around and last is None and first is not None:
+        last = limit_from(first, blocked, steps, (at, 2 * half), limit)
+    start = first.place if first else at - half
+    end = last.place if last else at + half
+    return DriverRange(start, end, False, tuple(x for x in (first, last) if x))
+
+
+def _stopped(linkage: Linkage, q: Real) -> Real:
+    """Whether the first of several drivers never comes to a place: it slows down and stops before."""
+    lead = linkage.driver
+    if not linkage.others:
+        return np.zeros(np.shape(q), dtype=bool)
+    law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
+    return ~np.isfinite(law.time(q))
+
+
+def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
+    """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
+    motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
+    size = max((kernel.size for kernel in kernels), default=1.0)
+    moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
+    return bool(max(moved) < CAME_BACK)
+
+
+def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
+    """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
+    trace = kernel.followed
+    end = (0, -1)[towards > 0]
+    if trace is None or not trace.lost[end]:
+        return place
+    infinite, last = float(trace.q[end]), float(trace.q[end - towards])
+    close = abs(infinite - place) < ALMOST * float(trace.q[-1] - trace.q[0])
+    return infinite if close or abs(infinite - place) < abs(infinite - last) else place
+
+
+def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
+    """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
+    low, high = -half, half
+    for kernel in kernels:
+        trace = kernel.followed
+        if trace is not None and not trace.closed and True not in trace.open_ends:
+            low, high = min(low, 1.001 * (trace.q[0] - at)), max(high, 1.001 * (trace.q[-1] - at))
+    return float(low), float(high)
+
+
+def _ends(kernel: Kernel) -> tuple[float, ...]:
+    """Places where a followed group turns back."""
+    trace = kernel.followed
+    if trace is None or trace.closed:
+        return ()
+    return tuple(float(q) for q, limit in zip((trace.q[0], trace.q[-1]), trace.limits, strict=True) if limit)
+
+
+def rounds_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> dict[str, int]:
+    """How often links that toothed wheels depend on go round in a turn of the driver, where they were followed."""
+    found = {}
+    for kernel in kernels:
+        winding = kernel.winding if isinstance(kernel, Closed) else None
+        if isinstance(winding, Winding) and winding.closed:
+            turns = (winding.q[-1] - winding.q[0]) / (2 * np.pi)
+            for link, angles in winding.angles.items():
+                found[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
+    return found
+
+
+def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
+    """Turns of the driver in a cycle, from loads, wheels, drivers and groups that come back only after several."""
+    turns = turns_of_cycle(linkage, rounds_of(linkage, kernels))
+    for kernel in kernels:
+        trace = kernel.followed
+        if trace is not None and trace.closed and turns is not None:
+            turns = math.lcm(turns, round((trace.q[-1] - trace.q[0]) / (2 * np.pi)))
+        way = kernel.way if isinstance(kernel, Closed) else None
+        if way is not None and way.cycle is not None and len(way.places) % 2 and turns is not None:
+            turns = math.lcm(turns, round(way.cycle / np.pi))
+    if turns is not None:
+        turns = math.lcm(turns, linkage.turns)
+    return turns if turns is not None and turns <= MOST else None
+
+
+def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, number: int) -> Real:
+    """Places where a group comes nearest to losing its assembly: it may lose it between two places of a scan."""
+    residual = np.where(np.isfinite(scan.placements[number].residual), scan.placements[number].residual, -np.inf)
+    inner = residual[1:-1]
+    # between two places it cannot rise by much more than it does from one to the next
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(inner - residual[:-2], inner - residual[2:])
+    close = (
+        np.flatnonzero((inner >= residual[:-2]) & (inner > residual[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
+    )
+    step = scan.q[1] - scan.q[0]
+    to_spare = partial(slack, linkage, towards(kernels, kernels[number].group.links))
+    narrow: Real = least(to_spare, scan.q[close] - step, scan.q[close] + step)[0]
+    return narrow
+
+
+def _lost(motion: LinkStates, side: list[float]) -> Real:
+    """For each group and place whether the linkage cannot be there: no assembly, or only past a dead position.
+
+    The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
+    went to infinity.
+    """
+    lost = [
+        motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
+        for kernel, at, sign in zip(motion.kernels, motion.placements, side, strict=True)
+    ]
+    return np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
+
+
+def limit_from(
+    known: DriverLimit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], DriverLimit]
+) -> DriverLimit | None:
+    """The other limit when all blocked places lie on one side of the sketch: a cycle away.
+
+    None when they go on to the end of what was looked at.
+    """
+    at, cycle = about
+    sense = -1 if known.place > at else 1
+    index = int(blocked[-1 if known.place > at else 0])
+    if index in (0, len(steps) - 1):
+        return None
+    other = limit(index, sense)
+    return DriverLimit(other.place + sense * cycle, other.group)
+
+
+def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange) -> tuple[DeadPosition, ...]:
+    """Dead positions inside the driver's range (its limits are dead too and are not repeated here)."""
+    q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
+    motion = link_states(linkage, kernels, q, 0)
+    found = []
+    for number, dyad in enumerate(kernels):
+        at = motion.placements[number]
+        margin = np.where(motion.placed | at.dead, at.margin, np.inf)
+        inner = margin[1:-1]
+        with np.errstate(invalid="ignore"):  # where it cannot fall by so much between two places, none is dead there
+            reach = inner - 2 * np.maximum(margin[:-2] - inner, margin[2:] - inner) < DEAD
+        low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1) & reach) + 1
+        places = list(q[low])
+        steps = q[1] - q[0]
+        if driver_range.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
+            places.append(q[0])
+        upto = towards(kernels, dyad.group.links)
+        passed = _passed(linkage, upto, driver_range)
+        found += passed
+        away = [p for p in places if all(abs(_apart(p, o.place, driver_range)) > 2 * steps for o in passed)]
+        narrowest = least(partial(_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
+        for best, left in zip(*narrowest, strict=True):
+            if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
+                best = float(pinned(linkage, upto, np.array([best]), steps)[0])
+                passive = getattr(dyad, "passive", False)  # what holds it twice leads it through
+                found.append(DeadPosition(best, dyad.group.title, left, passive))
+    return tuple(sorted(found, key=lambda d: d.place))
+
+
+def _passed(linkage: Linkage, upto: tuple[Kernel, ...], driver_range: DriverRange) -> list[DeadPosition]:
+    """Dead positions inside the range that the last group passes smoothly: nodes of its trace, change points."""
+    last, title = upto[-1], upto[-1].group.title
+    trace, way = last.followed, last.way if isinstance(last, Closed) else None
+    if trace is not None and trace.dead.size:
+        places = trace.dead_within(driver_range.start, driver_range.end)
+    elif way is not None:
+        places = way.within(driver_range.start, driver_range.end)
+    else:
+        return []
+    left = _margin(linkage, upto, places) if places.size else places
+    return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
+
+
+def _apart(one: float, other: float, driver_range: DriverRange) -> float:
+    """From one place to another, round the cycle where the way is a whole one."""
+    cycle = driver_range.end - driver_range.start
+    return one - other - cycle * round((one - other) / cycle) if driver_range.full else one - other
+
+
+def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+    """Of the last group."""
+    motion = link_states(linkage, kernels, q, 0)
+    return np.where(motion.placed, motion.placements[-1].margin, 0.0)
+
+
+# Stage: whether each stone stays on the segment of its guide, over all places of the driver, not the positions alone.
+#
+# A guide along two points of a moving link ends in them. The extremes between the places of a scan are found too; a
+# cylinder that is driven has its stroke instead.
+
+
+@dataclass(frozen=True)
+class Excess:
+    """How a stone comes nearest to an end of its segment, or goes beyond it.
+
+    point: the end. far: how far beyond it at most (m; negative: what is left before it), with the driver at `place`.
+    ways: the driver's places (rad or m) from which to which it is beyond; empty when it never is.
+    """
+
+    slide: Slide
+    point: str
+    length: float
+    far: float
+    place: float
+    ways: tuple[tuple[float, float], ...]
+
+
+def find_slots(
+    linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange, asked: Sequence[float]
+) -> tuple[Excess, ...]:
+    """Both ends of every segment, over the driver's range. asked: its places that were given one by one; where the
+    driver does not turn fully, it goes from the first to the last of them only.
+    """
+    driven = {driver.joint for driver in linkage.drivers if driver.kind == "slide"}
+    slides = [slide for slide in linkage.slides if slide.ends is not None and slide.name not in driven]
+    if not slides:
+        return ()
+    start, end = driver_range.start, driver_range.end
+    if len(asked) and not driver_range.full:
+        start, end = max(start, float(np.min(asked))), min(end, float(np.max(asked)))
+    q = np.linspace(start, end, SCAN * driver_range.turns + 1)
+    scan = link_states(linkage, kernels, q, 0)
+    found = []
+    for slide in slides:
+        upto = towards(kernels, (slide.carrier, slide.runner))
+        run, there = scan.run(slide)[scan.placed], q[scan.placed]
+        for point, forward in zip(slide.ends or (), (-1.0, 1.0), strict=True):
+            if there.size > 1:
+                found.append(_Segment(linkage, upto, slide, point, forward).excess(there, run, driver_range.full))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _Segment:
+    """One end of a segment. forward: +1 at its last point, -1 at its first."""
+
+    linkage: Linkage
+    kernels: tuple[Kernel, ...]
+    slide: Slide
+    point: str
+    forward: float
+
+    @property
+    def length(self) -> float:
+        first, last = (self.linkage.local(self.slide.carrier, name) for name in self.slide.ends or ())
+        return abs(last - first)
+
+    def beyond(self, run: Real) -> Real:
+        """How far beyond the end a run along the guide is, m."""
+        return run - self.length if self.forward > 0 else -run
+
+    def at(self, q: Real) -> Real:
+        return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))
+
+    def excess(self, q: Real, run: Real, full: bool) -> Excess:
+        """Over the places q, which are the whole cycle when `full`."""
+        far = self.beyond(run)
+        k = int(np.argmax(far))
+        low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
+        place, short = least(lambda places: -self.at(places), low, high)
+        most = 0.0 if abs(short) <= END_OF_SLOT * self.length else -short
+        ways = (self.ways(q, far, full) or ((place, place),)) if most > 0 else ()
+        return Excess(self.slide, self.point, self.length, most, place, ways)
+
+    def ways(self, q: Real, far: Real, full: bool) -> tuple[tuple[float, float], ...]:
+        """From where to where it is beyond; of a cycle the last way may go on through its end."""
+        out = far > 0
+        change = np.flatnonzero(out[:-1] != out[1:])
+        places = roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)
+        leaves, returns = list(places[~out[change]]), list(places[out[change]])
+        if out[0] and full and leaves:
+            returns = [*returns[1:], returns[0] + q[-1] - q[0]]
+        elif out[0]:
+            leaves = [q[0], *leaves]
+        if len(leaves) > len(returns):
+            returns.append(q[-1])
+        return tuple((float(a), float(b)) for a, b in zip(leaves, returns, strict=True))

@@ -1,0 +1,328 @@
+"""Stage: velocities and accelerations of points, links and sliding pairs, from the states of links and the speed of
+the driver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import LawOfMotion, LinkStates, link_states
+from tmm_cli.mechanics.groups.state import Drives
+from tmm_cli.mechanics.linkage import Linkage, Slide
+from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics.tolerances import AT_REST, LIMIT_AGREES, LIMIT_ROUNDED
+from tmm_cli.mechanics.numerics.vectors import Real, Record, Vector, dot, mapped, unit
+
+FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"})
+"""Names of fields of a motion, and of what follows from it, that hold no array over positions."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """Motion of a point: x (m), v (m/s), a (m/s2); first and second are its transfer functions."""
+
+    x: Vector
+    v: Vector
+    a: Vector
+    first: Vector
+    second: Vector
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Motion of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2) and its transfer functions."""
+
+    angle: Real
+    omega: Real
+    epsilon: Real
+    first: Real
+    second: Real
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (vector, m/s2)."""
+
+    run: Real
+    v: Real
+    a: Real
+    coriolis: Vector
+    u: Vector
+    first: Real
+    second: Real
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion(LinkStates):
+    """States of links in time: time (s), rate of the driver's place (rad/s or m/s) and its acceleration.
+
+    nan where the driver never comes. finer: the positions of the mask `where` in extended precision. limits: the mask
+    of change points in which velocities and accelerations are limits (kinematics.limits); bare: without these.
+    """
+
+    time: Real
+    rate: Real
+    acceleration: Real
+    finer: Motion | None = None
+    where: Real | None = None
+    limits: Real | None = None
+    bare: Motion | None = None
+
+    def point(self, link: str, local: complex) -> Point:
+        """Motion of a point given in the axes of a link (m)."""
+        if local is self.linkage.links[link].centre:  # where weights and forces of inertia act
+            return self.centre(link)
+        return self._finest(lambda motion: motion._point(link, local))
+
+    @cached_property
+    def _known(self) -> dict[tuple[str, ...], Any]:
+        """Motions of what was asked for by name: tables, result.json, forces and energy ask for the same."""
+        return {}
+
+    def _once(self, kind: str, name: str, of: Callable[[], Record]) -> Record:
+        if (kind, name) not in self._known:
+            self._known[kind, name] = of()
+        found: Record = self._known[kind, name]
+        return found
+
+    @cached_property
+    def largest(self) -> LargestRates:
+        """The largest rates of the links at every position."""
+        return LargestRates.of(self)
+
+    def _finest(self, of: Callable[[Motion], Record]) -> Record:
+        """What is asked of the motion, from its finer one where there is one."""
+        found = of(self)
+        return found if self.finer is None or self.where is None else spliced(found, of(self.finer), self.where)
+
+    def _point(self, link: str, local: complex) -> Point:
+        pose, first, second = self.poses[link], self.first[link], self.second[link]
+        arm = local * pose.z
+        v1, a1 = first.at(arm), second.at(arm, first.w)
+        return Point(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
+
+    def named(self, point: str) -> Point:
+        """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
+        there = [link for link in self.linkage.carriers(point) if link in self.poses]
+        return self._once(
+            "point", point, lambda: self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
+        )
+
+    def _sway(self, link: str, point: str) -> float:
+        """Size of the terms that a point's acceleration is the sum of."""
+        first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
+        terms = np.abs(rounded(second.a)) + (np.abs(rounded(second.e)) + rounded(first.w) ** 2) * rounded(arm)
+        return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
+
+    def named_on(self, link: str, point: str) -> Point:
+        """Motion of a named point as one of a given link."""
+        return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
+
+    def centre(self, link: str) -> Point:
+        """Motion of a centre of mass."""
+        return self._once(
+            "centre", link,
+            lambda: self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
+        )  # fmt: skip
+
+    def link(self, name: str) -> Turning:
+        """Turning of a link."""
+
+        def turning() -> Turning:
+            w1, e1 = self.first[name].w, self.second[name].e
+            return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+
+        return self._once("link", name, turning)
+
+    def slide(self, slide: Slide) -> Sliding:
+        """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
+        return self._once(
+            "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+        )
+
+    def _slide(self, slide: Slide) -> Sliding:
+        carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
+        u = carrier.z * unit(slide.direction)
+        point = self._point(slide.runner, slide.at)
+        w = self.first[slide.carrier].w
+        arm = runner.at(slide.at) - carrier.x
+        run, first = super().run(slide), super().slope(slide)
+        # along the guide the Coriolis part vanishes, so the rest of the difference is the relative acceleration
+        second = dot(u, point.second - self.second[slide.carrier].at(arm, w))
+        v = first * self.rate
+        coriolis = 2j * (w * self.rate) * v * u
+        return Sliding(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
+
+    def run(self, slide: Slide) -> Real:
+        """Run in a sliding pair, m."""
+        return self._finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
+
+    def slope(self, slide: Slide) -> Real:
+        """First transfer function of the run in a sliding pair."""
+        return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
+
+
+def move(
+    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: LawOfMotion, order: int = 2, *, blank: bool = True,
+    drives: Drives | None = None,
+) -> Motion:  # fmt: skip
+    """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
+
+    With drives by another parameter than q, the law is that of the parameter.
+    """
+    states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
+    rate = law.speed(states.q)
+    whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
+    return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=law.accelerated(states.q))
+
+
+@dataclass(frozen=True)
+class LargestRates:
+    """The largest rates in a mechanism at every position: a rate is told from rest by comparison with them.
+
+    Compared with its own largest value, what never moves would move, by rounding. size: m; speed and acceleration of
+    points, m per unit of the driver coordinate and per its square, with what rotation adds over the size.
+    """
+
+    size: Real | float
+    speed: Real
+    acceleration: Real
+
+    @classmethod
+    def of(cls, states: LinkStates) -> LargestRates:
+        """Of all links; accelerations follow from speeds where they were not computed."""
+        linkage = states.linkage
+        size: Any = reduce(np.maximum, [kernel.size for kernel in states.kernels], 0.0)
+        size = np.where(size > 0, size, 1.0)  # links with one point each, which only slide
+        speeds, gains = [], []
+        for link, rate in states.first.items():
+            arm = next(iter(linkage.links[link].points.values()), 0j) * states.poses[link].z
+            speeds += [np.abs(rate.at(arm)), np.abs(rate.w) * size]
+            if states.order > 1:
+                accel = states.second[link]
+                gains += [np.abs(accel.at(arm, rate.w)), np.abs(accel.e) * size]
+        speed = reduce(np.maximum, speeds)
+        return cls(size, speed, reduce(np.maximum, gains, speed * speed / size))
+
+
+def moving_parts(rates: Real | Vector, largest: Real) -> Real | Vector:
+    """Rates, with zeros for those of what is at rest; largest: the largest of their kind in the mechanism."""
+    return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
+
+
+def spliced(full: Record, part: Record, where: Real) -> Record:
+    """A record of arrays over positions with those of `where` taken from another one, rounded to its own precision."""
+
+    def joined(path: str, leaf: Any, finer: Any) -> Any:
+        if not isinstance(leaf, np.ndarray) or not hasattr(finer, "astype") or leaf.shape[-1:] != where.shape:
+            return leaf
+        found = leaf.copy()
+        found[..., where] = finer.astype(leaf.dtype)
+        return found
+
+    return mapped(joined, full, part, skip=FIXED)
+
+
+# Limits of velocities and accelerations in dead positions that the mechanism passes smoothly.
+#
+# In a change point of a parallelogram two branches of its motion cross. The equations for velocities are singular
+# there, but along each branch the motion is an analytic function of the driver coordinate, so its value, velocity and
+# acceleration in the change point follow by interpolation from positions on either side. L. N. Trefethen,
+# Approximation Theory and Approximation Practice (2013), ch. 5. Reactions in general grow without bound.
+
+
+NODES = 16  # on both sides of a change point; an even number, so that none lies in it
+RADII = (0.1, 0.05)  # rad, and of a slider this share of the largest group: how far the outer nodes are
+STATES = ("poses", "first", "second")
+SIZES = ("x", "z", "unwrapped", "v", "w", "a", "e")  # of poses, rates and accelerations: what is compared alike
+PLACES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+WEIGHTS: Real = chebyshev.chebvander(np.zeros(1), NODES - 1)[0] @ np.linalg.inv(chebyshev.chebvander(PLACES, NODES - 1))
+"""Values at the nodes to the value in the middle between them."""
+
+
+def with_limits(motion: Motion) -> Motion:
+    """Put the limits of positions, velocities and accelerations into change points that are passed smoothly.
+
+    `moving` stays False in these positions, as forces have no limit there in general; the mask `limits` says which they
+    are, and `bare` is the motion without them.
+    """
+    if motion.order < 2 or not motion.dead:
+        return motion
+    dead = np.any(list(motion.dead.values()), axis=0) & ~motion.moving & np.isfinite(motion.rate)
+    if not np.any(dead):
+        return motion
+    places = np.flatnonzero(dead)
+    limits, smooth = _limits(motion, np.asarray(motion.q, dtype=float)[places])
+    if not np.any(smooth):
+        return motion
+    filled = places[smooth]
+
+    def put(_path: str, values: Any, limit: Any) -> Any:
+        if not isinstance(values, np.ndarray):
+            return values
+        found, own = values.copy(), limit[smooth]
+        known = np.abs(values[..., filled] - own) <= LIMIT_ROUNDED * np.maximum(np.abs(own), 1.0)
+        found[..., filled] = np.where(known, values[..., filled], own)  # a place that is known needs no interpolation
+        return found
+
+    parts = {name: mapped(put, getattr(motion, name), getattr(limits, name)) for name in STATES}
+    mask = np.zeros(np.shape(motion.q), dtype=bool)
+    mask[filled] = True
+    return replace(motion, **parts, limits=mask, bare=motion)
+
+
+def _limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
+    """States of links in the middle of nodes about places q, and which of these are passed smoothly."""
+    size = float(np.max([np.max(kernel.size) for kernel in motion.kernels], initial=0.0)) or 1.0
+    unit = 1.0 if motion.linkage.driver.kind == "turn" else size
+    smooth = np.ones(len(q), dtype=bool)
+    found = []
+    for radius in RADII:
+        nodes = q[:, None] + radius * unit * PLACES
+        states = link_states(motion.linkage, motion.kernels, nodes.ravel(), 2)
+        smooth &= np.all(states.moving.reshape(nodes.shape), axis=1)
+
+        def middle(_path: str, values: Any, shape: tuple[int, ...] = nodes.shape) -> Any:
+            if not isinstance(values, np.ndarray):
+                return values
+            return np.broadcast_to(values, shape[0] * shape[1]).reshape(shape) @ WEIGHTS
+
+        with np.errstate(invalid="ignore"):
+            states = replace(states, **{name: mapped(middle, getattr(states, name)) for name in STATES})
+        found.append(states)
+    far, near = found
+    return far, smooth & _agree(far, near, size)
+
+
+def _agree(one: LinkStates, other: LinkStates, size: float) -> Real:
+    """Whether two states of all links are the same at each place; size: of the mechanism (m)."""
+    gaps: dict[str, Any] = dict.fromkeys(SIZES, 0.0)
+    largest: dict[str, Any] = dict.fromkeys(SIZES, 0.0)
+
+    def compare(path: str, values: Any, beside: Any) -> Any:
+        if isinstance(values, np.ndarray):
+            kind = path.rpartition(".")[2]
+            gaps[kind] = np.maximum(gaps[kind], np.abs(values - beside))
+            largest[kind] = np.maximum(largest[kind], np.abs(values))
+        return values
+
+    for name in STATES:
+        mapped(compare, getattr(one, name), getattr(other, name))
+    speed = np.maximum(largest["v"], largest["w"] * size)
+    gain = np.maximum(np.maximum(largest["a"], largest["e"] * size), speed**2 / size)
+    scales = {
+        "x": np.maximum(largest["x"], size), "z": 1.0, "unwrapped": np.maximum(largest["unwrapped"], 1.0),
+        "v": speed, "w": speed / size, "a": gain, "e": gain / size,
+    }  # fmt: skip
+    with np.errstate(invalid="ignore"):
+        agree: Real = np.all(
+            [np.broadcast_to(gaps[k] <= LIMIT_AGREES * scales[k], np.shape(speed)) for k in SIZES], axis=0
+        )
+    return agree

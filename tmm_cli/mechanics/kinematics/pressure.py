@@ -1,0 +1,266 @@
+"""Stage: pressure angles of the groups over the driver's range.
+
+The pressure angle is the acute angle between the force that drives a link, without gravity and inertia, and the
+velocity of the point where it acts (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 5). The force follows
+from statics: the link is resisted by a moment (a force along its guide), the rest of its group carries nothing, and the
+reactions of the group say where it is driven and in what direction. So it holds for a group of any class, with no
+formula of its own.
+
+A link that is driven in several pairs at once (a lead of a class IV contour) has a force and a velocity in each. Its
+angle is that whose cosine is the power of these forces over what they would give along the velocities: for one pair
+that is the angle above, and it is 90 deg in dead positions only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.groups.state import Placement, Wrench
+from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.roots import least, top
+from tmm_cli.mechanics.numerics.tolerances import (
+    ALIKE_ANGLES,
+    DEAD,
+    LOST_IN_ROUNDING,
+    NO_PRESSURE,
+    RIGHT_ANGLE,
+    ROUNDINGS,
+    ROUNDOFF,
+)
+from tmm_cli.mechanics.numerics.vectors import Real, cross, dot, unit
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
+
+    pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
+    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest (infinite in a dead position).
+    angles: at the positions of a motion. other, other_place: the extreme of the angle on the other side (rad), where
+    the force leans to the other side of the velocity, or least, and the driver's place there (of a four-bar the crank
+    is on the line of the frame at both extremes); nan of a link that is driven in several pairs, or at a constant one.
+    """
+
+    group: str
+    link: str
+    pair: str
+    slides: bool
+    largest: float
+    place: float
+    allowed: float
+    angles: Real = field(default_factory=lambda: np.zeros(0))
+    other: float = float("nan")
+    other_place: float = float("nan")
+
+    @property
+    def transmission(self) -> float:
+        """The least transmission angle, rad."""
+        return np.pi / 2 - self.largest
+
+    @property
+    def gain(self) -> float:
+        return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - DEAD else float("inf")
+
+    @property
+    def holds(self) -> bool:
+        """Whether it stays within what is allowed."""
+        return self.largest <= self.allowed + ALIKE_ANGLES
+
+
+FLAT = 3  # places of the scan: beside a top that is bent no more than two are as high
+
+Lead = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
+
+
+def named(lead: Lead) -> str:
+    """The pairs in which a link is driven."""
+    return ", ".join(pair.name for pair in lead[2])
+
+
+def followers(group: Group) -> Iterable[Lead]:
+    """Links of a group that it drives: with the pair that holds them and those in which they are driven.
+
+    Those held by the frame count, or the last one where none is.
+    """
+    leads = []
+    for outer in group.outer:
+        link = group.own(outer)
+        inner = tuple(p for p in group.inner if link in (p.i, p.j))
+        held = [p for p in group.outer if link in (p.i, p.j)]
+        if outer.lower and inner and len(held) == 1 and all(p.lower for p in inner):
+            leads.append((link, outer, inner))
+    on_frame = [lead for lead in leads if FRAME in (lead[1].i, lead[1].j)]
+    return on_frame or leads[-1:]
+
+
+def angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+    """Pressure angle of a driven link at every position, rad; nan where there is none."""
+    found: Real = np.arctan2(*sides(motion, kernel, at, lead))
+    return np.where(found < NO_PRESSURE, 0.0, found)
+
+
+def signed_angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+    """Pressure angle with the side to which the force leans from the velocity, rad, for a link driven in one pair."""
+    across, along = _of_one_pair(motion, kernel, at, lead)
+    angles: Real = np.arctan2(across * np.sign(along), np.abs(along))
+    return angles
+
+
+def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+    """What is to each other as sine and cosine of the pressure angle: both above zero."""
+    parts = list(_components(motion, kernel, at, lead))
+    if len(parts) == 1:
+        ((power, aside),) = parts
+        return np.abs(aside), np.abs(power)
+    along, lost, loose = (np.zeros(np.shape(motion.q)) for _ in range(3))
+    for power, aside in parts:
+        most = np.hypot(power, aside)
+        along, loose = along + power, loose + most
+        lost = lost + np.where(power > 0, aside * aside / np.where(most > 0, most + power, 1.0), most - power)
+    lost = np.where(lost > LOST_IN_ROUNDING * loose, lost, 0.0)
+    return np.sqrt(lost * (loose + along)), np.abs(along)
+
+
+def _of_one_pair(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+    """Components of the driving force across and along the velocity of its point."""
+    ((power, aside),) = _components(motion, kernel, at, lead)
+    return aside, power
+
+
+def _components(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Iterable[tuple[Real, Real]]:
+    """Of the force in each pair in which a link is driven: its component along the velocity of its point, and across.
+
+    The link is resisted by a unit moment, or a unit force along its guide. Against the resistance the components along
+    have one sign together; the ones across are counted to the left of the velocity.
+    """
+    link, outer, pairs = lead
+    group, poses = kernel.group, motion.poses
+    pose = poses[link]
+    still = np.zeros(np.shape(motion.q))
+    if outer.slide is None:
+        pivot = pose.at(motion.linkage.local(link, outer.point))
+        resistance = Wrench(still + 0j, still + 1.0)
+    else:
+        u = poses[outer.slide.carrier].z * unit(outer.slide.direction)
+        resistance = Wrench(u, cross(poses[outer.slide.runner].at(outer.slide.at) - pose.x, u))
+    applied = tuple(resistance if name == link else Wrench(still + 0j, still) for name in group.links)
+    reactions = kernel.reactions(at, poses, applied).inner
+    inner = [pair.name for pair in group.inner]
+    for pair in pairs:
+        reaction = reactions[inner.index(pair.name)]
+        force = reaction.force if kernel.inner_on(pair) == link else -reaction.force
+        if pair.slide is None:
+            point = poses[pair.i].at(motion.linkage.local(pair.i, pair.point))
+        else:
+            point = poses[pair.slide.runner].at(pair.slide.at)
+            guide = poses[pair.slide.carrier].z * unit(pair.slide.direction)
+            assert reaction.couple is not None
+            point = point + guide * reaction.couple / dot(reaction.force, 1j * guide)
+        velocity = u if outer.slide is not None else 1j * (point - pivot)
+        yield -dot(force, velocity), -cross(force, velocity)
+
+
+def find_pressure(
+    linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange, allowed: tuple[float, float]
+) -> tuple[Pressure, ...]:
+    """The largest pressure angle of every driven link; allowed: of sliding and of turning links (rad)."""
+    ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
+    q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
+    scan = link_states(linkage, kernels, q, 0)  # statics needs no velocities
+    found = []
+    with np.errstate(all="ignore"):
+        for number, kernel in enumerate(kernels):
+            upto = towards(kernels, kernel.group.links)
+            for lead in followers(kernel.group):
+                angles = angle(scan, kernel, scan.placements[number], lead)
+                if not np.any(np.isfinite(angles)):
+                    continue
+                k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of those that are equal
+                place, value = float(q[k]), float(angles[k])
+                right = [end for end, inward in _ends(driver_range) if _right(linkage, upto, lead, end, inward * ends)]
+                if right:
+                    place, value = right[0], np.pi / 2
+                elif value > 0 and not _flat(angles[k : k + FLAT]):  # else rounding would tell where it is the largest
+                    low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
+                    back = partial(_negative, linkage, upto, lead)
+                    place, value = least(back, low, high)
+                    place, value = top(back, place, min(high - place, place - low)), -value
+                    if value - angles[k] < ROUNDINGS * ROUNDOFF:
+                        place = float(q[k])
+                slides = lead[1].kind == "P"
+                limit = allowed[0 if slides else 1]
+                largest = Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit)
+                other = _other_extreme(linkage, upto, lead, scan, number, place) if value > 0 else None
+                if other is not None:
+                    largest = replace(largest, other=other[0], other_place=other[1])
+                found.append(largest)
+    return tuple(found)
+
+
+def _other_extreme(
+    linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, scan: LinkStates, number: int, place: float
+) -> tuple[float, float] | None:
+    """The extreme of the pressure angle (rad) on the other side than that at `place`, and the driver's place there."""
+    if len(lead[2]) > 1:
+        return None
+    q = scan.q
+    angles = signed_angle(scan, scan.kernels[number], scan.placements[number], lead)
+    known = np.isfinite(angles)  # at a change point there is none
+    side = np.sign(angles[int(np.argmin(np.where(known, np.abs(q - place), np.inf)))])
+    if not side or not np.ptp(angles[known]) > ALIKE_ANGLES:
+        return None
+
+    def leaning(at: Real) -> Real:
+        motion = link_states(linkage, kernels, at, 0)
+        angles: Real = side * signed_angle(motion, kernels[-1], motion.placements[-1], lead)
+        return angles
+
+    k = int(np.nanargmin(side * angles))
+    low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
+    end, value = least(leaning, low, high)
+    end = top(leaning, end, min(high - end, end - low))
+    return abs(float(value)), float(end)
+
+
+def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
+    """The pressure angle of a driven link of a group at every position, rad; nan where there is none."""
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        for lead in followers(kernel.group) if kernel.group.title == group else ():
+            if lead[0] == link:
+                with np.errstate(all="ignore"):
+                    return angle(motion, kernel, at, lead)
+    return np.full(np.shape(motion.q), np.nan)
+
+
+def _flat(angles: Real) -> bool:
+    """Whether the angle stays as it is over these places of the scan."""
+    return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
+
+
+def _ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
+    """Ends of the range at which a group stops the driver, and where the range is from there."""
+    stops = {limit.place for limit in driver_range.limits}
+    return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
+
+
+def _right(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, end: float, inward: float) -> bool:
+    """Whether the angle of the last group is a right one at an end: as a polynomial of the root of what is left to it,
+    once, four and sixteen times a step inward, it tells where it goes.
+    """
+    near = -_negative(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
+    return bool(abs(np.array([8, -6, 1]) @ near / 3 - np.pi / 2) < RIGHT_ANGLE)
+
+
+def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:
+    """Of the last group; where it is dead the angle is a right one."""
+    motion = link_states(linkage, kernels, q, 0)
+    at = motion.placements[-1]
+    return np.where(at.dead, -np.pi / 2, -angle(motion, kernels[-1], at, lead))

@@ -1,0 +1,393 @@
+"""The output of the mechanism over its driver's places: where it is, how fast it goes, how far it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from tmm_cli.mechanics.groups.base import Kernel
+from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
+from tmm_cli.mechanics.kinematics.motion import LargestRates, Motion, moving_parts
+from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, Request
+from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.tolerances import AT_EDGE_OF_CAM, BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
+from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.structure.naming import output_link
+
+PARTS = 64  # of a stroke, through which an angle is followed
+
+
+def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
+    """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
+    slide = motion.linkage.output_guide(link)
+    if slide is not None:
+        sliding = motion.slide(slide)
+        return sliding.run, sliding.first, sliding.second
+    point = motion.linkage.output_point(link)
+    if point is not None:
+        moving = motion.named(point)
+        return _along(link, moving.x), _along(link, moving.first), _along(link, moving.second)
+    turning = motion.link(link)
+    return turning.angle, turning.first, turning.second
+
+
+def output_place(motion: LinkStates, link: str) -> Real:
+    """Run of the output (m, or its angle in rad) alone."""
+    point = motion.linkage.output_point(link)
+    if point is not None:
+        return _along(link, motion.spot(point))
+    slide = motion.linkage.output_guide(link)
+    return motion.angle(link) if slide is None else motion.run(slide)
+
+
+def output_slope(motion: LinkStates, link: str) -> Real:
+    """First transfer function of the output alone."""
+    linkage = motion.linkage
+    point = linkage.output_point(link)
+    if point is not None:
+        own = linkage.owner(point)
+        return _along(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
+    slide = linkage.output_guide(link)
+    return motion.first[link].w if slide is None else motion.slope(slide)
+
+
+def moving_slope(motion: LinkStates, link: str) -> Real:
+    """First transfer function of the output; zero in all positions of a variant where it moves in none of them.
+
+    The speed of what stays at rest is rounding, and so is its sign.
+    """
+    slope, rates = output_slope(motion, link), LargestRates.of(motion)
+    largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
+    moves = np.any(moving_parts(slope, largest), axis=-1, keepdims=True)
+    return np.where(moves, slope, 0.0)
+
+
+def _along(output: str, vector: Vector) -> Real:
+    """The coordinate of a vector that an output K.x or K.y is about."""
+    return vector.real if output.endswith(".x") else vector.imag
+
+
+class Curve(Protocol):
+    """What tells the strokes of an output, see OutputCurve."""
+
+    @property
+    def link(self) -> str: ...
+    @property
+    def swings(self) -> bool: ...
+    @property
+    def kind(self) -> str: ...
+    def place(self, q: Real) -> Real: ...
+
+
+@dataclass(frozen=True)
+class OutputCurve:
+    """An output over the driver's places; kernels: the groups on the way to it."""
+
+    linkage: Linkage
+    kernels: tuple[Kernel, ...]
+    link: str
+
+    @property
+    def swings(self) -> bool:
+        """Whether it turns, else it slides."""
+        return self.linkage.output_swings(self.link)
+
+    @property
+    def kind(self) -> str:
+        return "swing" if self.swings else "slide"
+
+    def place(self, q: Real) -> Real:
+        """Run, m, or angle in -pi..pi, rad."""
+        return output_place(link_states(self.linkage, self.kernels, q, 0), self.link)
+
+    def slope(self, q: Real) -> Real:
+        """First transfer function."""
+        return output_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
+
+    def moving_slope(self, q: Real) -> Real:
+        """First transfer function at many places of each variant; zero at all of them if the output stays at rest."""
+        return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
+
+
+def runs_of(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
+    """Where an output is at the start of each way of the driver (..., ways), and how far it goes in it.
+
+    An angle is followed through, so that it may pass 180 degrees.
+    """
+    shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
+    places = starts[..., None] + ways[..., None] * shares
+    run = curve.place(places.reshape(*starts.shape[:-1], -1)).reshape(places.shape)
+    run = np.unwrap(run, axis=-1) if curve.swings else run
+    return run[..., 0], run[..., -1] - run[..., 0]
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How far an output goes between two ends of the driver that were asked for: run (m or rad) and driver's place."""
+
+    link: str
+    kind: str
+    low: float
+    high: float
+    low_at: float
+    high_at: float
+
+
+def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link: str) -> Travel | None:
+    """Extremes of an output over the places asked for, found between them; for drivers that do not turn fully."""
+    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
+    q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
+    moved = link_states(linkage, kernels, q, 1)  # all groups: it goes only where the whole linkage can
+    run, slope = output_place(moved, link), output_slope(moved, link)
+    before, after = moved.placed[:-1], moved.placed[1:]
+    turning = (before & after & (slope[:-1] * slope[1:] < 0))[before]  # not over a gap between two ways of the driver
+    q, run = q[moved.placed], run[moved.placed]
+    if len(q) < 2:
+        return None
+    run = np.unwrap(run) if curve.swings else run
+    change = np.flatnonzero(turning)
+    if change.size:
+        ends = roots(curve.slope, q[change], q[change + 1])
+        there = curve.place(ends)
+        if curve.swings:
+            there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
+        q, run = np.concatenate([q, ends]), np.concatenate([run, there])
+    low, high = int(np.argmin(run)), int(np.argmax(run))
+    return Travel(link, curve.kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
+
+
+# Stage: the strokes of the output of the mechanism, which of them is the working one.
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed).
+
+    rest: how far the driver goes on in the dwell after it (a follower on the round of its cam), before the next stroke.
+    """
+
+    start: float
+    length: float
+    low: float
+    run: float
+    working: bool
+    rest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Strokes of an output in a turn of the driver, beginning with the working one; empty when it has none.
+
+    link: a link's name, or a coordinate of a point (K.x). kind: it slides (m), or swings (rad). k is the time of the
+    working strokes over that of the idle ones at constant speed, without the dwells between them. rule: why that stroke
+    is the working one. cycle: how far the driver goes until they repeat (rad). others: strokes of further links, on
+    which loads depend.
+    """
+
+    link: str
+    kind: str
+    strokes: tuple[Stroke, ...]
+    rule: str
+    cycle: float = 2 * np.pi
+    others: tuple[Strokes, ...] = ()
+
+    def of_link(self, link: str) -> Strokes:
+        """The strokes of one of the links on which loads depend; of the main output if `link` is empty."""
+        if link in ("", self.link):
+            return self
+        return next((other for other in self.others if other.link == link), Strokes(link, self.kind, (), ""))
+
+    def changed(self, change: Callable[[Stroke], Stroke]) -> Strokes:
+        """The same with every stroke changed, also of the other links."""
+        strokes, others = map(change, self.strokes), (other.changed(change) for other in self.others)
+        return replace(self, strokes=tuple(strokes), others=tuple(others))
+
+    @property
+    def working(self) -> tuple[Stroke, ...]:
+        return tuple(s for s in self.strokes if s.working)
+
+    @property
+    def travel(self) -> float:
+        """Stroke H (m) or swing psi (rad)."""
+        return max((abs(s.run) for s in self.strokes), key=np.max, default=0.0)
+
+    @property
+    def k(self) -> float:
+        """Coefficient of change of mean speed."""
+        idle = sum(s.length for s in self.strokes if not s.working)
+        return sum(s.length for s in self.working) / idle if idle else float("nan")
+
+    def share(self, q: Real, sense: int) -> Real:
+        """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
+        inside = np.zeros(np.shape(q), dtype=bool)
+        for stroke in self.working:
+            gone = np.mod(sense * (q - stroke.start) + SAME_PLACE, self.cycle) - SAME_PLACE
+            inside = inside | (gone < stroke.length - SAME_PLACE)
+        return inside
+
+
+def find_strokes(
+    linkage: Linkage,
+    kernels: tuple[Kernel, ...],
+    driver_range: DriverRange,
+    resists: float = 0.0,
+    link: str | None = None,
+) -> Strokes | None:
+    """Strokes of an output over the driver's way; None when there is no output.
+
+    link: the main output when left out. resists: sign of the output's run against which the useful resistance acts, 0
+    when it tells nothing. The working stroke is the slower one; when both last equally long, the one that is resisted;
+    then the one that runs forward.
+    """
+    link = link or output_link(linkage, tuple(d.group for d in kernels))
+    if link is None:
+        return None
+    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
+    none = Strokes(link, curve.kind, (), "")
+    if not driver_range.full:
+        return none
+    sense, cycle = linkage.driver.sense, 2 * np.pi * driver_range.turns
+    q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
+    # one step more: at the seam of the scan rounding may hide the end of a stroke
+    q = np.append(q, q[-1] + (q[1] - q[0]))
+    slope = curve.moving_slope(q)
+    if not np.any(slope):
+        return none
+    moves = np.flatnonzero(slope)
+    if moves[0] > 0:  # a dwell at the seam is not to be cut in two
+        q = q + (q[moves[0]] - q[0])
+        slope = curve.slope(q)
+    turns, rests = _stops(curve, q, slope, sense)
+    turns = np.mod(turns, cycle)
+    turns = np.where(cycle - turns < SEAM, 0.0, turns)
+    order = np.argsort(turns)
+    turns, rests = turns[order], rests[order]
+    again = np.diff(turns, append=turns[:1] + cycle) < SAME_PLACE  # found at both ends of the scan
+    rest_before = dict(zip(turns[~again].tolist(), rests[~again].tolist(), strict=True))
+    turns = _true_ends(curve, turns[~again][::sense], cycle, sense)
+    if turns.size < 2:
+        return none
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
+    lows, runs = runs_of(curve, turns, sense * lengths)
+    rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
+    lengths = lengths - rests
+    forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
+    direction, rule = _working(linkage.working_direction(link), forward, back, resists)
+    strokes = [
+        Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction), float(rest))
+        for t, n, s, r, rest in zip(turns, lengths, lows, runs, rests, strict=True)
+    ]
+    if not any(s.working for s in strokes):  # the output stands still but for rounding
+        return none
+    first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
+    return Strokes(link, curve.kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
+
+
+def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
+    """Where the output turns back: the driver's places from which it goes the other way, and the dwells before them.
+
+    slope: the output's first transfer function at the places q, which rise; it is exactly zero in a dwell, and jumps
+    from one sign to the other, large on both sides, at a change point, which is no end of a stroke, or at a hard impact
+    of a cam, which is one.
+    """
+    moves = np.flatnonzero(slope)
+    back = slope[moves[:-1]] * slope[moves[1:]] < 0
+    if not np.any(back):
+        return np.zeros(0), np.zeros(0)
+    last, first = moves[:-1][back], moves[1:][back]
+    stops = goes_on = roots(curve.slope, q[last], q[last + 1])
+    still = first > last + 1
+    if np.any(still):
+        goes_on = stops.copy()
+        goes_on[still] = roots(curve.slope, q[first[still] - 1], q[first[still]])
+    rests = goes_on - stops
+    rests[rests < NO_DWELL] = 0.0
+    ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
+    sides = np.abs(curve.slope(ends + BESIDE_END * np.array([[-1], [0], [1]]))).min(axis=0)
+    laws = [mesh.law for mesh in curve.linkage.meshes if mesh.law is not None]
+    if laws:  # a piece is taken to begin so little before its edge, and at that very place rounding would choose
+        ends = ends + sense * AT_EDGE_OF_CAM
+    impacts = any(law.jumps() for law in laws)
+    true = impacts | (rests > 0) | (sides < NO_JUMP * np.nanmax(np.abs(slope)))
+    return ends[true], rests[true]
+
+
+def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Real:
+    """Ends of strokes, without those that only rounding makes.
+
+    Where the output all but rests, its rounded speed may change sign over and over: such places are one end, in their
+    middle, or none when the output goes on the same way after them.
+    """
+    if turns.size < 2:
+        return turns
+    lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
+    __, runs = runs_of(curve, turns, sense * lengths)
+    moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
+    if bool(np.all(moves)) or not bool(np.any(moves)):
+        return turns
+    first = int(np.argmax(moves)) + 1  # the place after a true stroke
+    order = np.roll(np.arange(len(turns)), -first)
+    kept: list[float] = []
+    before, at, rested = runs[first - 1], float(turns[order[0]]), 0.0
+    for k in order:
+        if not moves[k]:
+            rested += lengths[k]
+            continue
+        if np.sign(runs[k]) != np.sign(before):
+            kept.append(np.mod(at + sense * rested / 2, cycle))
+        before, at, rested = runs[k], float(turns[(k + 1) % len(turns)]), 0.0
+    return np.sort(np.array(kept))[::sense]
+
+
+def _working(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
+    """In which direction (+1 or -1) the output works, and why: forward, back: how long strokes of each last (rad)."""
+    if asked != "auto":
+        return (1 if asked == "forward" else -1), "as the file says"
+    if abs(forward - back) > SAME_PLACE:
+        return (1 if forward > back else -1), "the slower one"
+    if resists:
+        return int(np.sign(resists)), "the one that the load resists"
+    return 1, "the forward one"
+
+
+def resisted(linkage: Linkage, link: str | None) -> Any:
+    """The sign of the output's run that the loads of the working stroke resist, of each variant where the loads differ
+    (variants, 1); 0 when they tell nothing."""
+    for slide in linkage.slides:
+        if {slide.carrier, slide.runner} == {FRAME, link}:
+            along = np.exp(1j * slide.direction)
+            if slide.runner == FRAME:
+                along = -along
+            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
+                       if x.link == link and x.working_stroke_only)  # fmt: skip
+            return -np.sign(push)
+    moment = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
+    return -np.sign(moment)
+
+
+def _mean(load: Load) -> Any:
+    return sum(load.table.values) / len(load.table.values) if load.table else 1.0
+
+
+def places(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:
+    """The driver's places that are asked for (rad or m); position 0 is the zero.
+
+    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost; over the
+    stroke of a driver they go from end to end.
+    """
+    if request.places:
+        return np.array(request.places)
+    steps = np.arange(request.count)
+    if driver_range.full:
+        start = request.start
+        if start == "working stroke":
+            start = strokes.strokes[0].start if strokes and strokes.strokes else driver_range.start + np.pi
+        return start + sense * (2 * np.pi * driver_range.turns * steps / request.count)
+    share = steps / max(request.count - 1, 1) if driver_range.inclusive else (steps + 0.5) / request.count
+    if sense < 0:
+        share = 1 - share
+    return driver_range.start + (driver_range.end - driver_range.start) * share

@@ -1,0 +1,111 @@
+"""What NumPy's functions do with numbers of 31 digits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.numerics.double_double_number import (
+    EPS,
+    FUNCTIONS,
+    PI,
+    UFUNCS,
+    DoubleDouble,
+    absolute,
+    add,
+    angle,
+    arctan2,
+    array,
+    divide,
+    exactly,
+    floor,
+    multiply,
+    negative,
+    parts,
+    power,
+    remainder,
+    rounded,
+    sqrt,
+    subtract,
+    turn,
+)
+
+
+def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
+    (a, b), (c, d) = parts(one), parts(other)
+    return DoubleDouble(np.where(truth, a, c), np.where(truth, b, d))
+
+
+def _compared(ufunc: Any) -> Callable[[Any, Any], Any]:
+    """By the higher parts, and by the lower ones where these are equal."""
+
+    def compare(x: Any, y: Any) -> Any:
+        (a, b), (c, d) = parts(x), parts(y)
+        return np.where(a == c, ufunc(b, d), ufunc(a, c))
+
+    return compare
+
+
+def _of_higher(ufunc: Any) -> Callable[[DoubleDouble], Any]:
+    return lambda x: ufunc(x.hi)
+
+
+def _sum(x: DoubleDouble, axis: int | None = None) -> DoubleDouble:
+    x = array(x)
+    return reduce(add, x.ravel() if axis is None else np.moveaxis(x, axis, 0))  # type: ignore[type-var]
+
+
+def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
+    found: Any = np.stack(list(accumulate(np.moveaxis(x, axis, 0), add)))  # type: ignore[type-var]
+    return np.moveaxis(found, 0, axis)  # type: ignore[no-any-return]
+
+
+def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
+    """A piecewise linear table (np.interp), which jumps where two arguments are equal."""
+    at, values = (DoubleDouble(*parts(array(column))) for column in (at, values))
+    left = np.clip(np.searchsorted(at.hi, parts(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
+    right = np.minimum(left + 1, len(at) - 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = np.clip(divide(subtract(x, at[left]), at[right] - at[left]), 0.0, 1.0)
+        between = values[left] + share * (values[right] - values[left])
+    return _where(np.isnan(between), values[right], between)
+
+
+UFUNCS |= {
+    "add": add, "subtract": subtract, "multiply": multiply, "divide": divide, "negative": negative,
+    "positive": lambda x: x, "absolute": absolute, "sqrt": sqrt, "power": power,
+    "floor": floor, "ceil": lambda x: negative(floor(negative(x))), "remainder": remainder,
+    "conjugate": DoubleDouble.conjugate,
+    "cos": lambda x: turn(x).real, "sin": lambda x: turn(x).imag, "arctan2": arctan2,
+    "tan": lambda x: divide(turn(x).imag, turn(x).real), "arctan": lambda x: arctan2(x, 1.0),
+    "arcsin": lambda x: arctan2(x, sqrt(multiply(subtract(1.0, x), add(1.0, x)))),
+    "arccos": lambda x: arctan2(sqrt(multiply(subtract(1.0, x), add(1.0, x))), x),
+    "hypot": lambda x, y: sqrt(add(multiply(x, x), multiply(y, y))),
+    "maximum": lambda x, y: _where(np.greater_equal(x, y) | np.isnan(x), x, y),
+    "minimum": lambda x, y: _where(np.less_equal(x, y) | np.isnan(x), x, y),
+}  # fmt: skip
+COMPARING: tuple[Any, ...] = (np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal)
+TELLING: tuple[Any, ...] = (np.sign, np.isfinite, np.isnan)
+UFUNCS |= {ufunc.__name__: _compared(ufunc) for ufunc in COMPARING}
+UFUNCS |= {ufunc.__name__: _of_higher(ufunc) for ufunc in TELLING}
+
+FUNCTIONS |= {
+    np.where: _where, np.sum: _sum, np.cumsum: _cumsum, np.interp: _interp,
+    np.real: lambda x: x.real, np.imag: lambda x: x.imag,
+    np.angle: angle, np.iscomplexobj: lambda x: x.dtype.kind == "c",
+    np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
+    np.searchsorted: lambda a, v, **how: np.searchsorted(parts(a)[0], parts(v)[0], **how),
+}  # fmt: skip
+
+
+# Numbers of some 31 digits, the sum of two doubles, as arrays that NumPy's functions take.
+#
+# The ordinary code of the stages runs on them as it stands, alike on every machine; the difference to float64 is the
+# rounding error itself. A complex number is a sum of two complex ones: real and imaginary parts are sums of their own.
+
+
+__all__ = ["EPS", "PI", "DoubleDouble", "array", "exactly", "rounded"]

@@ -1,0 +1,425 @@
+"""The number itself: a sum of two doubles in the place of an array; what it can do is in `functions`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from decimal import Context, Decimal, localcontext
+from functools import cache, reduce
+from math import frexp
+from typing import Any
+
+import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
+
+EPS = 2.0**-103  # a sum, product, quotient or root is off by less, in units of itself
+EXACT = Context(prec=60)
+
+Pair = tuple[Any, Any]
+
+UFUNCS: dict[str, Callable[..., Any]] = {}  # NumPy's, by their names
+FUNCTIONS: dict[Any, Callable[..., Any]] = {}  # others of NumPy that compute
+ROUNDED = {np.shape, np.max, np.min, np.nanmax, np.nanmin, np.any, np.all, np.round, np.argmax}  # by the higher part
+ARRANGING = {
+    np.stack, np.concatenate, np.broadcast_to, np.broadcast_arrays, np.reshape, np.ravel, np.moveaxis, np.swapaxes,
+    np.take_along_axis, np.atleast_1d, np.zeros_like, np.copy, np.nan_to_num, np.repeat,
+}  # fmt: skip
+
+
+class DoubleDouble(NDArrayOperatorsMixin):
+    """hi + lo, arrays of one shape, real or complex; lo is at most half a unit of the last place of hi."""
+
+    __slots__ = ("angle", "hi", "lo", "turn")
+
+    def __init__(self, hi: Any, lo: Any = None) -> None:
+        self.hi = np.asarray(hi)
+        self.lo = np.zeros_like(self.hi) if lo is None else np.asarray(lo)
+        self.turn: DoubleDouble | None = None  # e^(i x), once it was asked for
+        self.angle: DoubleDouble | None = None  # of a complex number, likewise
+
+    @classmethod
+    def decimal(cls, written: str) -> DoubleDouble:
+        """The number that decimals write. Raises decimal.InvalidOperation where they write none."""
+        return of_decimals([EXACT.create_decimal(written)])[0]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.hi.shape
+
+    @property
+    def ndim(self) -> int:
+        return self.hi.ndim
+
+    @property
+    def size(self) -> int:
+        return self.hi.size
+
+    @property
+    def dtype(self) -> Any:
+        return self.hi.dtype
+
+    @property
+    def real(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.real, self.lo.real)
+
+    @property
+    def imag(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.imag, self.lo.imag)
+
+    @property
+    def T(self) -> DoubleDouble:  # noqa: N802  as of an array
+        return DoubleDouble(self.hi.T, self.lo.T)
+
+    def conjugate(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.conjugate(), self.lo.conjugate())
+
+    def reshape(self, *shape: Any) -> DoubleDouble:
+        return DoubleDouble(self.hi.reshape(*shape), self.lo.reshape(*shape))
+
+    def ravel(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.ravel(), self.lo.ravel())
+
+    def copy(self) -> DoubleDouble:
+        return DoubleDouble(self.hi.copy(), self.lo.copy())
+
+    def astype(self, kind: Any) -> Any:
+        """Rounded to an array of plain numbers."""
+        return self.hi.astype(kind)
+
+    def __getitem__(self, key: Any) -> DoubleDouble:
+        return DoubleDouble(self.hi[key], self.lo[key])
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self.hi[key], self.lo[key] = parts(value)
+        self.turn = self.angle = None
+
+    def __len__(self) -> int:
+        return len(self.hi)
+
+    def __iter__(self) -> Iterator[DoubleDouble]:
+        return (self[k] for k in range(len(self)))
+
+    def __float__(self) -> float:
+        return float(self.hi)
+
+    def __int__(self) -> int:
+        return int(self.hi)
+
+    def __complex__(self) -> complex:
+        return complex(self.hi)
+
+    def __bool__(self) -> bool:
+        return bool(self.hi)
+
+    def __hash__(self) -> int:
+        return hash(self.hi[()])
+
+    def __format__(self, how: str) -> str:
+        return format(self.hi[()], how)
+
+    def __repr__(self) -> str:
+        return f"DoubleDouble({self.hi!r}, {self.lo!r})"
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("as a plain array it would lose half of its digits; astype(float) rounds")
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        known = UFUNCS.get(ufunc.__name__)
+        if known is None or method != "__call__" or any(value is not None for value in more.values()):
+            return NotImplemented
+        return known(*inputs)
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if function in FUNCTIONS:
+            return FUNCTIONS[function](*args, **kwargs)
+        if function in ROUNDED:
+            return function(args[0].hi, *args[1:], **kwargs)
+        if function not in ARRANGING:
+            return NotImplemented
+        hi, lo = (function(*_each(args, part), **kwargs) for part in (0, 1))
+        if isinstance(hi, list | tuple):
+            return type(hi)(DoubleDouble(*both) for both in zip(hi, lo, strict=True))
+        return DoubleDouble(hi, lo)
+
+
+def parts(value: Any) -> Pair:
+    """Higher and lower parts of an array of either kind."""
+    if isinstance(value, DoubleDouble):
+        return value.hi, value.lo
+    array = np.asarray(value)
+    return array, np.zeros_like(array)
+
+
+def _each(args: Any, part: int) -> Any:
+    """Arguments of a function that arranges numbers, with the higher (0) or the lower parts (1) of these."""
+    found = []
+    mixed = any(isinstance(arg, DoubleDouble) for arg in args)
+    for arg in args:
+        if isinstance(arg, tuple | list):
+            found.append(_each(arg, part))
+        elif isinstance(arg, DoubleDouble):
+            found.append((arg.hi, arg.lo)[part])
+        else:  # integers and truths say where, other plain numbers have no lower part
+            number = mixed and part and np.asarray(arg).dtype.kind in "fc"
+            found.append(np.zeros_like(arg) if number else arg)
+    return type(args)(found)
+
+
+def exactly(values: Any) -> Any:
+    """Plain numbers as double-doubles, in the place of an array."""
+    return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
+
+
+def array(values: Any) -> Any:
+    """An array of numbers, of double-doubles where one of them is such."""
+    if isinstance(values, DoubleDouble):
+        return values
+    if not isinstance(values, list | tuple):
+        return np.asarray(values)
+    found = [array(value) if isinstance(value, list | tuple) else value for value in values]
+    if any(isinstance(value, DoubleDouble) for value in found):
+        higher, lower = zip(*map(parts, found), strict=True)
+        return DoubleDouble(np.array(higher), np.array(lower))
+    return np.asarray(found)
+
+
+def rounded(values: Any) -> Any:
+    """Plain numbers of an array of either kind."""
+    return values.hi if isinstance(values, DoubleDouble) else values
+
+
+def of_decimals(numbers: Sequence[Decimal]) -> DoubleDouble:
+    """The nearest numbers."""
+    hi = [float(number) for number in numbers]
+    lo = [EXACT.subtract(number, Decimal(h)) for number, h in zip(numbers, hi, strict=True)]
+    return DoubleDouble(np.array(hi), np.array(lo, float))
+
+
+# Sums, products, quotients and roots, each off by less than EPS of itself.
+#
+# Exact sums: D. E. Knuth, The Art of Computer Programming 2, 4.2.2; exact products: T. J. Dekker, A floating-point
+# technique for extending the available precision, Numer. Math. 18 (1971).
+
+
+SPLIT = 2.0**27 + 1  # tears a double into two halves of 26 bits
+LARGEST_POWER = 8  # that is multiplied out
+
+
+def two_sum(a: Any, b: Any) -> Pair:
+    """a + b, and exactly what rounding took from it."""
+    total = a + b
+    other = total - a
+    return total, (a - (total - other)) + (b - other)
+
+
+def fast_two_sum(a: Any, b: Any) -> Pair:
+    """The same where |a| is not less than |b|."""
+    total = a + b
+    return total, b - (total - a)
+
+
+def two_product(a: Any, b: Any) -> Pair:
+    """a b, one of them real, and exactly what rounding took from it."""
+    product = a * b
+    torn = SPLIT * a
+    a1 = torn - (torn - a)
+    torn = SPLIT * b
+    b1 = torn - (torn - b)
+    a2, b2 = a - a1, b - b1
+    return product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2
+
+
+def add(x: Any, y: Any) -> DoubleDouble:
+    """x + y, one of them of 31 digits."""
+    if not isinstance(y, DoubleDouble):
+        x, y = y, x
+    total, error = two_sum(y.hi, x.hi if isinstance(x, DoubleDouble) else x)
+    if not isinstance(x, DoubleDouble):
+        return DoubleDouble(*fast_two_sum(total, error + y.lo))
+    lower, rest = two_sum(x.lo, y.lo)
+    total, error = fast_two_sum(total, error + lower)
+    return DoubleDouble(*fast_two_sum(total, error + rest))
+
+
+def negative(x: DoubleDouble) -> DoubleDouble:
+    """-x."""
+    return DoubleDouble(-x.hi, -x.lo)
+
+
+def subtract(x: Any, y: Any) -> DoubleDouble:
+    """x - y, one of them of 31 digits."""
+    return add(x, -y)
+
+
+def multiply(x: Any, y: Any) -> DoubleDouble:
+    """x y, one of them of 31 digits, real or complex."""
+    if not isinstance(y, DoubleDouble):
+        x, y = y, x
+    if isinstance(x, DoubleDouble):
+        one, rest = x.hi, x.hi * y.lo + x.lo * y.hi
+    elif _only_scales(x):
+        return DoubleDouble(x * y.hi, x * y.lo)
+    else:
+        one, rest = np.asarray(x), x * y.lo
+    other = y.hi
+    if one.dtype.kind == "c" and other.dtype.kind == "c":
+        one, other = (one, other) if one.ndim >= other.ndim else (other, one)
+        products, errors = two_product(_planes(one), other)
+        product, error = two_sum(products[0], 1j * products[1])
+        error = error + (errors[0] + 1j * errors[1])
+    else:
+        product, error = two_product(one, other)
+    return DoubleDouble(*fast_two_sum(product, error + rest))
+
+
+def _only_scales(x: Any) -> bool:
+    """Whether products with it are exact: a power of two, or i."""
+    if isinstance(x, complex):
+        return x in (1j, -1j)
+    return isinstance(x, int | float) and abs(frexp(x)[0]) == 0.5
+
+
+def _planes(values: Any) -> Any:
+    """Real and imaginary parts on a first axis."""
+    planes = np.empty((2, *values.shape))
+    planes[0], planes[1] = values.real, values.imag
+    return planes
+
+
+def divide(x: Any, y: Any) -> DoubleDouble:
+    """x / y, real or complex."""
+    x, y = DoubleDouble(*parts(x)), DoubleDouble(*parts(y))
+    if y.dtype.kind == "c":
+        return divide(multiply(x, y.conjugate()), square(y))
+    first = x.hi / y.hi
+    product, error = two_product(first, y.hi)
+    rest = (x.hi - product) - error + (x.lo - first * y.lo)
+    return _finite(DoubleDouble(*fast_two_sum(first, rest / y.hi)), first)
+
+
+def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
+    """What was found, or the plain number where that is infinite or none."""
+    sound = np.isfinite(plain)
+    if sound.all():
+        return found
+    return DoubleDouble(np.where(sound, found.hi, plain), np.where(sound, found.lo, 0.0))
+
+
+def square(z: DoubleDouble) -> DoubleDouble:
+    """|z|^2 of complex numbers."""
+    planes = _planes(z.hi)
+    squares, errors = two_product(planes, planes)
+    total, error = two_sum(squares[0], squares[1])
+    rest = errors + 2 * planes * _planes(z.lo)
+    return DoubleDouble(*fast_two_sum(total, error + (rest[0] + rest[1])))
+
+
+def sqrt(x: DoubleDouble) -> DoubleDouble:
+    """One step from the double's root."""
+    root = np.sqrt(x.hi)
+    square, error = two_product(root, root)
+    rest = (x.hi - square) - error + x.lo
+    return _finite(DoubleDouble(*fast_two_sum(root, rest / np.where(root == 0, 1.0, 2 * root))), root)
+
+
+def absolute(x: DoubleDouble) -> DoubleDouble:
+    """|x|, real or complex."""
+    if x.dtype.kind == "c":
+        return sqrt(square(x))
+    sign = np.copysign(1.0, x.hi)
+    return DoubleDouble(sign * x.hi, sign * x.lo)
+
+
+def power(x: Any, n: Any) -> DoubleDouble:
+    """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
+    x, number = exactly(x), float(n)
+    if number == 0.5:
+        return sqrt(x)
+    if not number.is_integer() or abs(number) > LARGEST_POWER:
+        return DoubleDouble(np.power(x.hi, number))
+    found = reduce(multiply, [x] * int(abs(number))) if number else DoubleDouble(np.ones(np.shape(x)))
+    return found if number >= 0 else divide(1.0, found)
+
+
+def floor(x: DoubleDouble) -> DoubleDouble:
+    """The largest whole number that is not above x."""
+    whole = np.floor(x.hi)
+    return DoubleDouble(*fast_two_sum(whole, np.where(whole == x.hi, np.floor(x.lo), 0.0)))
+
+
+def remainder(x: Any, y: Any) -> DoubleDouble:
+    """What is left of x when y is taken from it as often as it goes."""
+    return subtract(x, multiply(floor(divide(x, y)), y))
+
+
+# Directions and angles: sines, cosines and their inverses.
+
+
+PI = "3.14159265358979323846264338327950288419716939937510582097494"
+PARTS = 64  # of a turn: directions that sines and cosines start from
+POWERS, PRECISE = 9, 5  # of the square in the series from there on; those from PRECISE on are small enough for doubles
+
+
+def turn(x: DoubleDouble) -> DoubleDouble:
+    """e^(i x): the nearest of some directions, and the power series from there."""
+    if x.turn is None:
+        steps, directions, series = _tables()
+        number = np.round(x.hi * (PARTS / (2 * np.pi)))
+        product, error = two_product(number, steps[0])
+        rest = DoubleDouble(*two_sum(x.hi - product, x.lo - error)) - number * steps[1]
+        square = multiply(rest, rest)
+        column = (slice(None), *(None,) * x.ndim)
+        small: Any = 0.0
+        for k in range(POWERS - 1, PRECISE - 1, -1):
+            small = series[k].hi[column] + square.hi * small
+        found = DoubleDouble(small)
+        for k in range(PRECISE - 1, -1, -1):
+            power, less = series[k], multiply(square, found)
+            total, error = fast_two_sum(power.hi[column], less.hi)
+            found = DoubleDouble(*fast_two_sum(total, error + (power.lo[column] + less.lo)))
+        sine = multiply(found[1], rest)
+        near = DoubleDouble(found.hi[0] + 1j * sine.hi, found.lo[0] + 1j * sine.lo)
+        x.turn = multiply(directions[np.nan_to_num(number).astype(int) % PARTS], near)
+    return x.turn
+
+
+def arctan2(y: Any, x: Any) -> DoubleDouble:
+    """One step from the double's: the sine of the angle that is left is that angle."""
+    y, x = DoubleDouble(*parts(y)), DoubleDouble(*parts(x))
+    near = DoubleDouble(np.arctan2(y.hi, x.hi))
+    there, size = turn(near), np.hypot(y.hi, x.hi)
+    left = subtract(multiply(y, there.real), multiply(x, there.imag)).hi
+    return add(near, left / np.where(size == 0, 1.0, size))
+
+
+def angle(z: DoubleDouble) -> DoubleDouble:
+    """Of complex numbers."""
+    if z.angle is None:
+        z.angle = arctan2(z.imag, z.real)
+    return z.angle
+
+
+@cache
+def _tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
+    """A part of a turn in two doubles; the directions it leads to; coefficients of cosine and sine by powers."""
+    with localcontext(EXACT):
+        step = 2 * Decimal(PI) / PARTS
+        steps, rest = [], step
+        for _ in range(2):
+            steps.append(float(rest))
+            rest -= Decimal(steps[-1])
+        cosine, sine, term = Decimal(0), Decimal(0), Decimal(1)
+        for k in range(0, 40, 2):
+            cosine, term = cosine + term, term * step / (k + 1)
+            sine, term = sine + term, -term * step / (k + 2)
+        directions = [(Decimal(1), Decimal(0))]
+        for _ in range(PARTS - 1):
+            c, s = directions[-1]
+            directions.append((c * cosine - s * sine, c * sine + s * cosine))
+        series, even = [], Decimal(1)
+        for k in range(POWERS):
+            odd = even / (2 * k + 1)
+            series.append(of_decimals((even, odd)))
+            even = -odd / (2 * k + 2)
+    re, im = (of_decimals(column) for column in zip(*directions, strict=True))
+    coefficients: Any = np.stack(series)
+    return steps, DoubleDouble(re.hi + 1j * im.hi, re.lo + 1j * im.lo), coefficients

@@ -1,0 +1,243 @@
+"""Small systems of linear equations, one a position: solved all at once, of double-doubles too, never an exception."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.numerics.double_double import exactly, rounded
+from tmm_cli.mechanics.numerics.tolerances import TRUNCATED
+from tmm_cli.mechanics.numerics.vectors import Real
+
+ROUNDS = 5  # each gives as many digits more as float64 has beyond those that the matrix loses
+
+
+def solve(matrix: Real, right: Real) -> Real:
+    """x of matrix x = right for matrices (..., m, n) and right sides (..., m); nan where a matrix is singular.
+
+    With more equations than unknowns, or fewer, the least squares solution of least size.
+    """
+    if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
+        return _refined(matrix, right)
+    rows, columns = matrix.shape[-2:]
+    if rows != columns:
+        return _least_squares(matrix, right)
+    try:
+        return np.linalg.solve(matrix, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        sound = np.where(singular[..., None, None], np.eye(rows), matrix)
+        return np.where(singular[..., None], np.nan, np.linalg.solve(sound, right[..., None])[..., 0])
+
+
+def _refined(matrix: Real, right: Real) -> Real:
+    """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
+    near = rounded(matrix)
+    found: Real = exactly(solve(near, rounded(right)))
+    for _ in range(ROUNDS):
+        rest = right - np.sum(matrix * found[..., None, :], axis=-1)
+        found = found + solve(near, rounded(rest))
+    return found
+
+
+def _least_squares(matrix: Real, right: Real) -> Real:
+    sound = np.all(np.isfinite(matrix), axis=(-1, -2))
+    clean = np.where(sound[..., None, None], matrix, 0.0)
+    inverse = np.linalg.pinv(clean, rcond=TRUNCATED)
+    found = np.einsum("...ij,...j->...i", inverse, right)
+    rest = right - np.einsum("...ij,...j->...i", clean, found)
+    found = found + np.einsum("...ij,...j->...i", inverse, rest)  # an inverse rounds more than a solution does
+    return np.where(sound[..., None], found, np.nan)
+
+
+def least_over_largest(matrix: Real) -> Real:
+    """Least singular value over the largest, nan where the matrix is not finite."""
+    sound = np.all(np.isfinite(matrix), axis=(-1, -2))
+    clean = np.where(sound[..., None, None], rounded(matrix), 0.0)
+    values = np.linalg.svd(clean, compute_uv=False)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(sound, values[..., -1] / values[..., 0], np.nan)
+
+
+def signed_determinant(matrix: Real) -> Real:
+    """Sign of the determinant; 1 where there are more equations than unknowns."""
+    if matrix.shape[-1] != matrix.shape[-2]:
+        return np.ones(matrix.shape[:-2])
+    sign: Real = np.linalg.slogdet(rounded(matrix))[0]
+    return sign
+
+
+def margin_of(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
+    """Least singular value over the largest of as many rows {unknown: coefficient} as there are unknowns.
+
+    Without dimension: lengths tells which rows are in metres; of three unknowns two are. On a tape it is one operation.
+    """
+    scale = [1 / size if length else 1.0 for length in lengths]
+    columns = [1.0 if k % 3 == 2 else size for k in range(len(rows))]
+    entries = [
+        row[k] * (down * across) if k in row else 0.0
+        for row, down in zip(rows, scale, strict=True) for k, across in enumerate(columns)
+    ]  # fmt: skip
+    stand = next((entry for entry in entries if hasattr(entry, "called")), None)
+    return _margin(*entries) if stand is None else stand.called(_margin, *entries)
+
+
+def _margin(*entries: Any) -> Real:
+    many = math.isqrt(len(entries))
+    together = np.stack(np.broadcast_arrays(*entries), axis=-1)
+    return least_over_largest(together.reshape(*together.shape[:-1], many, many))
+
+
+# Linear equations whose coefficients are arrays one by one: eliminated in an order that is chosen beforehand.
+#
+# A matrix is a list of rows, {column: coefficient}; what is not there is zero. Some unknowns are explicit: in their
+# order each follows from a row of its own, with a plain number as its coefficient, from those before it and from the
+# free ones. What is left for the free unknowns is made triangular by rotations of two rows at a time (W. Givens,
+# 1958), which needs no search for pivots, takes few of them where columns are thin, and is stable wherever the
+# equations are sound.
+
+
+Row = Mapping[int, Any]
+
+
+@dataclass(frozen=True)
+class Order:
+    """explicit: (row, column) one after another; closing: rows that are left; free: columns that are left."""
+
+    explicit: tuple[tuple[int, int], ...]
+    closing: tuple[int, ...]
+    free: tuple[int, ...]
+
+
+class Eliminated:
+    """Equations made triangular: solved for several right sides, with the matrix or its transpose.
+
+    scales: what rows are multiplied by and columns counted in where lengths and angles meet in the free unknowns.
+    """
+
+    def __init__(self, rows: Sequence[Row], order: Order, scales: tuple[Sequence[Any], Sequence[Any]] | None) -> None:
+        self.rows, self.order, self.scales = rows, order, scales
+        self.following: dict[int, dict[int, Any]] = {}  # of each explicit unknown what a free one moves it by
+        for row, column in order.explicit:
+            self.following[column] = {
+                k: -value / rows[row][column] for k, value in self._by_free(row, skip=column).items()
+            }
+        self._triangular([self._by_free(row) for row in order.closing])
+
+    def _by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
+        """A row by the free unknowns alone."""
+        found: dict[int, Any] = {}
+        for column, value in self.rows[row].items():
+            if column in self.following:
+                for k, by in self.following[column].items():
+                    found[k] = found[k] + value * by if k in found else value * by
+            elif column != skip:
+                found[column] = found[column] + value if column in found else value
+        return found
+
+    def _triangular(self, left: list[dict[int, Any]]) -> None:
+        if self.scales is not None:
+            down, across = self.scales
+            left = [
+                {k: value * (down[row] * across[k]) for k, value in one.items()}
+                for row, one in zip(self.order.closing, left, strict=True)
+            ]
+        self.left = left
+        self.turns: list[tuple[int, int, Any, Any]] = []  # rows and the cosine and sine by which they are turned
+        self.pivots: list[tuple[int, int]] = []
+        rows, columns = list(range(len(left))), list(self.order.free)
+        while columns:
+            column = min(columns, key=lambda k: sum(k in left[row] for row in rows))
+            top, *others = [row for row in rows if column in left[row]]
+            for row in others:
+                a, b = left[top][column], left[row][column]
+                length = np.sqrt(a * a + b * b)
+                c, s = a / length, b / length
+                self.turns.append((top, row, c, s))
+                one, other = left[top], left[row]
+                both = list(dict.fromkeys([*one, *other]))
+                left[top] = {k: _sum(c, one.get(k), s, other.get(k)) for k in both} | {column: length}
+                left[row] = {k: _sum(-s, one.get(k), c, other.get(k)) for k in both if k != column}
+            self.pivots.append((top, column))
+            rows.remove(top)
+            columns.remove(column)
+
+    @property
+    def diagonal(self) -> list[Any]:
+        """Of the triangle; their product is the determinant but for a constant."""
+        return [self.left[row][column] for row, column in self.pivots]
+
+    def solve(self, right: Sequence[Any]) -> list[Any]:
+        """x of matrix x = right."""
+        found: dict[int, Any] = {}
+        for row, column in self.order.explicit:
+            found[column] = self._rest(row, right[row], found, column) / self.rows[row][column]
+        free = self.free([self._rest(row, right[row], found) for row in self.order.closing])
+        for _, column in self.order.explicit:
+            found[column] = sum((by * free[k] for k, by in self.following[column].items()), found[column])
+        found |= free
+        return [found[k] for k in range(len(found))]
+
+    def _rest(self, row: int, right: Any, found: Mapping[int, Any], skip: int = -1) -> Any:
+        for column, value in self.rows[row].items():
+            if column in found and column != skip:
+                right = right - value * found[column]
+        return right
+
+    def free(self, right: Sequence[Any]) -> dict[int, Any]:
+        """Free unknowns by the right sides of the closing rows, those of the explicit ones being zero."""
+        down, across = self.scales or ((), ())
+        turned = list(right)
+        if self.scales is not None:
+            turned = [value * down[row] for row, value in zip(self.order.closing, turned, strict=True)]
+        for top, row, c, s in self.turns:
+            a, b = turned[top], turned[row]
+            turned[top], turned[row] = c * a + s * b, c * b - s * a
+        found: dict[int, Any] = {}
+        for row, column in reversed(self.pivots):
+            value = turned[row]
+            for k, coefficient in self.left[row].items():
+                if k != column:
+                    value = value - coefficient * found[k]
+            found[column] = value / self.left[row][column]
+        return found if self.scales is None else {k: value * across[k] for k, value in found.items()}
+
+    def transposed(self, right: Sequence[Any]) -> list[Any]:
+        """y of y matrix = right."""
+        down, across = self.scales or ((), ())
+        whole = {k: right[k] for k in self.order.free}
+        for _, column in self.order.explicit:
+            for k, by in self.following[column].items():
+                whole[k] = whole[k] + by * right[column]
+        if self.scales is not None:
+            whole = {k: value * across[k] for k, value in whole.items()}
+        turned: list[Any] = [0.0] * len(self.left)
+        for row, column in self.pivots:
+            turned[row] = whole[column] / self.left[row][column]
+            for k, coefficient in self.left[row].items():
+                if k != column:
+                    whole[k] = whole[k] - coefficient * turned[row]
+        for top, row, c, s in reversed(self.turns):
+            a, b = turned[top], turned[row]
+            turned[top], turned[row] = c * a - s * b, s * a + c * b
+        found = dict(zip(self.order.closing, turned, strict=True))
+        if self.scales is not None:
+            found = {row: value * down[row] for row, value in found.items()}
+        for row, column in reversed(self.order.explicit):
+            value = right[column]
+            for other, multiplier in found.items():
+                if column in self.rows[other]:
+                    value = value - self.rows[other][column] * multiplier
+            found[row] = value / self.rows[row][column]
+        return [found[k] for k in range(len(found))]
+
+
+def _sum(c: Any, one: Any, s: Any, other: Any) -> Any:
+    """c one + s other, where None is nothing."""
+    if one is None:
+        return s * other
+    return c * one if other is None else c * one + s * other

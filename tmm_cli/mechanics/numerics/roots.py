@@ -1,0 +1,242 @@
+"""Roots and least values of functions that are computed at many places at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import perm
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.numerics.tolerances import SMOOTH
+from tmm_cli.mechanics.numerics.vectors import Real
+
+SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
+DEGREE = 8  # of the polynomial that tells where an extreme lies
+THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
+REFINEMENTS, PARTS = 16, 4  # of a step of a scan about a peak: finer grids, and their steps in one step of the last
+FLAT = 1e-12  # of the largest value: a peak that rises by less from its neighbours is rounding
+
+
+def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
+    """Roots between places where a function has different signs, of all intervals at once, to the last bit.
+
+    In the precision of the places, float64 at least. Inverse quadratic interpolation where it is safe, else halving:
+    T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function,
+    Advances in Engineering Software 28 (1997).
+    """
+    kind = np.result_type(np.asarray(low), np.asarray(high), float)
+    b, a = np.asarray(low, kind), np.asarray(high, kind)
+    fb, fa = function(b), function(a)
+    if bool(np.any((fa == 0) | (fb == 0))):
+        return _edges(function, b, a, fb)
+    c, fc, share = b, fb, np.full(np.shape(a), 0.5)
+    with np.errstate(all="ignore"):
+        for _ in range(halvings_of(a)):
+            place = a + share * (b - a)
+            value = function(place)
+            same = np.sign(value) == np.sign(fa)
+            c, fc = np.where(same, a, b), np.where(same, fa, fb)
+            b, fb = np.where(same, b, a), np.where(same, fb, fa)
+            a, fa = place, value
+            best = np.where(np.abs(fa) < np.abs(fb), a, b)
+            least_step = 2 * np.spacing(np.abs(best)) / np.abs(b - a)
+            if bool(np.all((least_step > 0.5) | (np.minimum(np.abs(fa), np.abs(fb)) == 0) | (a == b))):
+                break
+            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
+            inner = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            share = np.where(safe & np.isfinite(inner), inner, 0.5)
+            share = np.clip(share, np.minimum(least_step, 0.5), 1 - np.minimum(least_step, 0.5))
+    return np.where(np.abs(fa) <= np.abs(fb), a, b)
+
+
+def bisect(
+    holds: Callable[[Real], Real], inside: Real, outside: Real, halvings: int | None = None
+) -> tuple[Real, Real]:
+    """The last places at which a condition holds and the first at which it does not, of all intervals at once.
+
+    It holds at `inside` and not at `outside`; by default they are neighbours in the end, in their own precision.
+    """
+    for _ in range(halvings_of(inside) if halvings is None else halvings):
+        middle = (inside + outside) / 2
+        good = holds(middle)
+        inside, outside = np.where(good, middle, inside)[()], np.where(good, outside, middle)[()]
+    return inside, outside
+
+
+def halvings_of(places: Real) -> int:
+    """How many halvings leave nothing of an interval in the precision of its ends."""
+    return int(np.finfo(np.result_type(places, float)).nmant) + SPARE
+
+
+def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
+    """Where the sign of the lower end ends, by halving: beside a dwell that is its edge, not any place of it."""
+    same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
+    return (same + other) / 2
+
+
+def least(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
+    """Places and values of the least between places, of all intervals at once, in each of which there is one minimum:
+    nine places of each, the best third kept.
+    """
+    ends = np.array([low, high])
+    if not ends.size:
+        return ends[0], ends[1]
+    for _ in range(THIRDS):
+        places = np.linspace(ends[0], ends[1], 9)
+        best = np.argmin(function(places.ravel()).reshape(places.shape), axis=0)
+        ends = np.take_along_axis(places, np.clip([best - 1, best + 1], 0, 8), 0)
+    middle = np.mean(ends, axis=0)
+    return middle, function(np.ravel(middle)).reshape(np.shape(middle))[()]
+
+
+def greatest(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
+    """The largest values of curves that may jump or bend, (curves,); nan of those that have no value anywhere.
+
+    About every peak of a scan that may reach the largest value between two of its places, finer grids are laid, one
+    within another. Between places a curve is expected to rise by no more than twice what it rises to the next one.
+
+    Args:
+        curves: values, shape (k, n), of the curves with the numbers (k,) at places of each (k, n).
+        q: places at equal steps from one end to the other, of a cycle too, shape (places,).
+        values: of all curves there, (curves, places), nan where there is none.
+        turns: values are angles (rad), unwrapped.
+    """
+    y = np.where(np.isfinite(values), values, -np.inf)
+    best = np.max(y, axis=1)
+    before, after = np.column_stack([y[:, 0], y[:, :-1]]), np.column_stack([y[:, 1:], y[:, -1]])
+    with np.errstate(invalid="ignore"):
+        rise = np.maximum(y - before, y - after)
+        flat = FLAT * np.max(np.abs(y), axis=1, where=np.isfinite(y), initial=0.0)
+        near_top = (y >= before) & (y >= after) & (y + 2 * rise >= best[:, None]) & (rise > flat[:, None])
+    rows, place = np.nonzero(near_top & np.isfinite(y))
+    at, top_value, start = q[place], y[rows, place], y[rows, place][:, None]
+    step = abs(float(q[1] - q[0])) if len(q) > 1 else 0.0
+    for _ in range(REFINEMENTS if rows.size else 0):
+        grid = at[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
+        grid = np.clip(grid, np.min(q), np.max(q))
+        fine = curves(rows, grid)
+        if turns:
+            fine = start + np.remainder(fine - start + np.pi, 2 * np.pi) - np.pi
+        fine = np.where(np.isfinite(fine), fine, -np.inf)
+        highest = np.argmax(fine, axis=1)[:, None]
+        value = np.take_along_axis(fine, highest, 1)[:, 0]
+        at = np.where(value > top_value, np.take_along_axis(grid, highest, 1)[:, 0], at)
+        top_value = np.maximum(value, top_value)
+        step /= PARTS
+    np.maximum.at(best, rows, top_value)
+    return np.where(np.isfinite(best), best, np.nan)
+
+
+def top(function: Callable[[Real], Real], place: float, half: float) -> float:
+    """The place of a smooth extreme near `place`, to nearly all digits: where the slope of a polynomial vanishes.
+
+    The extreme itself is known to half the digits only, as long as one compares values. `place` is given back where
+    the function is not smooth within `half` of it.
+    """
+    nodes = np.cos(np.pi * np.arange(DEGREE + 5) / (DEGREE + 4))
+    values = function(place + half * nodes)
+    if not bool(np.all(np.isfinite(values))):
+        return place
+    fit = np.polynomial.Chebyshev.fit(nodes, values, DEGREE, domain=[-1, 1])
+    rough = float(np.max(np.abs(fit(nodes) - values)))
+    slope, bend = fit.deriv(), fit.deriv(2)
+    here = 0.0
+    for _ in range(8):
+        curved = float(bend(here))
+        if curved == 0 or abs(here) > 1:
+            return place
+        here -= float(slope(here)) / curved
+    smooth = rough < SMOOTH * float(np.max(np.abs(values))) and float(np.ptp(values)) > 1e3 * rough
+    return place + half * here if smooth and abs(here) < 1 else place
+
+
+# Peaks and zeros between the places at which a quantity is known, many variants at once.
+#
+# Seven neighbours on equal steps h determine a polynomial of degree 6, which is off by h^7 times the seventh derivative
+# over 7! and less; arrays are (variants, places).
+
+
+WINDOW = 33  # places about a peak
+SIDE = 3  # neighbours on either side
+FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ FIT: coefficients
+NEWTON = 6
+RIVALS = 8  # highest places of what may jump
+RIVAL = 0.3  # of its range: a lower peak so far below the highest one is no rival
+FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
+
+
+def _near(y: Real, k: Real) -> tuple[Real, Real]:
+    middle = np.clip(k, SIDE, y.shape[1] - SIDE - 1)
+    near = np.take_along_axis(y, middle[:, None] + np.arange(-SIDE, SIDE + 1), axis=1)
+    return near @ FIT, middle
+
+
+def value(c: Real, u: Real, order: int = 0) -> Real:
+    """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
+    return _at(_derived(c, order), u)
+
+
+def _derived(c: Real, order: int) -> list[Real]:
+    """Coefficients of a derivative, that of the highest power first."""
+    return [FACTORS[order][power] * c[..., power] for power in range(2 * SIDE, order - 1, -1)]
+
+
+def _at(coefficients: list[Real], u: Real) -> Real:
+    found, *rest = coefficients
+    for coefficient in rest:
+        found = found * u + coefficient
+    return found
+
+
+def peak(y: Real) -> Real:
+    """The largest value within a window; (variants,)."""
+    top, most = np.argmax(y, axis=1), np.max(y, axis=1)
+    c, middle = _near(y, top)
+    slopes, bends = _derived(c, 1), _derived(c, 2)
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            bend, last = _at(bends, u), u
+            u = np.minimum(np.maximum(u - np.where(bend < 0, _at(slopes, u) / bend, 0.0), -SIDE), SIDE)
+            if np.array_equal(u, last):
+                break
+    found: Real = np.maximum(value(c, u), most)
+    return np.where((middle == top) & (np.abs(u) < SIDE), found, most)
+
+
+def zero(y: Real) -> Real:
+    """Where in a window a quantity changes its sign, in steps from its first place; (variants,)."""
+    c, middle = _near(y, np.argmin(np.abs(y), axis=1))
+    u = np.zeros(len(y))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON):
+            step = value(c, u) / value(c, u, 1)
+            u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
+    return middle + u
+
+
+def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
+    """The largest value of a curve that may jump or bend sharply: closer and closer about its highest places.
+
+    scan: shares of the way at equal steps; closed: the curve goes on after its end as at its beginning.
+    """
+    y = curve(scan)
+    best, step = float(np.nanmax(y)), scan[1] - scan[0]
+    middle = scan[peaks_of(y, RIVALS, closed)]
+    ends = (middle - step, middle + step) if closed else (np.maximum(middle - step, 0), np.minimum(middle + step, 1))
+    __, lowest = least(lambda shares: np.nan_to_num(-curve(shares), nan=np.inf), *ends)
+    return max(best, -float(np.min(lowest)))
+
+
+def peaks_of(y: Real, most: int, closed: bool) -> list[int]:
+    """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
+    before, after = np.roll(y, 1), np.roll(y, -1)
+    if not closed:
+        before[0] = after[-1] = -np.inf
+    found = np.flatnonzero((y >= before) & (y > after))
+    if not found.size:
+        return [int(np.argmax(y))]
+    found = found[np.argsort(-y[found], kind="stable")][:most]
+    return [int(k) for k in found if not y[k] < np.max(y) - RIVAL * np.ptp(y)]  # some are kept where not all is known

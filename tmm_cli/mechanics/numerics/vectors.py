@@ -1,0 +1,121 @@
+"""Planar vectors as complex numbers, x + iy, metres, turning is multiplying; and records that hold arrays of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_cli.mechanics.numerics.double_double import EPS, PI, DoubleDouble
+from tmm_cli.mechanics.numerics.tolerances import CONSTRUCTION_ROUNDINGS, NO_VECTOR
+
+Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
+Vector = NDArray[Any]  # complex arrays, likewise
+Record = TypeVar("Record")
+
+
+def pi(values: Any) -> Any:
+    """Pi in the precision of an array."""
+    if isinstance(values, DoubleDouble):
+        return DoubleDouble.decimal(PI)
+    return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
+
+
+def largest(values: Any) -> float:
+    """The size of the largest of them; zero where there is none."""
+    return float(np.nanmax(np.abs(values), initial=0.0))
+
+
+def without_rounding(values: Any, beside: float) -> Real:
+    """With zeros for what only rounding leaves beside a value so large."""
+    return np.where(np.abs(values) <= NO_VECTOR * beside, 0.0, values)
+
+
+def roundoff(values: Any) -> float:
+    """Unit roundoff of an array's own precision."""
+    return EPS if isinstance(values, DoubleDouble) else float(np.finfo(values.real.dtype).eps) / 2
+
+
+def dot(a: Any, b: Any) -> Any:
+    """Scalar product a.b."""
+    return a.real * b.real + a.imag * b.imag
+
+
+def cross(a: Any, b: Any) -> Any:
+    """z component of a x b: positive when b lies to the left of a."""
+    return a.real * b.imag - a.imag * b.real
+
+
+def square(a: Any) -> Any:
+    """The square of its length."""
+    return a.real * a.real + a.imag * a.imag
+
+
+def along(a: Any, amount: Any) -> Any:
+    """The vector a scaled by a real amount (no complex product, so no spurious rounding)."""
+    return a * amount
+
+
+def unit(angle: Any) -> Any:
+    """e^(i angle)."""
+    return np.cos(angle) + 1j * np.sin(angle)
+
+
+def settled(values: Any, size: Any) -> Any:
+    """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
+    values = values if isinstance(values, DoubleDouble) else np.asarray(values)
+    if np.iscomplexobj(values):
+        return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
+    return np.where(np.abs(values) > 2 * CONSTRUCTION_ROUNDINGS * roundoff(values) * size, values, 0.0)[()]
+
+
+def left(a: Any) -> Any:
+    """a turned through +90 degrees."""
+    return 1j * a
+
+
+def mapped(
+    change: Callable[..., Any], record: Record, *others: Any, skip: Collection[str] = (), path: str = ""
+) -> Record:
+    """A record like this one with change(path, leaf, *leaves of the others) in the place of each leaf.
+
+    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. The others have the same shape.
+    skip: names of fields that stay as they are. A path reads links.2.points.A or loads[0].force.
+    """
+
+    def at(name: str, part: Any, rest: Any) -> Any:
+        return mapped(change, part, *rest, skip=skip, path=name)
+
+    found: Any
+    if is_dataclass(record) and not isinstance(record, type):
+        names = [f.name for f in fields(record) if f.init and f.name not in skip]
+        new = {n: at(f"{path}.{n}" if path else n, getattr(record, n), [getattr(o, n) for o in others]) for n in names}
+        found = replace(record, **new)
+    elif isinstance(record, Mapping):
+        found = {key: at(f"{path}.{key}", part, [o[key] for o in others]) for key, part in record.items()}
+    elif isinstance(record, tuple | list):
+        rows = enumerate(zip(record, *others, strict=True))
+        found = type(record)(at(f"{path}[{k}]", part, rest) for k, (part, *rest) in rows)
+    else:
+        found = change(path, record, *others)
+    whole: Record = found
+    return whole
+
+
+def leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
+    """Paths and leaves of a record, as `mapped` has them."""
+    if is_dataclass(record) and not isinstance(record, type):
+        for f in fields(record):
+            if f.name not in skip:
+                yield from leaves(getattr(record, f.name), skip, f"{path}.{f.name}" if path else f.name)
+    elif isinstance(record, Mapping):
+        for key, value in record.items():
+            yield from leaves(value, skip, f"{path}.{key}")
+    elif isinstance(record, tuple | list):
+        for k, value in enumerate(record):
+            yield from leaves(value, skip, f"{path}[{k}]")
+    else:
+        yield path, record

@@ -1,0 +1,92 @@
+"""A plan: named vectors in one plane, and the scale at which it goes on paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from tmm_cli.mechanics.forces.free_bodies import BELOW, Kind, Symbol
+from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
+LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
+MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
+PAD = 22.0  # mm about the figure, for labels
+
+
+@dataclass(frozen=True)
+class NamedVector:
+    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+
+    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    """
+
+    name: str
+    start: complex
+    end: complex
+    kind: Kind
+    symbol: Symbol = Symbol("")  # noqa: RUF009  frozen
+
+    @property
+    def value(self) -> complex:
+        return self.end - self.start
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
+
+    vectors: tuple[NamedVector, ...]
+    ends: Mapping[str, complex] = field(default_factory=dict)
+    corners: Mapping[str, complex] = field(default_factory=dict)
+
+    @property
+    def size(self) -> float:
+        """The largest extent, SI."""
+        points = [*self.ends.values(), *(p for v in self.vectors for p in (v.start, v.end))]
+        return extent(points)[0] if points else 0.0
+
+    def drawn(self) -> tuple[NamedVector, ...]:
+        """Vectors that are more than a point."""
+        least = NO_VECTOR * self.size
+        return tuple(v for v in self.vectors if abs(v.value) > least)
+
+
+def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
+    """Larger side, width, height and middle of the box about the points."""
+    points = list(points)
+    xs, ys = [p.real for p in points], [p.imag for p in points]
+    width, height = max(xs) - min(xs), max(ys) - min(ys)
+    return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+
+
+def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+    """Corners of what may be drawn on below the title strip, mm."""
+    return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
+
+
+def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
+    """The smallest round scale factor (SI a millimetre) at which a box fits on paper (mm)."""
+    least = max(width / paper_width, height / paper_height)
+    if not least > 0 or not math.isfinite(least):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(least))
+    # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
+    return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
+
+
+def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
+    """The paper (mm) on which points (SI) are drawn largest, and the scale there, SI a millimetre."""
+    _, width, height, _ = extent(list(points) or [0j])
+    scales = {
+        paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
+        for paper in (LANDSCAPE, PORTRAIT)
+    }
+    best = min(scales, key=lambda paper: (scales[paper], paper[1]))
+    return best, scales[best]
+
+
+def in_letters(segment: str) -> str:
+    """A segment of a plan, or a lettered point of it, with the figures of its letters below the line: pa₃, s₁."""
+    return segment.translate(BELOW)

@@ -1,0 +1,378 @@
+"""Mobility, pairs and Assur groups of a linkage, from who is joined to whom alone.
+
+The order of a group is the number of its outer pairs; its class see group_class. The groups of the structural report
+are those of the linkage without its redundant links and pairs (see reduction); kinematics solves groups of all links.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from tmm_cli.language import printed
+from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Linkage
+from tmm_cli.mechanics.structure.graph import Count, Tie, components, count, rigid_sets
+from tmm_cli.mechanics.structure.group import (
+    NOTHING,
+    ROMAN,
+    Group,
+    Pair,
+    Passive,
+    Reduction,
+    RedundantPair,
+    RigidSet,
+    group_class,
+)
+
+HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
+
+
+@dataclass(frozen=True)
+class Structure:
+    """The structure of a linkage.
+
+    mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
+    over-held). groups are those of the structural report, all_groups those of all links, both in solving order;
+    reduction says what the report leaves out. under_constrained and redundant_pairs name what is wrong when the
+    mobility is not the number of drivers. passive: what the numerical rank found to be redundant; mobility is then
+    less than the truth by as much.
+    """
+
+    links: tuple[str, ...]
+    pairs: tuple[Pair, ...]
+    drivers: tuple[Driver, ...]
+    groups: tuple[Group, ...]
+    mobility: int
+    freedom: int
+    under_constrained: tuple[str, ...] = ()
+    redundant_pairs: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    passive: tuple[Passive, ...] = ()
+    all_groups: tuple[Group, ...] = ()
+    reduction: Reduction = NOTHING
+
+    @property
+    def redundant(self) -> int:
+        """Number of passive constraints in the plane."""
+        return sum(passive.constraints for passive in self.passive)
+
+    @property
+    def higher(self) -> int:
+        """Number of higher pairs, p2."""
+        return sum(not pair.lower for pair in self.pairs)
+
+    @property
+    def sound(self) -> bool:
+        """Whether each freedom is driven and nothing held twice, but for what is known to be passive."""
+        wanted = len(self.drivers)
+        return (
+            self.freedom == wanted == self.mobility + self.redundant
+            and not self.redundant_pairs
+            and not self.under_constrained
+        )
+
+    def rebind(self, linkage: Linkage) -> Structure:
+        """The same structure with the numbers of another linkage."""
+        groups, all_groups = (tuple(g.rebind(linkage) for g in some) for some in (self.groups, self.all_groups))
+        pairs = tuple(pair.rebind(linkage) for pair in self.pairs)
+        return replace(self, pairs=pairs, groups=groups, all_groups=all_groups)
+
+    def driving_pair(self, driver: Driver) -> Pair:
+        """The pair in which a driver works; in a compound hinge its two links may both be attached to a third."""
+        ends, apart = {driver.base, driver.link}, Pair(driver.joint, "R", driver.base, driver.link, driver.joint)
+        pairs = (p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
+        return next(pairs, apart)
+
+    @property
+    def contours(self) -> int:
+        """Independent closed contours, K = p - n."""
+        return len(self.pairs) - len(self.links)
+
+    @property
+    def formula(self) -> str:
+        """Structural formula: I(0,1) -> II(2,3) -> II(4,5); branches as structural_formula() writes them."""
+        titles = {driver.link: self.driver_title(driver) for driver in self.drivers}
+        parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
+        title_of = {
+            link: titles[driver.link]
+            for driver in self.drivers if driver.base == FRAME for link in self.rigid_with(driver.link)
+        }  # fmt: skip
+        title_of |= {link: group.title for group in self.groups for link in group.links}
+        for group in self.groups:
+            driving = [titles[driver.link] for driver in group.drivers]
+            parts[group.title] = [*driving, *(title_of[link] for link in group.known if link in title_of)]
+        return structural_formula(parts)
+
+    def rigid_with(self, link: str) -> tuple[str, ...]:
+        """A link with those that are rigid to it."""
+        return next((rigid.links for rigid in self.reduction.rigid if link in rigid.links), (link,))
+
+    def driver_title(self, driver: Driver) -> str:
+        """I(0,1): a driver, as the structural formula writes it."""
+        base, link = ("+".join(self.rigid_with(n)) if n != FRAME else n for n in (driver.base, driver.link))
+        return f"I({printed(base)},{link})"
+
+    @property
+    def count(self) -> tuple[int, int, int]:
+        """n, p1, p2 without what the structural report leaves out: their 3n - 2p1 - p2 is the mobility."""
+        counts = [group.count for group in self.groups]
+        n, lower, higher = (sum(column) for column in zip((0, 0, 0), *counts, strict=True))
+        return n + len(self.drivers), lower + len(self.drivers), higher
+
+    @property
+    def mechanism_class(self) -> int:
+        """The class of its highest group."""
+        return max((g.group_class for g in self.groups), default=1)
+
+    @property
+    def roman(self) -> str:
+        """This class as it is written."""
+        return ROMAN[min(self.mechanism_class, 10)]
+
+    @property
+    def solved(self) -> tuple[Group, ...]:
+        """The groups as they are solved: those that hold one another twice in one, with all that lies between them.
+
+        Together they can pass where one of them alone is dead; that is what passive constraints are often for.
+        """
+        among = {link for passive in self.passive for link in passive.among}
+        held = [group for group in self.all_groups if among & set(group.links)]
+        if len(held) < 2:
+            return self.all_groups
+        links = {link for group in held for link in group.links}
+        needed, dependent = set(links), set(links)
+        for group in reversed(self.all_groups):
+            if needed & set(group.links):
+                needed.update(group.links, group.depends_on)
+        for group in self.all_groups:
+            if dependent & group.depends_on:
+                dependent.update(group.links)
+        first = [group for group in self.all_groups if needed.issuperset(group.links)]
+        together = [group for group in first if dependent.issuperset(group.links)]
+        return (
+            *(group for group in first if group not in together),
+            self._united(together),
+            *(group for group in self.all_groups if group not in first),
+        )
+
+    def _united(self, groups: Sequence[Group]) -> Group:
+        """Several groups as one."""
+        links = {link for group in groups for link in group.links}
+        names = {pair.name for group in groups for pair in (*group.inner, *group.outer)}
+        pairs = [pair for pair in self.pairs if pair.name in names]
+        return Group(
+            tuple(link for link in self.links if link in links), tuple(p for p in pairs if {p.i, p.j} <= links),
+            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.group_class for g in groups), "",
+            tuple(driver for group in groups for driver in group.drivers),
+        )  # fmt: skip
+
+    def pair(self, name: str) -> Pair:
+        return next(p for p in self.pairs if p.name == name)
+
+
+def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
+    """The formula of a structure whose parts are attached to one another.
+
+    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). What is attached to several parts, none
+    of which is attached to another of them, stands after their sum: I(0,1) + I(0,4) -> II(2,3).
+
+    Args:
+        parts: the title of each part (a driver or a group), in solving order, with the titles of those it is attached
+            to.
+    """
+    before: dict[str, set[str]] = {}
+    chains: list[list[tuple[str, ...]]] = []
+    for title, attached_to in parts.items():
+        before[title] = set(attached_to).union(*(before[other] for other in attached_to))
+        last = tuple(t for t in parts if t in attached_to and not any(t in before[other] for other in attached_to))
+        chain = next((chain for chain in chains if chain[-1] == last), None)
+        if chain is not None:
+            chain.append((title,))
+        else:
+            chains.append([last, (title,)] if last else [(title,)])
+    longer = [chain for chain in chains if len(chain) > 1]
+    heads = {title for chain in longer for title in chain[0]}
+    kept = [chain for chain in chains if chain in longer or chain[0][0] not in heads]
+    return ", ".join(" -> ".join(" + ".join(titles) for titles in chain) for chain in kept)
+
+
+def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
+    """Structure of a linkage; never fails: what is wrong with it is in the result.
+
+    dropped: how many conditions of which tie (by its number) are left out of the count; the groups of the report are
+    then still those of all links.
+    """
+    less = dropped or {}
+    ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
+    pins = _pins(linkage)
+    bodies = tuple(linkage.links)
+    undriven, driven = _counts(bodies, ties, pins, [(d.base, d.link) for d in linkage.drivers])
+    solved = _parts(driven, bodies)
+    rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
+    pairs = tuple(_pairs(linkage, rank))
+    mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
+    sound = _sound(undriven, driven, linkage)
+    cranks = {(driver.link,) for driver in linkage.cranks}
+    groups = tuple(_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
+    order = {name: k for k, name in enumerate(linkage.links)}
+    over_held = undriven.redundant_pairs or driven.redundant_pairs
+    structure = Structure(
+        linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free,
+        # with the driver in, a link is loose when it moves on its own; without it, every link may move with the crank
+        tuple(sorted(driven.under_constrained, key=order.__getitem__)),
+        tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in over_held),
+        all_groups=groups,
+    )  # fmt: skip
+    if sound and not less:
+        rigid = Reduction(tuple(RigidSet(links) for links in rigid_sets(bodies, ties, pins)))
+        return (reduced(linkage, structure, rigid) or structure) if rigid else structure
+    return structure
+
+
+def reduced(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
+    """The structure with the groups of what a reduction leaves; None where these are not Assur groups.
+
+    Groups of all links get the class of the report's groups that they contain.
+    """
+    every = list(ties_of(linkage))
+    ties = list(reduction.ties(every))
+    tied = {end for tie in ties for end in (tie.a, tie.b)}
+    pins = tuple(pin for pin in _pins(linkage) if pin in tied)
+    bodies = reduction.bodies(linkage.links)
+    drivers = [(reduction.body(d.base), reduction.body(d.link)) for d in linkage.drivers]
+    undriven, driven = _counts(bodies, ties, pins, drivers)
+    if not _sound(undriven, driven, linkage):
+        return None
+    solved = _parts(driven, bodies)
+    rank = dict.fromkeys(reduction.members(FRAME), -1)
+    rank |= {link: k for k, part in enumerate(solved) for body in part for link in reduction.members(body)}
+    pairs = tuple(reduction.reduced_pairs(linkage, structure.pairs, rank, ties))
+    redundant, as_higher = [], set()
+    for number, constraints in reduction.conditions.items():
+        tie = every[number]
+        left = tie.constraints - constraints
+        pair = reduction.pair_of(tie, pairs if left else structure.pairs)
+        if pair is None:
+            return None
+        redundant.append(RedundantPair(pair.name, constraints, left))
+        if left and tie.constraints > 1:
+            as_higher.add(pair.name)
+    cranks = {(reduction.body(driver.link),) for driver in linkage.cranks}
+    groups = tuple(_group(part, pairs, rank, linkage, reduction, as_higher) for part in solved if part not in cranks)
+    if any(group.mobility for group in groups):
+        return None
+    grade = {link: group.group_class for group in groups for link in group.links}
+    all_groups = tuple(
+        replace(group, group_class=max(grade.get(link, 2) for link in group.links)) for group in structure.all_groups
+    )
+    return replace(
+        structure, groups=groups, all_groups=all_groups, reduction=replace(reduction, pairs=tuple(redundant))
+    )
+
+
+def _counts(
+    bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
+) -> tuple[Count, Count]:
+    """What the pebble game says without the drivers and with them."""
+    driving = [Tie("driver", base, link, 1) for base, link in drivers]
+    return count(bodies, FRAME, ties, pins), count(bodies, FRAME, [*ties, *driving], pins)
+
+
+def _parts(driven: Count, bodies: Sequence[str]) -> list[tuple[str, ...]]:
+    """The bodies of each group in solving order, without pins and the frame."""
+    parts = [tuple(body for body in part if body in bodies and body != FRAME) for part in components(driven.depends)]
+    return [tuple(sorted(part, key=bodies.index)) for part in parts if part]
+
+
+def _sound(undriven: Count, driven: Count, linkage: Linkage) -> bool:
+    """True if each freedom is driven, and nothing is held twice."""
+    held_twice = undriven.redundant_pairs or driven.redundant_pairs
+    return undriven.free == len(linkage.drivers) and not held_twice and driven.free == 0
+
+
+def _pins(linkage: Linkage) -> tuple[str, ...]:
+    return tuple(_pin(hinge) for hinge in linkage.hinges if len(hinge.links) > 2 and not hinge.attached_to)
+
+
+def _pin(hinge: Hinge) -> str:
+    return f"pin {hinge.point}"
+
+
+def ties_of(linkage: Linkage) -> Iterable[Tie]:
+    """Who is joined to whom; a compound hinge through its pin, or as the file attaches its links."""
+    for hinge in linkage.hinges:
+        if len(hinge.links) == 2:
+            yield Tie(hinge.point, *hinge.links, 2)
+        elif hinge.attached_to:
+            yield from (Tie(hinge.point, hinge.attached_to, x, 2) for x in hinge.links if x != hinge.attached_to)
+        else:
+            yield from (Tie(hinge.point, _pin(hinge), link, 2) for link in hinge.links)
+    yield from (Tie(slide.name, slide.carrier, slide.runner, 2) for slide in linkage.slides)
+    yield from (Tie(mesh.name, mesh.i, mesh.j, 1) for mesh in linkage.meshes)
+
+
+def pairs_within(linkage: Linkage) -> tuple[Pair, ...]:
+    """The pairs of a linkage whose solving order is not known."""
+    return tuple(_pairs(linkage, dict.fromkeys(linkage.links, 0)))
+
+
+def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
+    """Pairs of the linkage; in a compound hinge all links are attached to one of them.
+
+    `rank` is the number of a link's group in solving order.
+    """
+    order = {name: k for k, name in enumerate(linkage.links)}
+    for hinge in linkage.hinges:
+        links = sorted(hinge.links, key=lambda name: (rank[name], order[name]))
+        common = hinge.attached_to or _common_link(links, rank, linkage)
+        for number, link in enumerate(link for link in links if link != common):
+            i, j = sorted((common, link), key=links.index)
+            yield Pair(hinge.point + ("'" * (number + 1) if number else ""), "R", i, j, hinge.point)
+    for slide in linkage.slides:
+        yield Pair(slide.name, "P", slide.carrier, slide.runner, slide.point, slide)
+    for mesh in linkage.meshes:
+        yield Pair(mesh.name, HIGHER[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
+
+
+def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
+    """The link to which the others in a hinge are attached unless the file says otherwise.
+
+    The frame, else the driver, else, within the group that is solved first, a link connected to the frame, else the
+    first. `links` stand in solving order.
+    """
+    first = [link for link in links if rank[link] == rank[links[0]]]
+    driven = [driver.link for driver in linkage.drivers if driver.link in first]
+    connected = [link for link in first if linkage.hinged_to_frame(link) or linkage.slides_on_frame(link)]
+    return (*driven, *connected, *first)[0]
+
+
+def _group(
+    bodies: tuple[str, ...],
+    pairs: tuple[Pair, ...],
+    rank: Mapping[str, int],
+    linkage: Linkage,
+    reduction: Reduction = NOTHING,
+    as_higher: Collection[str] = (),
+) -> Group:
+    """The group of these bodies. `rank` is the number of a link's group; as_higher: see Group."""
+    here, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
+    links = tuple(link for body in bodies for link in member[body])
+    rigid = tuple(links for links in member.values() if len(links) > 1)
+    inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
+    outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
+    own = {p.name: p.i if rank[p.i] == here else p.j for p in outer}
+    outer.sort(key=lambda p: links.index(own[p.name]))
+    drivers = tuple(
+        d for d in linkage.drivers
+        if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here
+    )  # fmt: skip
+    halved = tuple(pair.name for pair in (*inner, *outer) if pair.name in as_higher)
+    if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers and not halved:
+        # The standard names write the turning end first: RRP, RPP.
+        outer.sort(key=lambda p: p.kind == "P")
+        kind = outer[0].kind + inner[0].kind + outer[1].kind
+        in_order = tuple(link for p in outer for link in member[reduction.body(own[p.name])])
+        return Group(in_order, inner, tuple(outer), 2, kind, rigid=rigid)
+    kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
+    grade = group_class([*map(member.__getitem__, bodies)], inner, outer, drivers, halved)
+    return Group(links, inner, tuple(outer), grade, kind, drivers, rigid, halved)

@@ -1,0 +1,114 @@
+"""After how many turns of the driver everything is back where it was: toothed wheels and further drivers take part."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+
+from tmm_cli.mechanics.linkage import FRAME, Linkage, Mesh
+from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
+
+DENSE = 361  # places of a curve that is drawn, a turn
+MOST = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
+TEETH = 500  # denominators of ratios that are looked for
+
+
+def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) -> int | None:
+    """Turns of the first driver in a cycle; None when there are more than anyone counts, or none at all.
+
+    rounds: how often links go round in a turn of the driver, as far as that is known; a rocker does not.
+    """
+    turns = 1
+    for share in _shares(linkage, rounds or {}).values():
+        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
+    lead = linkage.driver
+    for driver in linkage.others:
+        if driver.kind != "turn" or not lead.rate or driver.acceleration or lead.acceleration:
+            return None
+        share = _fraction(driver.rate / lead.rate)
+        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
+    return turns if turns <= MOST else None
+
+
+def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
+    """Turns of each wheel in a turn of the driver, as far as other wheels and the driver tell; None: not in any number.
+
+    Links that no wheel turns come round with the driver: their turns are whole, which is all that counts here where
+    they are not known.
+    """
+    whole, lead = Fraction(1), linkage.driver
+    found: dict[str, Fraction | None] = {FRAME: Fraction(0)}
+    for driver in linkage.cranks:
+        found[driver.link] = whole if driver is lead or not lead.rate else _fraction(driver.rate / lead.rate)
+    gears = [mesh for mesh in linkage.meshes if mesh.kind == "gear"]
+    while gears:
+        known = [m for m in gears if m.carrier in found and (m.i in found or m.j in found)]
+        if not known:
+            together = _together(gears, found)
+            if together:
+                found.update(together)
+                continue
+            wheels = {m.i for m in gears} | {m.j for m in gears}
+            free = [n for m in gears for n in (m.carrier, m.i) if n not in found]
+            first = next((n for n in free if n not in wheels), free[0])
+            found[first] = Fraction(rounds.get(first, 1))
+            continue
+        mesh = known[0]
+        gears.remove(mesh)
+        ratio, carrier = _fraction(mesh.ratio), found[mesh.carrier]
+        for one, other, step in ((mesh.i, mesh.j, ratio), (mesh.j, mesh.i, ratio and 1 / ratio)):
+            if one in found and other not in found:
+                found[other] = _turned(found[one], carrier, step)
+                break
+    return found
+
+
+def _together(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
+    """Turns that follow from several pairs of wheels at once, as those of a carrier between its sun and a fixed ring.
+
+    Every pair says turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
+    """
+    solved: dict[str, dict[str, Fraction]] = {}  # a link's turns by those of others; "" counts what is known
+    for mesh in gears:
+        ratio = _fraction(mesh.ratio)
+        if ratio is None or any(found.get(link, ratio) is None for link in (mesh.i, mesh.j, mesh.carrier)):
+            continue
+        row: dict[str, Fraction] = {}
+        for link, factor in ((mesh.j, Fraction(1)), (mesh.i, -ratio), (mesh.carrier, ratio - 1)):
+            known = found.get(link)
+            _add(row, {link: Fraction(1)} if known is None else {"": known}, factor)
+        for link, by in solved.items():
+            _add(row, by, row.pop(link, Fraction(0)))
+        first = next((link for link in row if link), None)
+        if first is None:
+            continue
+        share = row.pop(first)
+        own = {link: -factor / share for link, factor in row.items()}
+        for by in solved.values():
+            _add(by, own, by.pop(first, Fraction(0)))
+        solved[first] = own
+    return {link: by.get("", Fraction(0)) for link, by in solved.items() if not set(by) - {""}}
+
+
+def _add(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
+    """Adds a multiple of another sum to a sum; what comes to nothing is left out."""
+    for link, share in other.items():
+        row[link] = row.get(link, Fraction(0)) + factor * share
+        if not row[link]:
+            del row[link]
+
+
+def _turned(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:
+    """Turns of a wheel from those of its partner; where that stands still on the carrier, so does the wheel."""
+    if share is None or carrier is None:
+        return None
+    if share == carrier:
+        return carrier
+    return None if step is None else carrier + step * (share - carrier)
+
+
+def _fraction(ratio: float) -> Fraction | None:
+    """The ratio of two whole numbers that it is, if it is one."""
+    near = Fraction(ratio).limit_denominator(TEETH)
+    return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None

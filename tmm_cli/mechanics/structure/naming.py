@@ -1,0 +1,189 @@
+"""What each link and the whole scheme are called, from the pairs and from what can turn all the way round; the output.
+
+Six-bar chains: R. L. Norton, Design of Machinery, ch. 2; basic schemes: I. I. Artobolevsky, Theory of Mechanisms and
+Machines, ch. 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations, product
+
+import numpy as np
+
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.graph import Contour, contours
+from tmm_cli.mechanics.structure.group import Group, Pair
+
+
+def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
+    """The role of each moving link; `turns` tells whether a link turns through 360 degrees, and is asked only then."""
+    return {name: _role(linkage, name, turns) for name in linkage.moving}
+
+
+def _role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str:
+    special = _higher(linkage, name) or _cylinder(linkage, name)
+    if special is not None:
+        return special
+    slides = [s for s in linkage.slides if name in (s.carrier, s.runner)]
+    carries = any(s.carrier == name and s.runner != FRAME for s in slides)
+    runs = any(s.runner == name and s.carrier != FRAME for s in slides)
+    if linkage.slides_on_frame(name):
+        return "slider"
+    if linkage.hinged_to_frame(name):
+        if carries:
+            return "slotted link"
+        if runs:
+            return "rocking slider"
+        return "crank" if turns(name) else "rocker"
+    if runs:
+        return "stone"
+    if carries:
+        runner = next(s.runner for s in slides if s.carrier == name)
+        return "rod" if linkage.hinged_to_frame(runner) else "slotted link"
+    return "coupler"
+
+
+def _higher(linkage: Linkage, name: str) -> str | None:
+    """What a link is called for its teeth or its cam; a wheel is a planet where its axis moves."""
+    for mesh in linkage.meshes:
+        if mesh.kind == "cam" and name in (mesh.i, mesh.j):
+            return "cam" if name == mesh.i else "follower"
+        if mesh.kind == "rack" and name == mesh.j:
+            return "rack"
+        if name == mesh.i or (mesh.kind == "gear" and name == mesh.j):
+            return "wheel" if linkage.hinged_to_frame(name) else "planet"
+    return "carrier" if any(mesh.carrier == name for mesh in linkage.meshes) else None
+
+
+def _cylinder(linkage: Linkage, name: str) -> str | None:
+    """A cylinder that swings, and the piston that is driven out of it."""
+    driven = {d.joint for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
+    for slide in linkage.slides:
+        if slide.name in driven and name in (slide.carrier, slide.runner):
+            return "cylinder" if name == slide.carrier else "piston"
+    return None
+
+
+def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
+    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder.
+
+    Where constraints are redundant the groups are not known yet; then the links stand in the order of the file.
+    """
+    if linkage.output is not None:
+        return linkage.output.link
+    driving = {link for driver in linkage.drivers for link in (driver.link, driver.base)}
+    for links in [group.links for group in reversed(groups)] or [linkage.moving[::-1]]:
+        held = [link for link in links if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)]
+        held = [link for link in held if link not in driving] or held
+        if held:
+            return next((link for link in held if linkage.slides_on_frame(link)), held[0])
+    return None
+
+
+def link_motion(linkage: Linkage, name: str) -> str:
+    """The motion of a link relative to the frame, as far as its pairs alone show it.
+
+    Returns:
+        "rotation" (it has a revolute pair with the frame), "translation" (prismatic pairs alone connect it to the
+        frame, directly or through other links, so it keeps its direction) or "plane motion".
+    """
+    if linkage.hinged_to_frame(name):
+        return "rotation"
+    parallel = {FRAME}
+    for _repeat in linkage.slides:
+        parallel |= {end for s in linkage.slides for end in (s.carrier, s.runner) if parallel & {s.carrier, s.runner}}
+    return "translation" if name in parallel else "plane motion"
+
+
+def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
+    """Whether a link may be the coupler of a parallelogram: by lengths alone, so also that of an antiparallelogram.
+
+    Two of its points are hinged to links that turn about the frame, on equal arms and as far apart as their pivots.
+    """
+    arms = []
+    for hinge in linkage.hinges:
+        others = [link for link in hinge.links if link not in (FRAME, name) and linkage.hinged_to_frame(link)]
+        if name in hinge.links and others:
+            pivot = linkage.shared(FRAME, others[0])
+            assert pivot is not None
+            arm = linkage.local(others[0], hinge.point) - linkage.local(others[0], pivot)
+            arms.append((linkage.local(name, hinge.point), linkage.local(FRAME, pivot), abs(arm)))
+    size = max((float(np.max(arm)) for __, __, arm in arms), default=0.0)
+    return any(
+        bool(np.all(np.abs(arm - other_arm) <= SAME_PLACES * size))
+        and bool(np.all(np.abs(np.abs(end - other_end) - np.abs(pivot - other_pivot)) <= SAME_PLACES * size))
+        for (end, pivot, arm), (other_end, other_pivot, other_arm) in combinations(arms, 2)
+    )
+
+
+def four_link_scheme(kinds: str) -> str | None:
+    """The basic scheme of a contour of four links, from its pairs in order, both of the frame at the ends.
+
+    It does not depend on which link drives. None for a contour without a name.
+    """
+    schemes = {
+        "RRRR": "hinged four-bar",
+        "RRRP": "crank-slider", "RRPR": "slotted-lever",
+        "RRPP": "sine", "RPRP": "tangent",
+        "RPPR": "double slotted-link", "PRRP": "double-slider",
+    }  # fmt: skip
+    return schemes.get(kinds) or schemes.get(kinds[::-1])
+
+
+def contour_scheme(contour: Contour, structure: Structure) -> str | None:
+    """The basic scheme of a contour of four links with the frame; None for any other contour."""
+    if len(contour.links) != 4 or contour.links[0] != FRAME:
+        return None
+    kind = {pair.name: pair.kind for pair in structure.pairs}
+    return four_link_scheme("".join(kind[name] for name in contour.pairs))
+
+
+def basic_schemes(structure: Structure) -> dict[str, str]:
+    """The basic schemes of all contours of four links with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
+    named = (
+        (contour.title, contour_scheme(contour, structure)) for contour in contours(structure.pairs, structure.links)
+    )
+    return {title: scheme for title, scheme in named if scheme}
+
+
+def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
+    """The names of a six-link mechanism with seven lower pairs: Watt I or II, Stephenson I, II or III.
+
+    A compound hinge of three links can be drawn in three ways, which may have different names: all of them are
+    returned. Empty for any other mechanism, and for one that has redundant links or pairs.
+    """
+    if len(structure.links) != 5 or len(structure.pairs) != 7 or structure.higher or structure.reduction:
+        return ()
+    names = (_six_bar(pairs) for pairs in _attachments(structure.pairs))
+    return tuple(sorted({name for name in names if name}))
+
+
+def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]:
+    """The links of all pairs, for each choice of the link that carries the others in each compound hinge."""
+    by_place: dict[str, list[tuple[str, str]]] = {}
+    for pair in pairs:
+        by_place.setdefault(pair.point if pair.kind == "R" else f"slide {pair.name}", []).append((pair.i, pair.j))
+    choices = []
+    for ends in by_place.values():
+        links = tuple(dict.fromkeys(link for pair in ends for link in pair))
+        stars = [tuple((centre, link) for link in links if link != centre) for centre in links]
+        choices.append(stars if len(ends) > 1 else [tuple(ends)])
+    for chosen in product(*choices):
+        yield tuple(pair for star in chosen for pair in star)
+
+
+def _six_bar(pairs: tuple[tuple[str, str], ...]) -> str | None:
+    """The name of a six-link chain with two ternary links on a frame; None for other chains."""
+    degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
+    ternary = {link for link in degree if degree[link] == 3}
+    if sorted(degree.values()) != [2, 2, 2, 2, 3, 3]:
+        return None
+    if any(set(pair) == ternary for pair in pairs):
+        return "Watt II" if FRAME in ternary else "Watt I"
+    if FRAME in ternary:
+        return "Stephenson III"
+    between = {link for pair in pairs if FRAME in pair for link in pair if link != FRAME}
+    return "Stephenson I" if between == ternary else "Stephenson II"

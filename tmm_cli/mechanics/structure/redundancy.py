@@ -1,0 +1,264 @@
+"""A planar linkage made of real parts is spatial: its redundant constraints, and pairs that take them away.
+
+With all axes square to the plane, what holds a linkage falls into two halves that know nothing of each other: motion
+in the plane, and motion out of it. Out of the plane a link can rise and tilt, so it is the height
+h(x, y) = a + b x + c y over its own axes. Each pair asks for equal heights:
+
+    turning, sliding       height and both slopes      3 conditions
+    cylindrical for R      both slopes                 2   (it may rise along its axis)
+    spherical              height at the centre        1
+    cylindrical for P      height along the guide      2   (it may turn about the guide)
+    planar for P           slope across the guide      1   (flat cheeks: it may rise and turn in the wall)
+    teeth, cams            slope along the normal      1   (they touch in a line along the axes)
+    the same, crowned      nothing                     0   (they touch in a point)
+
+A linkage with W = 1 has 3K conditions too many, K its contours. None of these replacements touches the motion in the
+plane. A proposal is good when its conditions are independent (rank) and what they leave free are local freedoms of
+single links. Points of links enter as they are, links at arbitrary angles, so no position has to be solved.
+Such replacements are the subject of L. N. Reshetov, Self-aligning mechanisms (Mir, 1982).
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import DEPENDENT
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair
+
+TOUCHING = ("cylinder on plane", "sphere on plane")
+CHOICES = {
+    "R": ("turning", "cylindrical", "spherical"), "P": ("sliding", "cylindrical", "planar"),
+    "G": TOUCHING, "K": TOUCHING, "C": TOUCHING,
+}  # fmt: skip
+"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 0."""
+CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
+GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
+MOST_TRIES = 12
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """A pair that is to become one with more freedoms."""
+
+    pair: Pair
+    was: str
+    kind: str
+
+    @property
+    def freedoms(self) -> int:
+        return KINDS[self.kind]
+
+
+@dataclass(frozen=True)
+class Rank:
+    """Out of the plane: conditions that repeat others, freedoms that are left, and how many of these are local."""
+
+    redundant: int
+    free: int
+    local: int
+
+
+@dataclass(frozen=True)
+class Space:
+    """A planar linkage counted in space, as it is and as proposed.
+
+    wanted: its mobility Wo. replacements is None when no proposal was found. rank is of the proposal.
+    """
+
+    chain: SpatialChain
+    wanted: int
+    replacements: tuple[Replacement, ...] | None
+    proposed: SpatialChain
+    rank: Rank
+
+    @property
+    def local(self) -> int:
+        """Wm as it is: turning and sliding pairs leave no link a freedom of its own."""
+        return 0
+
+    @property
+    def redundant(self) -> int:
+        """q = Wo + Wm - W as it is."""
+        return self.wanted + self.local - self.chain.mobility
+
+    @property
+    def redundant_then(self) -> int:
+        """q = Wo + Wm - W as proposed."""
+        return self.wanted + self.rank.local - self.proposed.mobility
+
+
+def space(linkage: Linkage, structure: Structure) -> Space:
+    """Count the linkage in space and propose pairs without redundant constraints; wanted: one freedom a driver."""
+    chain, wanted = spatial_chain(structure, {}), len(structure.drivers)
+    heights = Heights(linkage)
+    for pins_first in (True, False):
+        kinds = _choose_all(heights, structure, pins_first)
+        if kinds is not None:
+            rank = rank_of(linkage, structure, kinds)
+            if not rank.redundant and rank.free == rank.local:
+                replaced = tuple(Replacement(p, CHOICES[p.kind][0], kinds[p.name]) for p in structure.pairs
+                                 if kinds.get(p.name, CHOICES[p.kind][0]) != CHOICES[p.kind][0])  # fmt: skip
+                return Space(chain, wanted, replaced, spatial_chain(structure, kinds), rank)
+    return Space(chain, wanted, None, chain, rank_of(linkage, structure, {}))
+
+
+def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
+    """The linkage as a chain in space; `kinds` are those of pairs that are replaced, by name."""
+    named = ((p, kinds.get(p.name, CHOICES[p.kind][0])) for p in structure.pairs)
+    return SpatialChain(structure.links, tuple(SpatialPair(p.name, p.i, p.j, KINDS[kind], kind) for p, kind in named))
+
+
+def rank_of(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> Rank:
+    """Count conditions out of the plane by rank, with the kinds of replaced pairs given by name."""
+    heights = Heights(linkage)
+    rows = {p.name: heights.rows(p, kinds.get(p.name, CHOICES[p.kind][0]), structure.links) for p in structure.pairs}
+    matrix = _stacked(rows.values(), CONDITIONS * len(structure.links))
+    rank = _rank(matrix)
+    return Rank(len(matrix) - rank, matrix.shape[1] - rank, _local(matrix))
+
+
+class Heights:
+    """Conditions of pairs on the heights (a, b, c) of links, each in the axes of its link, lengths over the size."""
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage = linkage
+        lengths = [abs(_one(p)) for link in linkage.links.values() for p in link.points.values()]
+        lengths += [abs(_one(where)) for s in linkage.slides for where in (s.through, s.at)]
+        self.size = max(lengths, default=0.0) or 1.0
+        self.angle = _angles(linkage)
+
+    def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
+        """Conditions that a pair of this kind puts on the given links, shape (conditions, 3 links); others lie flat."""
+        slide = pair.slide
+        if pair.mesh is not None:  # the normal of the teeth lies anywhere in the plane
+            places = dict.fromkeys((pair.i, pair.j), 0j)
+            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
+        elif slide is None:
+            places = {link: _one(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
+            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
+        else:
+            along = cmath.exp(1j * _one(slide.direction))
+            ahead = {slide.carrier: along, slide.runner: along * cmath.exp(-1j * _one(slide.turned))}
+            run = GOLDEN * self.size  # anywhere: the condition holds along the whole guide or nowhere
+            places = {slide.carrier: _one(slide.through) + run * along, slide.runner: _one(slide.at)}
+        height = {link: (1.0, place.real / self.size, place.imag / self.size) for link, place in places.items()}
+        slope = {link: (0.0, e.real, e.imag) for link, e in ahead.items()}
+        across = {link: (0.0, -e.imag, e.real) for link, e in ahead.items()}
+        asked = {
+            "turning": (height, slope, across),
+            "sliding": (height, slope, across),
+            "spherical": (height,),
+            "planar": (across,),
+            "cylinder on plane": (slope,),
+            "sphere on plane": (),
+            "cylindrical": (slope, across) if slide is None else (height, slope),
+        }[kind]
+        found = np.zeros((len(asked), CONDITIONS * len(links)))
+        for row, condition in zip(found, asked, strict=True):
+            for link, sign in ((pair.i, 1.0), (pair.j, -1.0)):
+                if link in links:
+                    at = CONDITIONS * list(links).index(link)
+                    row[at : at + CONDITIONS] = sign * np.array(condition[link])
+        return found
+
+
+def _one(number: Any) -> complex:
+    """A length as one number, where it is given for many variants."""
+    return complex(np.ravel(number)[0])
+
+
+def _angles(linkage: Linkage) -> dict[str, float]:
+    """Angles of links in an arbitrary place; those that slides keep parallel stay so."""
+    angle = {link: GOLDEN * number for number, link in enumerate(linkage.links)}
+    fixed = {FRAME}
+    for seed in linkage.links:
+        todo = [seed]
+        fixed.add(seed)
+        for link in todo:
+            for slide in linkage.slides:
+                for near, far, sign in ((slide.carrier, slide.runner, 1), (slide.runner, slide.carrier, -1)):
+                    if near == link and far not in fixed:
+                        angle[far] = angle[link] + sign * _one(slide.turned).real
+                        fixed.add(far)
+                        todo.append(far)
+    return angle
+
+
+def _choose_all(heights: Heights, structure: Structure, pins_first: bool) -> dict[str, str] | None:
+    """Kinds for the pairs of all groups, by name; None when one group has no proposal.
+
+    pins_first: pairs of a compound hinge are the first to be cylindrical, as they share one pin.
+    """
+    pins = [p.point for p in structure.pairs if p.kind == "R"]
+    shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
+    kinds = {p.name: TOUCHING[1] for p in structure.pairs if not p.lower}
+    for group in structure.all_groups:
+        chosen = _choose(heights, group.links, (*group.inner, *group.outer), shared)
+        if chosen is None:
+            return None
+        kinds |= chosen
+    return kinds
+
+
+def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pins: set[str]) -> dict[str, str] | None:
+    """Kinds for the pairs of one group, the links before it lying flat: fewest changes, then fewest freedoms.
+
+    A group by itself, because a pair that served two groups could lose its grip in some position. Pairs with the
+    frame position the shafts and guides and stay. Each pair begins with its freest kind; then as many as possible are
+    given back what they were, and what is still free by then is held by cylindrical ones.
+    """
+    on_frame = {p.other(FRAME) for p in own if p.lower and FRAME in (p.i, p.j)}
+    floating = tuple(link for link in links if link not in on_frame)
+    pairs = [p for p in own if p.lower and FRAME not in (p.i, p.j)]
+    blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in CHOICES[p.kind]}
+
+    def matrix(kinds: Mapping[str, str]) -> Real:
+        return _stacked((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
+
+    def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
+        """The freest pairs made what CHOICES says, one after another, while that holds something that was free."""
+        for pair in order:
+            trial = kinds | {pair.name: CHOICES[pair.kind][choice]}
+            if kinds[pair.name] == CHOICES[pair.kind][2] and _independent(matrix(trial)):
+                kinds = trial
+        return kinds
+
+    freest = {p.name: CHOICES[p.kind][2] for p in pairs}
+    if not _independent(matrix(freest)):
+        return None
+    proposals = []
+    for first in range(min(len(pairs), MOST_TRIES)):
+        kinds = held(freest, [pairs[first], *pairs[:first], *pairs[first + 1 :]], 0)
+        kinds = held(kinds, sorted(pairs, key=lambda p: p.name not in pins), 1)
+        found = matrix(kinds)
+        if found.shape[1] - len(found) == _local(found):  # nothing but single links is left free
+            changed = [kind for p in pairs if (kind := kinds[p.name]) != CHOICES[p.kind][0]]
+            proposals.append(((len(changed), sum(KINDS[kind] for kind in changed)), kinds))
+    return min(proposals, key=lambda proposal: proposal[0])[1] if proposals else {} if not pairs else None
+
+
+def _stacked(blocks: Iterable[Real], columns: int) -> Real:
+    return np.vstack([np.zeros((0, columns)), *blocks])
+
+
+def _rank(matrix: Real) -> int:
+    return int(np.linalg.matrix_rank(matrix, rtol=DEPENDENT)) if matrix.size else 0
+
+
+def _independent(matrix: Real) -> bool:
+    return len(matrix) <= matrix.shape[1] and _rank(matrix) == len(matrix)
+
+
+def _local(matrix: Real) -> int:
+    """Freedoms that links have one by one, all others held."""
+    columns = matrix.shape[1]
+    return sum(CONDITIONS - _rank(matrix[:, at : at + CONDITIONS]) for at in range(0, columns, CONDITIONS))

@@ -1,0 +1,90 @@
+"""Instantaneous centres: how many there are, how Kennedy's theorem finds them, the speeds that they give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.forces.free_bodies import Symbol, subscript
+from tmm_cli.mechanics.kinematics.centres import Centre, Links
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.note.blocks import Block, Heading, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Found, Leaf
+from tmm_cli.note.tables import rows_of
+from tmm_cli.reports.cycle_tables import name
+from tmm_cli.reports.register import walk
+
+ALL, LINKS = Symbol("N"), Symbol("k")
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Of a file that asks for them."""
+    results = subject.results
+    if not results.centres:
+        return
+    yield Heading(_("Instantaneous centres"))
+    yield said(
+        _("Two links have an instantaneous centre: the point in which both move alike. {k} links, the frame among "
+          "them, have this number of centres:"),
+        k=LINKS,
+    )  # fmt: skip
+    count = len(results.linkage.links)
+    own = Leaf(LINKS, float(count))
+    yield Found(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
+    yield said(
+        _("The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
+          "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
+          "line, so that every other centre is where two such lines cross; the table says which.")
+    )  # fmt: skip
+    yield from (rows_of(subject, table) for table in walk(results, ("centres",)))
+    yield from subject.figures(
+        "centres", _("The centres of a position are shown in figure {figure}."),
+        further=_("Those of another position are shown in figure {figure}."),
+    )  # fmt: skip
+    if results.linkage.driver.kind == "turn" and not results.linkage.others:
+        yield from _speeds(subject)
+
+
+def _speeds(subject: Subject) -> Iterable[Block]:
+    results = subject.results
+    assert results.centres is not None
+    text = _("The centre of a link and the driving one has the same velocity on both, so that distances between "
+             "centres give the angular velocities of links, and the velocities of those that do not turn. "
+             "Position {number}:")  # fmt: skip
+    for k, found in results.centres.items():
+        told = list(_of_position(subject, k, {centre.links: centre for centre in found}))
+        if told:
+            yield said(text, number=subject.called(k))
+            yield from told
+            text = _("Position {number}:")
+
+
+def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Found]:
+    motion = subject.motion
+    driver = motion.linkage.driver.link
+    own = abs(subject.rate(k))
+    rate, pivot = Leaf(Symbol("ω", driver), own), found[FRAME, driver]
+    for link in motion.linkage.moving:
+        if link == driver or pivot.place is None or not own:
+            continue
+        here = found[FRAME, link]
+        both = found[(driver, link) if (driver, link) in found else (link, driver)]
+        if both.place is None:
+            continue
+        reached = rate * _distance(pivot, both)
+        if here.place is None and here.direction is not None:
+            speed = abs(complex(motion.point(link, 0j).v[k]))
+            yield Found(Symbol("v", link), reached, speed, _("m/s"))
+        elif here.place is not None:
+            other, turning = _distance(here, both), abs(float(motion.link(link).omega[k]))
+            if turning > NO_VECTOR * own and other.value:
+                yield Found(Symbol("ω", link), reached / other, turning, _("rad/s"))
+
+
+def _distance(one: Centre, other: Centre) -> Leaf:
+    """Between two centres, m."""
+    assert one.place is not None and other.place is not None
+    letters = "".join("P" + subscript(name(centre.links)[1:]) for centre in (one, other))
+    return Leaf(Symbol(letters), abs(other.place - one.place))

@@ -1,1 +1,0 @@
-"""Chapters of the note, one file each."""

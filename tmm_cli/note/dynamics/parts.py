@@ -1,0 +1,207 @@
+"""Letters of the law of motion, and what every part of its chapter is about."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.dynamics.flywheel import Tangent
+from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
+from tmm_cli.mechanics.dynamics.reduced import Curve
+from tmm_cli.mechanics.dynamics.steady import Running, Steady
+from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol, load_symbols
+from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.note.blocks import Block, said
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import EXACT, Constant, Expression, Found, Function, Leaf, Sum, added, evaluate, signed
+
+INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Lettered("M_d"), Symbol("A")
+FLYWHEEL, START, MEAN, DELTA = Lettered("J_f"), Symbol("T", "0"), Lettered("ω_m"), Symbol("δ")
+LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
+
+
+@dataclass(frozen=True)
+class Here:
+    """The running machine, and a position of it; letters are those of what it is reduced to, along its sense."""
+
+    subject: Subject
+    k: int
+
+    @property
+    def running(self) -> Running:
+        assert self.subject.results.steady is not None
+        return self.subject.results.steady
+
+    @property
+    def steady(self) -> Steady:
+        return self.running.steady
+
+    @property
+    def motion(self) -> Motion:
+        return self.subject.motion
+
+    @property
+    def number(self) -> str:
+        return self.subject.called(self.k)
+
+    @property
+    def speed(self) -> Leaf:
+        """Of the driving link, as a size."""
+        return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(self.subject.rate(self.k)))
+
+    @cached_property
+    def tangents(self) -> tuple[Tangent, Tangent]:
+        return self.steady.tangents
+
+    @cached_property
+    def start(self) -> float:
+        """Kinetic energy in position 0, J."""
+        upper, __ = self.tangents
+        return upper.slope * self.steady.law.flywheel - upper.offset
+
+    def of(self, curve: Curve) -> float:
+        """A function of the way, here."""
+        return float(curve(self.running.way(self.motion.q))[self.k])
+
+
+# The reduced inertia and the reduced moment of a position, link by link and load by load.
+
+
+def explained(here: Here) -> Iterable[Block]:
+    """What is reduced, and how."""
+    link = here.motion.linkage.driver.link
+    yield said(
+        _("The machine is replaced by its driving link {link}, to which all masses and all loads are reduced; what "
+          "moves or acts in the sense of its rotation is positive. The reduced moment of inertia {J} has the kinetic "
+          "energy of all links, the reduced moment {M} has the power of all loads. Both follow from ratios of "
+          "velocities, which do not depend on how fast the driving link turns."),
+        link=link, J=INERTIA, M=MOMENT,
+    )  # fmt: skip
+
+
+def inertia(here: Here) -> Iterable[Block]:
+    """Masses at the squares of the ratios of speeds."""
+    terms = [term for link in here.motion.linkage.moving for term in _of_link(here, link)]
+    if not terms:
+        return
+    yield said(
+        _("Position {number}: the reduced moment of inertia, {m} being the mass of a link, {v} the velocity of its "
+          "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"),
+        number=here.number, m=Symbol("m"), v=Symbol("v", "S"), J=Symbol("J", "S"), omega=Symbol("ω"),
+    )  # fmt: skip
+    yield Found(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²"))
+
+
+def _of_link(here: Here, name: str) -> Iterable[Expression]:
+    motion, link, omega = here.motion, here.motion.linkage.links[name], here.speed
+    speed = Leaf(Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k])))
+    turned = Leaf(Symbol("ω", name), abs(float(motion.link(name).omega[here.k])))
+    yield Leaf(Symbol("m", name), float(np.ravel(link.mass)[0])) * (speed / omega) ** 2
+    inertia = Leaf(Symbol("J", f"S{name}"), float(np.ravel(link.inertia)[0]))
+    yield inertia if turned.symbol == omega.symbol else inertia * (turned / omega) ** 2
+
+
+def moment(here: Here) -> Iterable[Block]:
+    """Powers of all loads over the speed of the driving link."""
+    terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _of_load(here, load)]
+    if not terms:
+        return
+    yield said(
+        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
+          "angle between the two, and a couple acting with or against the angular velocity of its link:"),
+        v=Symbol("v"), alpha=Symbol("α"),
+    )  # fmt: skip
+    whole = _sum(terms) / here.speed
+    yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
+
+
+def _of_load(here: Here, load: Applied) -> Iterable[Expression]:
+    k, motion = here.k, here.motion
+    force, couple = load_symbols(load)
+    pull, turned = complex(load.force[k]), float(load.moment[k])
+    speed = complex(motion.point(load.link, load.at).v[k])
+    if pull and speed:
+        in_centre = load.kind == "weight"
+        own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
+        angle, factors = abs(float(np.angle(pull / speed))), Leaf(force, abs(pull)) * own
+        if min(angle, np.pi - angle) < NO_VECTOR:
+            yield signed(1 - angle, factors)
+        else:
+            cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
+            yield factors * cosine
+    omega = float(motion.link(load.link).omega[k])
+    if turned and omega:
+        own = Leaf(Symbol("ω", load.link), abs(omega))
+        yield signed(turned * omega, Leaf(couple, abs(turned)) * own)
+
+
+def _sum(terms: list[Expression]) -> Sum:
+    """Without terms that are nothing beside the others."""
+    sizes = [abs(evaluate(term, EXACT)) for term in terms]
+    return added(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
+
+
+# What drives: a moment from zero work over the cycle, or a motor by its characteristic.
+
+
+CYCLE, WHOLE = Lettered("A_c"), Lettered("φ_c")
+STALL, FREE = Lettered("M_s"), Symbol("ω", "0")
+BREAKDOWN, SLIP, CRITICAL = Lettered("M_k"), Symbol("s"), Lettered("s_k")
+
+
+def mean(here: Here) -> Iterable[Block]:
+    """Over a cycle all moments together do no work."""
+    steady = here.steady
+    turns = round(steady.machine.length / (2 * math.pi))
+    yield said(
+        _("In steady running the machine comes back to the same speed after every cycle, so that all moments together "
+          "do no work over the cycle. The work {A} of the loads is the area between the diagram of their reduced "
+          "moment {M} and its axis, and {phi} is the angle of the cycle."),
+        A=CYCLE, M=MOMENT, phi=WHOLE,
+    )  # fmt: skip
+    text = _("The driving moment is constant:")
+    if steady.moment < 0:
+        text = _("The loads do work, and what the machine drives takes it with a constant moment:")
+    if steady.task.motor is not None:
+        text = _("The mean moment of the motor, reduced to the driving link:")
+    yield said(text)
+    way = 2 * turns * Constant(math.pi, "π")
+    work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
+    yield Found(DRIVING, -work, steady.moment, _("N·m"))
+
+
+def motor(here: Here) -> Iterable[Block]:
+    """The moment in a position, by the speed there."""
+    match here.steady.task.motor:
+        case Linear() as found:
+            yield said(
+                _("The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
+                  "rest and nothing at {omega}. At the speed of position {number}:"),
+                M=STALL, omega=FREE, number=here.number,
+            )  # fmt: skip
+            moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
+            yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
+        case Kloss() as found:
+            yield from _asynchronous(here, found)
+
+
+def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
+    yield said(
+        _("The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. Reduced to the "
+          "driving link its synchronous speed is {omega}; {M} is its largest moment, at the slip {sk}. At the speed of "
+          "position {number}:"),
+        s=SLIP, omega=FREE, M=BREAKDOWN, sk=CRITICAL, number=here.number,
+    )  # fmt: skip
+    slip, critical = Leaf(SLIP, 1 - here.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
+    yield Found(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
+    if slip.value:
+        moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / (slip / critical + critical / slip)
+        found = float(motor.moment(np.array([here.speed.value]))[0])
+        yield Found(DRIVING, moment, found, _("N·m"))

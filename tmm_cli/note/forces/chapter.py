@@ -1,0 +1,244 @@
+"""The force analysis: loads, groups from the last to the driving link, lever, tables of all positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from tmm_cli.language import _, filled
+from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.mechanics.forces.plan import find_transmitted_forces
+from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, NO_FORCE
+from tmm_cli.mechanics.numerics.vectors import Real, Vector, largest, without_rounding
+from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
+from tmm_cli.note.context import Subject
+from tmm_cli.note.forces import lever, loads, sections
+from tmm_cli.note.forces.equations import MU
+from tmm_cli.note.forces.sections import parts_of
+from tmm_cli.note.math import Letter, row
+from tmm_cli.note.tables import NONE, over_positions
+from tmm_cli.reports.cycle_tables import has_flywheel
+from tmm_cli.reports.structure_tables import indeterminate
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Of what has forces."""
+    if not subject.acts:
+        return
+    yield Heading(_("Force analysis"))
+    yield said(
+        _("The reactions in the kinematic pairs and the balancing load of the driving link are found by the method "
+          "of kinetostatics: when the forces of inertia are added to the acting forces (d'Alembert's principle), "
+          "every group of links is in equilibrium. The groups are taken in the order opposite to that of the "
+          "kinematic analysis, the driving link last. The subscript of a reaction {R} has the numbers of two links: "
+          "the first one acts on the second. The figures show all forces in their actual senses, so that their "
+          "magnitudes are positive; the arms {h} are measured in the figures."),
+        R=Symbol("R"), h=Symbol("h"),
+    )  # fmt: skip
+    yield from map(paragraph, indeterminate(subject.results.structure))
+    for k in subject.detail:
+        yield from _position(subject, k)
+    yield Heading(_("Forces in all positions"), 2)
+    yield from reactions(subject)
+    yield from balancing(subject)
+    yield from transmission(subject)
+    yield from loads.losses(subject)
+
+
+def _position(subject: Subject, k: int) -> Iterable[Block]:
+    """One of those in detail, each of its sections named after it where there are several."""
+    several = len(subject.detail) > 1
+
+    def heading(text: str) -> str:
+        if not several:
+            return text
+        return _("{section}, position {number}").format(section=text, number=subject.called(k))
+
+    by_steps = subject.results.problem.note_style.sections == "MATI"
+    yield from (_by_steps if by_steps else _by_parts)(subject, k, heading)
+    yield from loads.without_friction(subject, k)
+    yield from lever.written(subject, k, heading(_("Zhukovsky lever")), explained=k == subject.detail[0])
+
+
+def _by_parts(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
+    """All loads, then a section for each group and each driving link."""
+    first = k == subject.detail[0]
+    yield Heading(heading(_("Loads of the links")), 2)
+    if first:
+        yield from loads.weights(subject)
+    yield from loads.inertia(subject, k, explained=first)
+    yield from _further_loads(subject, k)
+    yield from _reactions(subject, k, heading, 2)
+
+
+def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
+    """Steps 2.3.1 to 2.3.4 of the force guidelines: the plan, weights and loads, inertia, groups one after another."""
+    first, caption = k == subject.detail[0], subject.at_position(k)
+    yield Heading(heading(_("Plan of the mechanism")), 2)
+    stem = subject.position(k).stem("position")
+    yield said(
+        _("The plan of the mechanism is drawn in {position}; its scale factor is {mu} = {value} m/mm."),
+        position=caption, mu=MU, value=subject.text(subject.scale("position", k, stem)),
+    )  # fmt: skip
+    yield Heading(heading(_("Weights and useful loads")), 2)
+    yield said(_("They are applied to the links as arrows of one length, without a scale."))
+    if first:
+        yield from loads.weights(subject)
+    yield from subject.figures(
+        "position", _("All forces that act on the links are shown in figure {figure}."),
+        _("The mechanism under its loads, {position}").format(position=caption), k,
+    )  # fmt: skip
+    yield Heading(heading(_("Plan of accelerations and inertia forces")), 2)
+    plans = list(subject.drawings("acceleration", k))
+    if plans:
+        yield said(_("The plan of accelerations is that of figure {figure}."), figure=Ref(plans[0]))
+    yield from loads.inertia(subject, k, explained=first)
+    yield from _further_loads(subject, k)
+    yield Heading(heading(_("Reactions in the kinematic pairs")), 2)
+    yield from _reactions(subject, k, heading, 3)
+
+
+def _further_loads(subject: Subject, k: int) -> Iterable[Block]:
+    yield from loads.springs(subject, k)
+    yield from loads.friction(subject, k, explained=k == subject.detail[0])
+    yield from loads.table(subject, k, _("Loads, {position}").format(position=subject.at_position(k)))
+
+
+def _reactions(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
+    """The groups from the last one, and the driving links."""
+    for number, part in enumerate(parts_of(subject, k)):
+        if part.forces is not None:
+            text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
+        else:
+            text = _("Driving link {links}")
+        text = heading(text.format(links=", ".join(part.links)))
+        yield from sections.written(part, Heading(text, level), first=k == subject.detail[0] and not number)
+
+
+# Tables of all positions: reactions, what balances the drivers by both ways.
+
+
+PAIRS = 4  # reactions in one table
+
+
+def reactions(subject: Subject) -> Iterable[Block]:
+    """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
+    found = subject.reactions
+    pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
+    tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
+    yield several(
+        _("Table {first} gives the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x."),
+        _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x."),
+        [table.key for table in tables],
+    )  # fmt: skip
+    yield from tables
+    pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
+            for pin in found.pins(subject.results.linkage)]  # fmt: skip
+    if pins:
+        tables = list(_sized(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
+        yield several(
+            _("In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
+              "them."),
+            _("In a compound hinge more than two links meet; tables {first} and {last} give the force of its pin on "
+              "each of them."),
+            _("In a compound hinge more than two links meet; tables {first} to {last} give the force of its pin on "
+              "each of them."),
+            [table.key for table in tables],
+        )  # fmt: skip
+        yield from tables
+
+
+def transmission(subject: Subject) -> Iterable[Block]:
+    """Of each driven link in the positions in detail: the force that drives it, and the part of it that moves it."""
+    given = find_transmitted_forces(subject.motion, subject.reactions)
+    if not given or not subject.reactions.loaded:
+        return
+    moving = [
+        (force, k)
+        for force in given
+        for k in subject.detail
+        if force.driving[k] > NO_FORCE * np.nanmax(force.driving) and np.isfinite(force.useful[k])
+    ]
+    rows = [
+        cells(
+            force.link,
+            force.pair,
+            subject.called(k),
+            subject.shown(float(force.driving[k])),
+            subject.angle(float(np.arccos(min(1.0, float(force.useful[k] / force.driving[k]))))),
+            subject.shown(float(force.useful[k])),
+        )
+        for force, k in moving
+    ]
+    if not rows:
+        return
+    P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
+    head = cells(_("driven link"), _("driven in pair"), _("position"), (P, ", ", _("N")), (angle, ", °"),
+                 (Q, ", ", _("N")))  # fmt: skip
+    yield from tabled(
+        _("The force {P} that drives a link moves it by its component along the velocity of its point alone, {Q} = "
+          "{P} cos {angle}, where {angle} is the angle between them with all loads acting; table {table} gives both."),
+        Rows(_("Transmission of force"), head, tuple(rows), "transmission"), P=P, Q=Q, angle=angle,
+    )  # fmt: skip
+
+
+def _sized(
+    subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
+) -> Iterable[Rows]:
+    """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
+    for first in range(0, len(forces), PAIRS):
+        some = forces[first : first + PAIRS]
+        columns: list[tuple[Line, list[str]]] = []
+        for __, symbol, force, told in some:
+            way, size = np.angle(force) if told is None else told, np.abs(force)
+            size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
+            columns.append(((symbol, ", ", _("N")), _texts(subject, size, Subject.shown)))
+            columns.append(((_("angle, °"),), _texts(subject, way, Subject.angle)))
+        names = ", ".join(dict.fromkeys(name for name, *__ in some))
+        yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
+
+
+def balancing(subject: Subject) -> Iterable[Block]:
+    """Of every driver by the force plan, and what the lever gives for all of them, per unit of the first."""
+    results, balances, lever = subject.results, subject.reactions.balances, subject.lever
+    several = len(balances) > 1
+    symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
+    units = [_("N·m") if b.moment is not None else _("N") for b in balances]
+    told = _("{symbol}, {unit}, by the force plan")
+    head = [filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True)]
+    of_all = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
+    head.append(filled(_("{symbol}, {unit}, by the lever"), symbol=of_all, unit=units[0]))
+    columns = [*(b.generalized for b in balances), lever.balancing]
+    if several:
+        yield said(
+            _("The lever gives what all drivers do together, reduced to the driving link {link}."),
+            link=balances[0].driver.link,
+        )  # fmt: skip
+    else:
+        percent = 100 * lever.difference
+        head.append((_("difference, %"),))
+        columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
+    caption = _("Balancing loads of the driven links") if several else _("Balancing load of the driving link")
+    text = _("{balance} is positive counterclockwise, however the driving link turns.")
+    if results.linkage.driver.kind == "slide":
+        text = _("{balance} is positive along the guide of the driving link, however this link moves.")
+    yield said(text, balance=of_all)
+    texts = [_texts(subject, column, Subject.shown) for column in columns]
+    rows = over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
+    yield from tabled(_("The balancing load found in both ways is given in table {table}."), rows)
+    if has_flywheel(results) and balances[0].moment is not None:
+        yield said(
+            _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
+            balance=of_all, whole=row(
+                Letter(Lettered("M_d")), "=", Letter(of_all), "+", Letter(Lettered("J_f")), "·", Letter(Symbol("ε")),
+            ),
+        )  # fmt: skip
+
+
+def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
+    """Values of all positions; a dash where it cannot move."""
+    values = without_rounding(column, largest(column))
+    there = np.isfinite(values) & subject.motion.moving
+    return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]

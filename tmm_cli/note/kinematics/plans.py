@@ -1,0 +1,251 @@
+"""Velocities of a position: those of the driving links, then of each group by its vector equations and the plan."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.plans.vector_equations import About, Along, OnGuide, Step, VectorEquation
+from tmm_cli.note.blocks import Block, listed, said
+from tmm_cli.note.kinematics import equations as words
+from tmm_cli.note.kinematics.equations import equations, of_known_link
+from tmm_cli.note.kinematics.on_paper import Here, Vector
+from tmm_cli.note.kinematics.ratios import begun
+
+
+def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+    """All that the plan gives, in the order in which it is drawn."""
+    known: set[str] = set()
+    for step in steps:
+        if step.group is None:
+            yield from _driving(here, step)
+            known |= words.points_of(step)
+    yield from words.scale(
+        here.v, [vector for step in steps for vector in _known(here, step)],
+        _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
+          "of the plan is"),
+        _("All points are at rest in this position."),
+    )  # fmt: skip
+    for step in steps:
+        if step.group is not None:
+            yield from _group(here, step, known)
+            known |= words.points_of(step)
+    yield from words.remaining(here, here.v, known)
+
+
+def _driving(here: Here, step: Step) -> Iterable[Block]:
+    """Points of a driving link."""
+    turned = words.further(step)
+    if here.first and turned:
+        one = _("The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
+                "rotation:")  # fmt: skip
+        several = _("The velocities of points {points} of the driving link are perpendicular to their radii, in the "
+                    "sense of its rotation:")  # fmt: skip
+        line = turned[0].base.at + turned[0].point.at
+        points = listed(words.name_of(about.point) for about in turned)
+        yield said(one if len(turned) == 1 else several, points=points, line=line)
+    elif here.first and step.equations:
+        text = _("Link {link} does not turn: all its points move with the given velocity {v}.")
+        yield said(text, link=step.links[0], v=here.v.of(step.equations[0].point).symbol)
+    for about in turned:
+        yield _turned(here, about)
+
+
+def _turned(here: Here, about: About) -> Block:
+    """v = ω l of a point about another one of its link."""
+    found = here.v.relative(about.point, about.base)
+    return here.v.found(found, here.rate("ω", about.link) * here.length(about.point, about.base))
+
+
+def _known(here: Here, step: Step) -> Iterable[Vector]:
+    """Vectors that are known before the plan is drawn."""
+    for equation in (*step.equations, *(step.after if step.group is None else ())):
+        if equation.known and isinstance(equation, OnGuide):
+            yield here.v.of(equation.point)
+        elif equation.known and not isinstance(equation, OnGuide):
+            yield here.v.relative(equation.point, equation.base)
+
+
+def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+    """Ratios, equations, what they give, further points."""
+    points, together, found = words.sought(step, known), words.solved(step), {*known}
+    yield from begun(here, step, "ω")
+    for about in words.direct(step):
+        yield from _known_about(here, about, found)
+        found.add(about.point.name)
+    if here.first and together:
+        one = _("Group {group}: the velocity of point {points} is found from")
+        several = _("Group {group}: the velocities of points {points} are found from")
+        yield words.introduced(step, points, one, several)
+        yield from equations(here, step, together, "v", found)
+        for link in dict.fromkeys(e.link for e in together if isinstance(e, About) and e.idle):
+            yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
+        yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
+    for spot in points:
+        yield here.v.read(here.v.of(spot))
+    for equation in together:
+        if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
+            yield here.v.read(here.v.relative(equation.point, equation.base))
+    yield from words.turning(
+        here, together, "ω", lambda about: here.v.relative(about.point, about.base),
+        _("Vector {v}, carried over to point {point}, turns link {link} {sense}."), _("Link {link} turns {sense}."),
+    )  # fmt: skip
+    yield from words.turning_as_one(here, step, "ω")
+    for about in words.further(step):
+        yield from _known_about(here, about, found)
+
+
+def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[Block]:
+    """A point of a link whose rotation is known."""
+    yield from of_known_link(here, about, "v", found)
+    yield _turned(here, about)
+    if not about.base.fixed:
+        yield here.v.read(here.v.of(about.point))
+
+
+# Accelerations of a position: normal and Coriolis parts from velocities, the rest by vector equations and the plan.
+
+
+def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+    """All that the plan gives, in the order in which it is drawn."""
+    known: set[str] = set()
+    driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
+    for step in driving:
+        yield from _driving_accelerations(here, step)
+        known |= words.points_of(step)
+    for step in groups:
+        yield from _before(here, step, known)
+        if step == groups[0]:
+            yield from _scale(here, [*driving, step])
+        yield from _solved(here, step, known)
+        known |= words.points_of(step)
+    if not groups:
+        yield from _scale(here, steps)
+    yield from words.remaining(here, here.a, known)
+
+
+def _driving_accelerations(here: Here, step: Step) -> Iterable[Block]:
+    """Points of a driving link."""
+    for equation in step.equations:
+        a = here.a.of(equation.point)
+        text = _("The driving link {link} moves uniformly, so that {a} = 0.")
+        if a.segment:
+            text = _("All points of link {link} have the acceleration {a} of the drive.")
+        yield said(text, link=step.links[0], a=a.symbol)
+    turned = words.further(step)
+    if turned and here.first:
+        even = _(
+            "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
+        )
+        uneven = _("Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
+                   "tangential parts.")  # fmt: skip
+        yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
+    for about in turned:
+        yield from _parts(here, about)
+        yield from _whole(here, about)
+
+
+def _parts(here: Here, about: About) -> Iterable[Block]:
+    """Normal and tangential part of a point's acceleration about another of a link whose rotation is known."""
+    yield _normal(here, about)
+    tangential = _part(here, about, "τ")
+    if tangential.segment or about.link in here.epsilon:
+        yield here.a.found(tangential, here.rate("ε", about.link) * here.length(about.point, about.base))
+
+
+def _normal(here: Here, about: About) -> Block:
+    length = here.length(about.point, about.base)
+    return here.a.found(_part(here, about, "n"), here.rate("ω", about.link) ** 2 * length)
+
+
+def _part(here: Here, equation: About | Along, above: str) -> Vector:
+    return here.a.part(equation.point, equation.base, above)
+
+
+def _whole(here: Here, about: About) -> Iterable[Block]:
+    """The acceleration of a point both of whose parts are known."""
+    a = here.a.of(about.point)
+    if about.base.fixed and not _part(here, about, "τ").segment:
+        yield words.equal(a.symbol, _part(here, about, "n").symbol)
+    else:
+        yield here.a.read(a)
+
+
+def _coriolis(here: Here, along: Along) -> Block:
+    """2 ω v."""
+    sliding = here.v.relative(along.point, along.base)
+    return here.a.found(_part(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
+
+
+def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+    return words.scale(
+        here.a, [vector for step in steps for vector in _known_accelerations(here, step)],
+        _("The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
+          "factor of the plan is"),
+        _("Nothing accelerates in this position."),
+    )  # fmt: skip
+
+
+def _known_accelerations(here: Here, step: Step) -> Iterable[Vector]:
+    """Vectors that are known before the plan is drawn."""
+    if step.group is None:
+        yield from (here.a.of(equation.point) for equation in step.equations)
+    for about in step.after if step.group is None else ():
+        if not about.idle:
+            yield here.a.of(about.point) if about.link not in here.epsilon else _part(here, about, "n")
+    for equation in step.equations:
+        if isinstance(equation, Along):
+            yield _part(here, equation, "k")
+        elif isinstance(equation, About) and not equation.idle:
+            yield _part(here, equation, "n")
+
+
+def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+    """What is known from velocities and from higher pairs, and the equations."""
+    points, together = words.sought(step, known), words.solved(step)
+    yield from begun(here, step, "ε")
+    if here.first and together:
+        one = _("Group {group}: the acceleration of point {points} is found from")
+        several = _("Group {group}: the accelerations of points {points} are found from")
+        yield words.introduced(step, points, one, several)
+        yield from equations(here, step, together, "a", {*known, *(about.point.name for about in words.direct(step))})
+        if any(_has_known_part(here, equation) for equation in together):
+            yield said(_("The velocities give:"))
+    for about in words.direct(step):
+        yield from _parts(here, about)
+    for equation in together:
+        if _has_known_part(here, equation):
+            assert not isinstance(equation, OnGuide)
+            yield _normal(here, equation) if isinstance(equation, About) else _coriolis(here, equation)
+
+
+def _has_known_part(here: Here, equation: VectorEquation) -> bool:
+    """A normal part, or that of Coriolis."""
+    if isinstance(equation, Along):
+        return equation.slide.carrier in here.omega
+    return isinstance(equation, About) and not equation.idle
+
+
+def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+    """What the plan gives."""
+    points, together = words.sought(step, known), words.solved(step)
+    for about in words.direct(step):
+        yield from _whole(here, about)
+    if here.first and together:
+        yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
+    for equation in together:
+        if not isinstance(equation, OnGuide) and not equation.known:
+            yield here.a.read(_part(here, equation, "τ" if isinstance(equation, About) else "r"))
+    for spot in points:
+        yield here.a.read(here.a.of(spot))
+    yield from words.turning(
+        here, together, "ε", lambda about: _part(here, about, "τ"),
+        _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}."),
+        _("Angular acceleration {epsilon} is {sense}."),
+    )  # fmt: skip
+    yield from words.turning_as_one(here, step, "ε")
+    found = {*known, *words.points_of(step)}
+    for about in words.further(step):
+        yield from of_known_link(here, about, "a", found - {about.point.name})
+        yield from _parts(here, about)
+        yield from _whole(here, about)

@@ -1,0 +1,190 @@
+"""The structure: links, pairs, mobility, Assur groups, formula, class."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.drawing.sheets.structure import counted, parts
+from tmm_cli.language import _, printed, typeset
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.note.blocks import (
+    Block,
+    Equation,
+    Figure,
+    Heading,
+    Line,
+    Link,
+    Ref,
+    Rows,
+    cells,
+    paragraph,
+    said,
+    several,
+    tabled,
+)
+from tmm_cli.note.context import Subject
+from tmm_cli.note.expression import Expression, Found, Leaf
+from tmm_cli.note.math import Words
+from tmm_cli.note.tables import NONE, unbroken
+from tmm_cli.reports.stages import link_name
+from tmm_cli.reports.structure_tables import (
+    PAIRS,
+    ROLES,
+    contours_in_words,
+    counted_by_classes,
+    counted_generally,
+    counted_with_replacements,
+    kind_in_words,
+    left_out,
+    mobility_with_rollers,
+    motion_in_words,
+    primary_mechanisms_in_words,
+    schemes_in_words,
+)
+
+W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2")
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """From the scheme to the class."""
+    structure = subject.results.structure
+    yield Heading(_("Structure of the mechanism"))
+    yield from subject.figures(
+        "structure", _("The structural scheme is shown in figure {figure}."), _("Structural scheme of the mechanism")
+    )
+    yield said(
+        _("The moving links are listed in table {links}, the kinematic pairs in table {pairs}."),
+        links=Ref("links"), pairs=Ref("pairs"),
+    )  # fmt: skip
+    yield _links(subject)
+    yield _pairs(structure)
+    yield from _mobility(structure)
+    yield from _groups(subject)
+
+
+def _links(subject: Subject) -> Rows:
+    linkage, roles = subject.results.linkage, subject.results.roles
+    rows = tuple(
+        cells(
+            name, _(ROLES[roles[name]]), motion_in_words(subject.results, name), ", ".join(linkage.links[name].points)
+        )
+        for name in subject.results.structure.links
+    )
+    return Rows(_("Moving links"), cells(_("link"), _("kind"), _("motion"), _("points")), rows, "links")
+
+
+def _pairs(structure: Structure) -> Rows:
+    rows = tuple(
+        cells(
+            p.name,
+            f"{link_name(p.i)} – {link_name(p.j)}",
+            _(PAIRS[p.kind]),
+            str(p.freedoms),
+            str(p.pair_class),
+            p.code or NONE,
+        )
+        for p in structure.pairs
+    )
+    return Rows(
+        _("Kinematic pairs"),
+        cells(_("pair"), _("links"), _("kind"), _("freedoms"), _("class"), _("code")),
+        rows,
+        "pairs",
+    )
+
+
+def _mobility(structure: Structure) -> Iterable[Block]:
+    higher = structure.higher
+    n, lower = len(structure.links), len(structure.pairs) - structure.higher
+    turning = sum(pair.kind == "R" for pair in structure.pairs)
+    yield said(
+        _("The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+          "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
+          "higher pairs:"),
+        source=Link("artobolevskii"), w=W, n=N, lower=LOWER, higher=HIGHER,
+        turning=str(turning), sliding=str(lower - turning),
+    )  # fmt: skip
+    yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
+    classes = _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.")
+    yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
+    general = _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.")
+    yield paragraph(typeset(general.format(count=counted_generally((n, lower, higher)))))
+    if higher:
+        text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
+        yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))
+    if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
+        text = _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
+        yield paragraph(typeset(text))
+    if structure.passive:
+        yield said(
+            _("The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "
+              "others by the special sizes of the mechanism; its true mobility is {w} = {true}."),
+            count=str(structure.redundant), w=W,
+            pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),
+            true=str(structure.mobility + structure.redundant),
+        )  # fmt: skip
+    if structure.reduction:
+        yield said(
+            _("For the structural formula: {what}. The links and pairs that are left give:"),
+            what="; ".join(left_out(structure)),
+        )  # fmt: skip
+        yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
+
+
+def chebyshev(n: int, lower: int, higher: int) -> Expression:
+    """3n − 2p₁ − p₂."""
+    held = 2 * Leaf(LOWER, lower)
+    return 3 * Leaf(N, n) - held - Leaf(HIGHER, higher)
+
+
+def _groups(subject: Subject) -> Iterable[Block]:
+    structure = subject.results.structure
+    if structure.groups:
+        head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
+        rows = tuple(_group(group) for group in structure.groups)
+        yield from tabled(
+            _("When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
+              "mobility of each of them is zero."),
+            Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups"),
+        )  # fmt: skip
+    yield paragraph(_("The formula of structure of the mechanism is:"))
+    yield Equation(Words(structure.formula.replace("->", "→")))
+    if len(structure.drivers) > 1:
+        yield paragraph(_("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure)))
+    yield paragraph(_("Chain, and kind of structure: {words}.").format(words=kind_in_words(structure)))
+    yield paragraph(typeset(_("Independent contours K = p - n: {count}.").format(count=contours_in_words(structure))))
+    text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
+    yield said(text, source=Link("frolov"), number=structure.roman)
+    schemes = schemes_in_words(structure)
+    if schemes:
+        yield paragraph(_("Basic schemes in it: {schemes}.").format(schemes=schemes))
+    yield from _apart(subject)
+
+
+def _apart(subject: Subject) -> Iterable[Block]:
+    """The drawings of the parts, one after the other."""
+    drawn = subject.drawings("groups")
+    if drawn:
+        yield several(
+            _("The only part of the mechanism is shown in figure {first}."),
+            _("The parts of the mechanism are shown in figures {first} and {last}."),
+            _("The parts of the mechanism are shown in figures {first} to {last}."),
+            list(drawn),
+        )  # fmt: skip
+    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
+        text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
+        text = _("Redundant link {title}") if part.redundant else text
+        yield Figure(text.format(title=part.title), drawing, stem)
+
+
+def _group(group: Group) -> tuple[Line, ...]:
+    n, lower, higher = group.count
+    own = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
+    known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
+    outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known)
+    inner = ", ".join(pair.name for pair in group.inner) or NONE
+    roman, order = group.roman, str(group.order)
+    kind = counted(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")
+    return cells(group.title, roman, order, kind, inner, outer, own)

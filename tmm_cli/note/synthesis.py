@@ -1,0 +1,81 @@
+"""The synthesis: what was asked, the formulas of the task, what was found, and the same measured on the mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from tmm_cli.language import _, translated
+from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.note.blocks import Block, Heading, paragraph, said, tabled
+from tmm_cli.note.context import Subject, by_hand
+from tmm_cli.note.expression import Constant, Found, Function, Leaf
+from tmm_cli.note.tables import rows_of
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.reports.synthesis_tables import tables_of
+from tmm_cli.synthesis.construction import Diagram
+from tmm_cli.synthesis.measures import measured_on, theta_of
+
+FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
+THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")
+USED = ("k", "stroke", "OA", "OC", "CD")  # values of tasks that are put into formulas
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """Nothing where the file gives all sizes."""
+    results = subject.results
+    task = results.problem.synthesis
+    if task is None:
+        return
+    yield Heading(_("Synthesis of the mechanism"))
+    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
+    asked = tables.pop("synthesis-asked", None)
+    if asked is None:
+        yield paragraph(_("The sizes of the mechanism are found from its requirements."))
+    else:
+        rows = rows_of(subject, asked, _("Requirements"), "asked", FOUND)
+        yield from tabled(_("The sizes of the mechanism are found from its requirements (table {table})."), rows)
+    source = by_hand(translated(task.outcome.source).rstrip("."))
+    yield paragraph(_("Method of solution: {source}.").format(source=source))
+    yield from _formulas(task)
+    found = tables.pop("synthesis-found", None)
+    measured = tables.pop("synthesis-measured", None)
+    if found is not None:
+        rows = rows_of(subject, found, _("Results of the synthesis"), "found", FOUND)
+        yield from tabled(_("The results are given in table {table}."), rows)
+        yield from (paragraph(by_hand(translated(note))) for note in task.outcome.notes)
+    yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
+    diagrams = [drawn for drawn in task.outcome.drawings if isinstance(drawn, Diagram)]
+    for drawn in task.outcome.drawings:
+        sentence = _("The construction is drawn in figure {figure}.")
+        if drawn in diagrams[:1]:
+            sentence = _("How the result depends on what may be chosen is shown in figure {figure}.")
+        elif drawn in diagrams:
+            sentence = _("What else depends on this choice is shown in figure {figure}.")
+        yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
+    sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
+    yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
+    if measured is not None:
+        text = _("The same quantities, measured on the mechanism with these sizes, are given in table {table}.")
+        rows = rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
+        yield from tabled(text, rows)
+
+
+def _formulas(task: Synthesised) -> Iterable[Block]:
+    """Those of the task that stand in one line each, with numbers put in."""
+    values = {
+        value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
+    }
+    if "k" in values:
+        theta = float(theta_of(values["k"]))
+        yield said(_("The angle {theta} follows from the coefficient {k} of change of mean speed:"), theta=THETA, k=K)
+        ratio = Leaf(K, values["k"])
+        share = (ratio - 1) / (ratio + 1)
+        yield Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)
+        half = Function("sin", Leaf(THETA, theta, angle=True) / 2)
+        if task.task == "shaper":
+            length = Leaf(H, values["stroke"]) / (2 * half)
+            yield Found(Symbol("l", "CD"), length, values["CD"], "m")
+        if task.task in ("shaper", "slotted-lever"):
+            crank = Leaf(Symbol("l", "OC"), values["OC"]) * half
+            yield Found(Symbol("l", "OA"), crank, values["OA"], "m")

@@ -1,0 +1,196 @@
+"""The task and its data, as the file gives them, in its units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.forces.free_bodies import Symbol, named
+from tmm_cli.mechanics.linkage import FRAME, Link, Load
+from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
+from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
+from tmm_cli.note.context import Subject, with_degrees
+from tmm_cli.note.tables import NONE, rows_of, unbroken
+from tmm_cli.reports.given import given
+from tmm_cli.reports.stages import heavy, link_name
+from tmm_cli.reports.structure_tables import ROLES, called
+from tmm_cli.reports.understood import motion
+
+# tables of `tmm explain` that the note has in words of its own; the others it has as they are
+IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")
+SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
+
+
+def blocks(subject: Subject) -> Iterable[Block]:
+    """What is given and what is to be found."""
+    results = subject.results
+    problem, linkage = results.problem, results.linkage
+    yield Heading(_("Task and data"))
+    if problem.description:
+        yield paragraph(problem.description.strip())
+    sentence = _("The sizes of the links are given in table {table}.")
+    if problem.synthesis is not None:
+        sentence = _(
+            "The sizes of the links are given in table {table}; those that the task leaves open are found by synthesis."
+        )
+    yield from tabled(sentence, _sizes(subject))
+    sentence = _("The coordinates of the fixed points are given in table {table}.")
+    if _guided(subject):
+        sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
+    yield from tabled(sentence, _fixed(subject))
+    for driver in linkage.drivers:
+        yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
+    if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
+        yield from tabled(
+            _("Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres of mass "
+              "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
+              "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
+              "the link on which it slides."),
+            _masses(subject), m=Symbol("m"), J=Symbol("J", "S"), sizes=Ref("sizes"),
+        )  # fmt: skip
+        yield from _gravity(subject)
+    if linkage.loads:
+        yield from tabled(_("The loads are given in table {table}."), _loads(subject))
+    further = [
+        table for table in given(problem)
+        if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
+    ]  # fmt: skip
+    if further:
+        yield several(
+            _("Further data are given in table {first}."),
+            _("Further data are given in tables {first} and {last}."),
+            _("Further data are given in tables {first} to {last}."),
+            [table.name for table in further],
+        )  # fmt: skip
+        for table in further:
+            yield rows_of(subject, table, key=table.name)
+            yield from (paragraph(with_degrees(note)) for note in table.notes)
+    yield paragraph(_("It is required to find:"))
+    yield Items(tuple((text,) for text in _wanted(subject)))
+
+
+def _gravity(subject: Subject) -> Iterable[Block]:
+    pull = subject.results.linkage.gravity
+    size = abs(pull)
+    if not size:
+        yield paragraph(_("The weights of the links are not taken into account."))
+        return
+    yield said(
+        _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the axis x."),
+        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE, 4),
+    )  # fmt: skip
+
+
+def _sizes(subject: Subject) -> Rows:
+    linkage, roles = subject.results.linkage, subject.results.roles
+    rows = tuple(
+        cells(name, called(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
+        for name, link in linkage.links.items() if name != FRAME
+    )  # fmt: skip
+    return Rows(_("Links and their sizes"), cells(_("link"), _("is called"), _("sizes")), rows, "sizes")
+
+
+def _lengths(subject: Subject, link: Link) -> Line:
+    """l_AB = 110 mm, ...; then the coordinates of points that are not on the axis x."""
+    points = list(link.points)
+    pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
+    found: list[Line] = []
+    for a, b in pairs:
+        length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
+        if length > 0:
+            found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH)}"))
+    if any(np.any(np.imag(place) != 0) for place in link.points.values()):
+        for point, place in link.points.items():
+            x, y = _place(subject, place)
+            found.append((unbroken(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
+    return listed(found)
+
+
+def _fixed(subject: Subject) -> Rows:
+    """The last column is that of the directions of guides."""
+    linkage, unit = subject.results.linkage, subject.unit(LENGTH)
+    rows = [cells(point, *_place(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
+    for slide in linkage.slides:
+        if slide.carrier == FRAME:
+            angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE)
+            rows.append(cells(_("guide {name}").format(name=slide.name), *_place(subject, slide.through), angle))
+    head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
+    if _guided(subject):
+        return Rows(_("Fixed points and guides"), head, tuple(rows), "fixed")
+    return Rows(_("Fixed points"), head[:-1], tuple(row[:-1] for row in rows), "fixed")
+
+
+def _guided(subject: Subject) -> bool:
+    return any(slide.carrier == FRAME for slide in subject.results.linkage.slides)
+
+
+def _place(subject: Subject, place: complex) -> tuple[str, str]:
+    value = complex(np.ravel(place)[0])
+    return subject.number(value.real, LENGTH), subject.number(value.imag, LENGTH)
+
+
+def _masses(subject: Subject) -> Rows:
+    linkage, unit = subject.results.linkage, subject.unit
+    rows = []
+    for name in heavy(linkage):
+        link = linkage.links[name]
+        mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
+        own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
+        rows.append(cells(name, *own, *_place(subject, link.centre)))
+    quantities = (
+        (Symbol("m"), MASS), (Symbol("J", "S"), INERTIA), (Symbol("x", "S"), LENGTH), (Symbol("y", "S"), LENGTH),
+    )  # fmt: skip
+    head = cells(_("link"), *((symbol, f", {unit(dimension)}") for symbol, dimension in quantities))
+    caption = _("Masses, moments of inertia, and centres of mass in the axes of each link")
+    return Rows(caption, head, tuple(rows), "masses")
+
+
+def _loads(subject: Subject) -> Rows:
+    linkage = subject.results.linkage
+    head = cells(_("load"), _("on link"), _("point of action"), _("size"), _("when"))
+    return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
+
+
+def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
+    place = load.point
+    if load.force and not place:
+        x, y = _place(subject, load.at)
+        place = _("({x}; {y}) {unit}").format(x=x, y=y, unit=subject.unit(LENGTH))
+    size = subject.value(load.moment, MOMENT)
+    if load.force:
+        x, y = (subject.number(part, FORCE) for part in (load.force.real, load.force.imag))
+        size = f"({x}; {y}) {subject.unit(FORCE)}"
+    if load.table is not None:
+        size = _("by a table")
+    elif load.resists:
+        against = subject.value(abs(load.force), FORCE) if load.force else subject.value(load.moment, MOMENT)
+        size = _("{size} against the motion").format(size=against)
+    when = _("in the working stroke") if load.working_stroke_only else _("always")
+    if load.stroke_link:
+        when = _("in the working stroke of link {link}").format(link=load.stroke_link)
+    if load.window is not None:
+        first, last = (subject.value(angle, ANGLE) for angle in load.window)
+        when = _("crank from {first} to {last}").format(first=first, last=last)
+    name = named(load.name, "P" if load.force else "M")
+    return cells(name, link_name(load.link), place if load.force else NONE, size, when)
+
+
+def _wanted(subject: Subject) -> Iterable[str]:
+    results = subject.results
+    if results.problem.synthesis is not None:
+        yield _("the sizes of the mechanism from what it must do;")
+    yield _("the structure of the mechanism: its mobility, Assur groups, formula and class;")
+    if results.motion is None:
+        return
+    count = len(results.numbers)
+    yield (
+        _("positions, velocities and accelerations of points and links;") if count == 1
+        else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
+    )  # fmt: skip
+    if subject.acts:
+        yield _(
+            "the reactions in the pairs and the balancing load of the driving link, checked by the Zhukovsky lever."
+        )

@@ -1,0 +1,1 @@
+"""The blocks of a problem file: what keys each has, and how it becomes part of a linkage."""

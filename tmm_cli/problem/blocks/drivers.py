@@ -1,0 +1,264 @@
+"""A crank's speed by a table of a problem file."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.linkage import FRAME, Driver, Link, Request, Sketch, SpeedTable
+from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics.interpolation import Table
+from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    LENGTH,
+    SPEED,
+    Dimension,
+)
+from tmm_cli.mechanics.structure.cycle import MOST
+from tmm_cli.problem import schema
+from tmm_cli.problem.blocks.links import Members
+from tmm_cli.problem.errors import Path, ProblemError, no_position, quote
+from tmm_cli.problem.values import Part, ValueReader
+
+NO_SPEED = 1e-12  # of the square of the largest: less is rounding of a rest
+
+
+def build_speeds(part: Part, turns: int) -> SpeedTable:
+    """Squares of speeds by the crank's angle, and accelerations if they are given; turns: of the crank in a cycle."""
+    given: schema.Driver = part.given
+    angles, speeds = _columns(part, "speed", ANGULAR_SPEED)
+    path = (*part.path, "speed", "table")
+    for k, speed in enumerate(speeds):
+        if speed < 0:
+            raise ProblemError(
+                _("a speed is counted in the driver's sense, which is one alone"), path=(*path, k, 1),
+                found=quote(given.speed.table[k][1]), allowed=_("zero or more; turns: cw for the other sense"),
+            )  # fmt: skip
+    if not any(speeds):
+        raise ProblemError(_("the driver stands still in all rows"), path=path, key=True)
+    closed = _closes(part, "speed", angles, speeds, turns)
+    squares = Table(angles, tuple(speed * speed for speed in speeds), given.speed.between, closed)
+    row, least = _least(squares)
+    if least < -NO_SPEED * float(rounded(max(speeds))) ** 2:
+        below = _("between this row and the next the smooth curve of squares of speeds goes below zero")
+        found, allowed = quote(given.speed.table[row][0]), _("between: linear, or more rows there")
+        raise ProblemError(below, path=(*path, row, 0), found=found, allowed=allowed)
+    if not isinstance(given.acceleration, schema.Speeds):
+        return SpeedTable(squares)
+    angles, gains = _columns(part, "acceleration", ANGULAR_ACCELERATION)
+    closed_too = _closes(part, "acceleration", angles, gains, turns)
+    if closed_too != closed or angles[0] > squares.arguments[0] or angles[-1] < squares.arguments[-1]:
+        raise part.refusal("acceleration", _("accelerations are given over the same angles as speeds"), at_key=True)
+    return SpeedTable(squares, Table(angles, gains, given.acceleration.between, closed_too))
+
+
+def mean(part: Part) -> float:
+    """Of the speeds of all rows, rad/s."""
+    speeds = _columns(part, "speed", ANGULAR_SPEED)[1]
+    whole: float = sum(speeds) / len(speeds)
+    return whole
+
+
+def _columns(part: Part, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    own = Part(getattr(part.given, key), (*part.path, key), part.values)
+    return own.columns("table", ANGLE, want, jumps=key == "acceleration")
+
+
+def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
+    """Whether a table goes all round the cycle; then it ends as it begins."""
+    table, path, units = getattr(part.given, key).table, (*part.path, key, "table"), part.values.units
+    cycle = math.tau * turns
+    end = units.told(float(angles[0]) + cycle, ANGLE)
+    beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_PLACE)
+    if (row := next(iter(beyond), None)) is not None:
+        longer = _("at most {end}; a longer cycle is told by cycle: {turns} turns").format(end=end, turns=turns + 1)
+        never = _("this row is never reached: it is more than a cycle after the first one")
+        raise ProblemError(never, path=(*path, row, 0), found=quote(table[row][0]), allowed=longer)
+    if angles[-1] - angles[0] < cycle - SAME_PLACE:
+        return False
+    if abs(values[-1] - values[0]) > SAME_RATIO * max(abs(value) for value in values):
+        raise ProblemError(
+            _("the table does not close: its cycle ends otherwise than it begins"), path=(*path, len(table) - 1, 1),
+            found=quote(table[-1][1]), allowed=_("{first}, as in the first row").format(first=table[0][1]),
+        )  # fmt: skip
+    return True
+
+
+def _least(table: Table) -> tuple[int, float]:
+    """After which row a table is least between rows, and how little it is there."""
+    rows = np.array([float(rounded(row)) for row in table.arguments])
+    found = rounded(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
+    row = int(np.argmin(np.min(found, axis=1)))
+    return row, float(np.min(found))
+
+
+# Drivers of a problem file, where they stand in the sketch, and the positions that it asks for.
+
+
+FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
+UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
+
+
+def build_drivers(shape: schema.File, members: Members, values: ValueReader) -> tuple[Driver, ...]:
+    """All drivers in the order of the file."""
+    if isinstance(shape.driver, schema.Driver):
+        part = Part(shape.driver, ("driver",), values)
+        driver = _driver(part, members, True)
+        if isinstance(shape.driver.speed, schema.Speeds):
+            driver = replace(driver, law=build_speeds(part, build_cycle(shape, driver, values)))
+        return (driver,)
+    if not shape.driver:
+        raise ProblemError(_("there is no driver"), path=("driver",), found="[]", allowed=_("{link: 1, speed: 60 rpm}"))
+    parts = [Part(given, ("driver", number), values) for number, given in enumerate(shape.driver)]
+    found: list[Driver] = []
+    for part in parts:
+        driver = _driver(part, members, part is parts[0])
+        if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in found):
+            raise part.refusal("link", _("this link is driven already"), quote(driver.link))
+        found.append(driver)
+    lead, size = found[0], _size(members.links)
+    for part, driver in zip(parts[1:], found[1:], strict=True):
+        first, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (lead, driver))
+        if first > 0 and own > FASTER * first:
+            faster = _("a driver is far faster than the first one")
+            raise part.refusal("speed", faster, str(part.given.speed), _("the fastest driver first"))
+    if len(found) > 1 and lead.rate == 0:
+        still = _("the first of several drivers counts the positions: it must move")
+        raise parts[0].refusal("speed", still, str(parts[0].given.speed))
+    return tuple(found)
+
+
+def _size(links: dict[str, Link]) -> float:
+    """The largest distance of two points of one link (m)."""
+    spans = (abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values())
+    return max(spans, default=0.0) or 1.0
+
+
+def _driver(part: Part, members: Members, first: bool) -> Driver:
+    given: schema.Driver = part.given
+    link = part.known("link", [name for name in members.links if name != FRAME], "link")
+    base = part.known("on", members.links, "link")
+    part.values.different((link, base), (*part.path, "on"))
+    pivot, slide = members.hinge(link, base), members.slide(link, base)
+    if pivot is None and slide is None:
+        raise members.unjoined(link, base, (*part.path, "link"))
+    turns = pivot is not None
+    want = ANGLE if turns else LENGTH
+    by_angle = isinstance(given.speed, schema.Speeds)
+    if by_angle and (not turns or not first or part.path != ("driver",)):
+        raise part.refusal("speed", _("a table of speeds is for one crank alone"), at_key=True)
+    if by_angle != isinstance(given.acceleration, schema.Speeds) and given.acceleration != 0:
+        apart = _("an acceleration goes with a speed at position 0, a table of them with a table of speeds")
+        raise part.refusal("acceleration", apart, at_key=True)
+    speed = mean(part) if by_angle else part.number("speed", ANGULAR_SPEED if turns else SPEED)
+    acceleration = 0.0
+    if not by_angle:
+        acceleration = part.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
+    if speed < 0 and "turns" in given.model_fields_set:
+        twice = _("a negative speed and a sense of rotation say the sense twice")
+        raise part.refusal("speed", twice, str(given.speed), _("a positive speed with turns: ccw or cw"))
+    if given.end is not None:
+        part.known("end", members.links[link].points, f"point of link {link}")
+        if given.end == pivot:
+            has_no_arm = _("a balancing force in the pivot {point} has no arm").format(point=pivot)
+            raise part.refusal("end", has_no_arm, quote(given.end), _("another point of the link"))
+    if first == (given.at is not None):
+        raise part.refusal(
+            "at", _("the place of the first driver stands in the sketch, that of each other one here"), at_key=True,
+            allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"),
+        )  # fmt: skip
+    at = 0.0 if given.at is None else part.number("at", want)
+    stroke = None
+    if given.stroke is not None:
+        low, high = (part.values.number(value, want, (*part.path, "stroke", k)) for k, value in enumerate(given.stroke))
+        if not low < high:
+            raise part.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(given.stroke))
+        stroke = (low, high)
+    return Driver(
+        link, "turn" if turns else "slide", pivot or (slide.name if slide else ""), abs(speed),
+        acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
+        given.end or "", base, at, stroke,
+    )  # fmt: skip
+
+
+def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
+    """Turns of the crank after which its loads come again."""
+    if shape.cycle is None:
+        return 1
+    if driver.kind != "turn":
+        raise ProblemError(
+            _("a cycle is told in turns of a crank: this driver slides"), path=("cycle",), found=quote(shape.cycle)
+        )
+    turns = values.number(shape.cycle, ANGLE, ("cycle",)) / (2 * cmath.pi)
+    whole = round(float(turns))
+    if not 1 <= whole <= MOST or abs(turns - whole) > SAME_PLACE:
+        raise ProblemError(
+            _("a cycle is a whole number of turns"), path=("cycle",), found=quote(shape.cycle),
+            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST),
+        )  # fmt: skip
+    return whole
+
+
+def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
+    """The sketch of the file, or of one that says nothing of it any place of the driver."""
+    given = dict(shape.sketch)
+    wanted = ANGLE if driver.kind == "turn" else LENGTH
+    if not given:
+        return Sketch(UNTOLD_SKETCH if driver.kind == "turn" else 0.0)
+    if "at" not in given:
+        raise ProblemError(
+            _("the driver's place in the sketch is missing"), path=("sketch", "at"),
+            allowed=_("at: {wanted}").format(wanted=wanted),
+        )  # fmt: skip
+    at = values.number(given.pop("at"), wanted, ("sketch", "at"))
+    if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
+        beyond = _("the sketch shows the driver beyond its stroke")
+        raise ProblemError(beyond, path=("sketch", "at"), found=str(shape.sketch["at"]))
+    owners = {p: n for n, link in links.items() for p in link.points}
+    points, angles = {}, {}
+    for name, value in given.items():
+        path: Path = ("sketch", name)
+        if name in owners and isinstance(value, list):
+            points[name] = values.vector(value, LENGTH, path)
+        elif name in links and name != FRAME and not isinstance(value, list):
+            angles[name] = values.number(value, ANGLE, path)
+        else:
+            values.known(name, {**owners, **links}, path, "point or link", key=True)
+            raise ProblemError(
+                _("a point has coordinates and a link has an angle"), path=path, found=quote(value),
+                allowed="[x, y]" if name in owners else _("an angle"),
+            )  # fmt: skip
+    return Sketch(at, points, angles)
+
+
+def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Request:
+    """Which positions the file asks for."""
+    given = shape.positions
+    part = Part(given, ("positions",), values)
+    wanted = ANGLE if driver.kind == "turn" else LENGTH
+    places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ()))
+    count = len(places) or given.count
+    for k, number in enumerate(given.detail):
+        if not 0 <= number < count:
+            raise no_position(number, count, "positions", "detail", k)
+    if given.from_ is not None and driver.kind == "slide" and not places:
+        raise part.refusal(
+            "from", _("positions of a driven slider go from one end of its way to the other"), str(given.from_),
+            _("driver: {stroke: [first, last]}, or positions: {at: [...]}"), at_key=True,
+        )  # fmt: skip
+    start: float | Literal["working stroke"] = 0.0
+    if given.from_ == "working stroke":
+        start = "working stroke"
+    elif given.from_ is not None:
+        start = values.number(given.from_, wanted, ("positions", "from"))
+    return Request(count, start, places, tuple(given.detail), given.centres)

@@ -1,0 +1,297 @@
+"""Links of a problem file, the turning and sliding pairs between them, and slips that leave one of them unused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.linkage import FRAME, Hinge, Link, Linkage, Slide, hinged
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.problem import schema
+from tmm_cli.problem.errors import Path, ProblemError, latin, nearest, quote, unknown_name
+from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
+
+LONGEST_PAIR = 80  # letters of the names of two points
+
+
+@dataclass(frozen=True)
+class Members:
+    """Links and their lower pairs: what drivers, higher pairs and loads of the file are put on."""
+
+    links: dict[str, Link]
+    hinges: tuple[Hinge, ...]
+    slides: tuple[Slide, ...]
+
+    def hinge(self, link: str, base: str) -> str | None:
+        """The point in which two links are hinged."""
+        return hinged(self.hinges, link, base)
+
+    def slide(self, link: str, base: str) -> Slide | None:
+        """The sliding pair of two links."""
+        return next((s for s in self.slides if {s.carrier, s.runner} == {link, base}), None)
+
+    def unjoined(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
+        """The refusal of a link that no pair of these kinds joins to its base; it names those that are joined to it."""
+        pairs = [h.links for h in self.hinges if "R" in kinds]
+        pairs += [(s.carrier, s.runner) for s in self.slides if "P" in kinds]
+        joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
+        hinges = {h.point for h in self.hinges}
+        free = next((p for p in self.links[link].points if p not in hinges), None)
+        if base == FRAME and free is not None and "R" in kinds:
+            joined[_("a hinge on the frame: points: {{{point}: [x, y]}}").format(point=free)] = None
+        return ProblemError(
+            _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
+            found=quote(link), allowed=", ".join(joined) or None,
+        )  # fmt: skip
+
+
+def build_links(shape: schema.File, values: ValueReader) -> Members:
+    """Links in the order of the file, hinges where they share points, and slides."""
+    reader = _Reader(shape, values)
+    slides = reader.slides()
+    owners: dict[str, list[str]] = {}
+    for name, link in reader.links.items():
+        for point in link.points:
+            owners.setdefault(point, []).append(name)
+    hinges = tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
+    return Members(reader.links, _attach_links(hinges, shape, values), slides)
+
+
+def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
+    """The hinges, compound ones with the link to which the file attaches the others."""
+    links_at = {hinge.point: hinge.links for hinge in hinges}
+    for point, hinge in shape.hinges.items():
+        part = Part(hinge, ("hinges", point), values)
+        values.known(point, links_at, part.path, "hinge", key=True)
+        if len(links_at[point]) == 2:
+            raise part.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
+        if hinge.attached_to not in links_at[point]:
+            raise part.refusal(
+                "attached_to", _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
+                found=quote(hinge.attached_to), allowed=", ".join(links_at[point]),
+            )  # fmt: skip
+    attached = {point: hinge.attached_to for point, hinge in shape.hinges.items()}
+    return tuple(replace(hinge, attached_to=attached.get(hinge.point, "")) for hinge in hinges)
+
+
+def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader) -> None:
+    """Refuse links of compound hinges attached so that groups merge, or that a driver has no pair to work in."""
+    for hinge in linkage.hinges:
+        if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
+            allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
+            raise Part(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
+                "attached_to",
+                _("with the links attached to {link} the mechanism does not fall into the same groups").format(
+                    link=hinge.attached_to
+                ),
+                found=quote(hinge.attached_to), allowed=", ".join(allowed),
+            )  # fmt: skip
+
+
+def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
+    """True if the groups stay the same when the links of a hinge are attached to this one."""
+    usual, attached = (
+        replace(linkage, hinges=tuple(replace(hinge, attached_to=to) if h == hinge else h for h in linkage.hinges))
+        for to in ("", link)
+    )
+    driven = [{d.base, d.link} for d in linkage.drivers if d.kind == "turn" and d.joint == hinge.point]
+    groups = [{frozenset(group.links) for group in analyse(changed).groups} for changed in (usual, attached)]
+    return groups[0] == groups[1] and all(link in ends for ends in driven)
+
+
+class _Reader:
+    """Reads links, then slides, which need all links."""
+
+    def __init__(self, shape: schema.File, values: ValueReader) -> None:
+        self.shape, self.values = shape, values
+        frame = {}
+        for name, place in shape.points.items():
+            check_name(name, ("points", name), "point")
+            frame[name] = values.vector(place, LENGTH, ("points", name))
+        _refuse_twins(shape)
+        self.links = {FRAME: Link(FRAME, frame)}
+        for name, link in shape.links.items():
+            check_name(name, ("links", name), "link")
+            if name == FRAME:
+                raise ProblemError(_("0 is the frame; see points"), path=("links", name), key=True)
+            self.links[name] = Link(name, self.points(link, name), label=link.name or "")
+
+    def points(self, link: schema.Link, name: str) -> dict[str, complex]:
+        part, given = Part(link, ("links", name), self.values), link.points
+        where: Path = (*part.path, "points")
+        if isinstance(given, dict):
+            if link.length is not None:
+                raise part.refusal("length", _("coordinates say the length already"))
+            points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in given.items()}
+        else:
+            points = self.listed(given, part)
+        if not points:
+            raise part.refusal("points", _("a link has at least one point"), allowed="[A, B]")
+        for number, point in enumerate(points):
+            check_name(point, (*where, point if isinstance(given, dict) else number), "point")
+        for point, place in link.also.items():
+            check_name(point, (*part.path, "also", point), "point", points)
+            points[point] = self.values.place(place, points, (*part.path, "also", point), name)
+        return points
+
+    def listed(self, given: list[str], part: Part) -> dict[str, complex]:
+        """Points that stand in a list: at most two, whose distance is the length."""
+        if len(set(given)) < len(given):
+            raise part.refusal("points", _("a point is named twice"), str(given))
+        if len(given) > 2:
+            raise part.refusal(
+                "points", _("three points and more need coordinates in the link's own axes"), ", ".join(given),
+                f"{{{given[0]}: [0, 0], {given[1]}: [x, 0], {given[2]}: [x, y]}}",
+            )  # fmt: skip
+        if len(given) < 2:
+            if part.given.length is not None:
+                raise part.refusal("length", _("a length belongs to two points"))
+            return dict.fromkeys(given, 0j)
+        if part.given.length is None:
+            wanted = _("length: the distance from {first} to {second}").format(first=given[0], second=given[1])
+            raise part.refusal("length", _("the length of this link is missing"), allowed=wanted)
+        return {given[0]: 0j, given[1]: planar(part.positive("length", LENGTH), 0.0)}
+
+    def slides(self) -> tuple[Slide, ...]:
+        for name in self.shape.guides:
+            check_name(name, ("guides", name), "guide")
+        found: list[Slide] = []
+        for name, link in self.shape.links.items():
+            many = isinstance(link.slides, list)
+            for number, slide in enumerate(link.sliding):
+                path: Path = ("links", name, "slides", number) if many else ("links", name, "slides")
+                found.append(self.slide(Part(slide, path, self.values), name, {s.name for s in found}))
+        return tuple(found)
+
+    def slide(self, part: Part, runner: str, taken: set[str]) -> Slide:
+        given: schema.Slide = part.given
+        points, guides = self.links[runner].points, self.shape.guides
+        point = given.point or next(iter(points))
+        self.values.known(point, points, (*part.path, "point"), f"point of link {runner}")
+        if given.on in guides:
+            if any(told is not None for told in (given.along, given.through, given.angle)):
+                raise ProblemError(_("guide {on} says where it runs already").format(on=given.on), path=part.path)
+            name, line = given.on, Part(guides[given.on], ("guides", given.on), self.values)
+            carrier = line.known("on", self.links, "link")
+        elif given.on in self.links:
+            carrier, name, line = given.on, f"{point}'", part
+        else:
+            among = _("guides: {guides}; links: {links}").format(
+                guides=", ".join(guides) or _("none"), links=", ".join(self.links)
+            )
+            known = [*guides, *(n for n in self.links if n != runner)]
+            raise unknown_name(given.on, known, _("there is no such guide or link"), among, path=(*part.path, "on"))
+        self.values.different((runner, carrier), (*part.path, "on"))
+        through, angle, ends = self.guide(line, carrier)
+        bounded = carrier != FRAME and not (given.unbounded or line.given.unbounded)
+        turned = part.number("turned", ANGLE)
+        name = name if name not in taken else f"{name}.{runner}"
+        return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
+
+    def guide(self, part: Part, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
+        """A point on a guide, its direction, in the axes of the link that carries it, and the points it is along."""
+        given: schema.Guide | schema.Slide = part.given
+        points = self.links[carrier].points
+        along, placed = given.along, given.through is not None or given.angle is not None
+        if along is None and not placed and carrier != FRAME and len(points) == 2:
+            along = "-".join(points)
+        if along is not None and placed:
+            raise part.refusal("along", _("along says through and angle already"))
+        ends = None
+        if along is not None:
+            first, second = ends = self.values.two_points(along, points, (*part.path, "along"))
+            through, angle = points[first], phase(points[second] - points[first])
+        elif given.through is not None:
+            through = part.place("through", points, carrier)
+            angle = 0.0 if given.angle is None else part.number("angle", ANGLE)
+        else:
+            allowed = _("along: CD, or through: [x, y] and angle")
+            raise part.refusal("through", _("where does this guide run?"), allowed=allowed)
+        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle, ends
+
+
+def _refuse_twins(shape: schema.File) -> None:
+    """Refuse points whose names look alike and are not: a Cyrillic letter in one of them is never meant."""
+    named: dict[str, Path] = {name: ("points", name) for name in shape.points}
+    for link, given in shape.links.items():
+        path: Path = ("links", link, "points")
+        listed = isinstance(given.points, list)
+        named |= {name: (*path, number if listed else name) for number, name in enumerate(given.points)}
+        named |= {name: ("links", link, "also", name) for name in given.also}
+    alike: dict[str, str] = {}
+    for name in sorted(named, key=str.isascii, reverse=True):  # then the one with Cyrillic letters is at fault
+        other = alike.setdefault(latin(name), name)
+        if other != name:
+            raise ProblemError(
+                _("this name looks like another one, but its letters differ"), path=named[name], found=quote(name),
+                near=other, key=True,
+            )  # fmt: skip
+
+
+def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:
+    """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
+    links = members.links
+    joined = {name for h in members.hinges for name in h.links} | {
+        n for s in members.slides for n in (s.carrier, s.runner)
+    }
+    for name in shape.links:
+        if name not in joined:
+            raise ProblemError(
+                _("this link is joined to nothing"), path=("links", name), found=", ".join(links[name].points),
+                allowed=_("a point that another link or the frame has too, or slides"), key=True,
+            )  # fmt: skip
+    used = {s.on for link in shape.links.values() for s in link.sliding}
+    for guide in shape.guides:
+        if guide not in used:
+            raise ProblemError(_("nothing slides on this guide"), path=("guides", guide), found=quote(guide), key=True)
+    shared = {h.point for h in members.hinges}
+    alone = []
+    for name, link in links.items():
+        given = list(link.points) if name == FRAME else shape.links[name].points
+        running = {s.at for s in members.slides if s.runner == name}
+        for number, point in enumerate(given if isinstance(given, list) else ()):
+            if point not in shared and link.points[point] not in running:
+                alone.append((name, number, point))
+    if not alone:
+        return
+    everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
+    elsewhere = _points_named(shape, data, links, everything)
+    for name, number, point in alone:
+        if point not in elsewhere:
+            path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
+            raise ProblemError(
+                _("this point is named nowhere else"), path=path, found=quote(point),
+                allowed=_("a point of another link or the frame; one that is only watched has coordinates (see also:)"),
+                near=nearest(point, [p for p in everything if p != point and p not in links[name].points]),
+                key=name == FRAME,
+            )  # fmt: skip
+
+
+def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]) -> set[str]:
+    """Points that are named beside the links' own lists of points, alone or two together (CD, C-D)."""
+    known, found = set(everything), set[str]()
+    for word in _words({**data, "parameters": {}, "title": "", "description": ""}):
+        found.add(word)
+        two = re.sub(r"[-–, ]", "", word)
+        for k in range(1, len(two) if len(two) <= LONGEST_PAIR else 0):
+            found |= {two[:k], two[k:]} if known >= {two[:k], two[k:]} else set()
+    for slide in (s for link in shape.links.values() for s in link.sliding):
+        if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
+            found |= set(links[slide.on].points)  # its two points are the guide
+    return found
+
+
+def _words(part: Any) -> Iterator[str]:
+    """Every text of a file that may name a point, the links' own lists of points left out."""
+    if isinstance(part, dict):
+        yield from part
+        part = [value for key, value in part.items() if key != "points"]
+    if isinstance(part, list):
+        for value in part:
+            yield from _words(value)
+    elif isinstance(part, str):
+        yield part

@@ -1,0 +1,287 @@
+"""Toothed wheels, racks and cams in a problem file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.groups.pairs.higher import CamLaw, Piece
+from tmm_cli.mechanics.linkage import FRAME, Mesh
+from tmm_cli.mechanics.numerics.tolerances import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH
+from tmm_cli.mechanics.numerics.vectors import cross, unit
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER
+from tmm_cli.problem.errors import Path, ProblemError, quote
+from tmm_cli.problem.schema_parts import Name, Strict, Value
+from tmm_cli.problem.values import Part, ValueReader, check_name
+
+if TYPE_CHECKING:
+    from tmm_cli.problem import schema
+    from tmm_cli.problem.blocks.links import Members
+
+
+class Gear(Strict):
+    """Two toothed wheels in mesh, hinged to a common carrier."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
+    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
+    teeth: list[Value] | None = Field(default=None, min_length=2, max_length=2, description="numbers of teeth of both")
+    radii: list[Value] | None = Field(
+        default=None, min_length=2, max_length=2, description="radii of both pitch circles"
+    )
+    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
+    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
+    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
+    offset: Value = Field(
+        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
+    )
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class Rack(Strict):
+    """A wheel that rolls on a rack."""
+
+    wheel: Name
+    rack: Name = Field(description="the link with the rack; it slides on the carrier")
+    carrier: Name = Field(default="0", description="the link that holds both")
+    radius: Value = Field(description="of the wheel's pitch circle")
+    side: Literal["left", "right"] | None = Field(
+        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
+    )
+    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
+    pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
+
+
+class CamPiece(Strict):
+    """A part of a cam's turn."""
+
+    over: Value = Field(description="angle of the cam")
+    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
+    law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
+
+
+class Cam(Strict):
+    """A cam and its follower on a common carrier, by the follower's law of motion."""
+
+    cam: Name = Field(description="it is hinged to the carrier; the frame may be one (a fixed cam)")
+    follower: Name = Field(description="it slides on the carrier, or swings about a hinge on the frame")
+    carrier: Name = Field(
+        default="0", description="the link that carries both; a moving one: its cam changes a length of it"
+    )
+    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
+    start: Value = Field(default=0, description="angle of the cam from the carrier where the first piece starts")
+    offset: Value = Field(default=0, description="run (or angle) of the follower there")
+    roller: Name | None = Field(
+        default=None,
+        description="number of a roller on the follower, a link that the structure counts; it moves nothing",
+    )
+
+
+# Toothed wheels, racks and cams of a problem file.
+
+
+MANY_TEETH = 100_000
+
+
+def build_meshes(shape: schema.File, members: Members, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
+    """All higher pairs: gears, racks, cams; sense: of the driver."""
+    taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
+    found: list[Mesh] = []
+    for block, build in (("gears", _gear), ("racks", _rack), ("cams", partial(_cam, sense))):
+        for name, given in getattr(shape, block).items():
+            check_name(name, (block, name), "pair", taken)
+            taken.add(name)
+            found.append(build(name, Part(given, (block, name), values), members))
+        if block == "gears":
+            _no_contradiction(found)
+    _refuse_shared_rollers(found)
+    return tuple(found)
+
+
+def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
+    """Refuse a number that two rollers share: the structure counts each roller as a link."""
+    rollers = [mesh.roller for mesh in meshes]
+    for index, mesh in enumerate(meshes):
+        if mesh.roller and mesh.roller in rollers[:index]:
+            raise ProblemError(
+                _("a link has this number already"), path=("cams", mesh.name, "roller"), found=quote(mesh.roller),
+                allowed=_("a number of its own for each roller"),
+            )  # fmt: skip
+
+
+def _no_contradiction(gears: list[Mesh]) -> None:
+    """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn, or out of phase."""
+    # by carrier and wheel: the train, in which the angle of each wheel is a slope times that of one of them and a phase
+    trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}
+    for gear in gears:
+        one, other = (trains.setdefault((gear.carrier, n), {n: (1.0, 0.0)}) for n in (gear.i, gear.j))
+        slope, phase = one[gear.i]
+        wanted, angle = gear.ratio * slope, gear.ratio * phase + gear.offset
+        found, there = other[gear.j]
+        if one is not other:
+            for wheel, (own, place) in other.items():
+                one[wheel] = own * wanted / found, place + own * (angle - there) / found
+                trains[gear.carrier, wheel] = one
+        elif abs(wanted - found) > PITCHES_TOUCH * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
+            raise ProblemError(
+                _("gear {name} contradicts those before it: the wheels lock one another").format(name=gear.name),
+                path=("gears", gear.name), allowed=_("ratios and offsets that agree round a ring, or one gear less"),
+                key=True,
+            )  # fmt: skip
+
+
+def _different(names: Sequence[str], part: Part, path: Path, members: Members) -> None:
+    """Refuse names of no links, and one link in two places."""
+    for name in names:
+        part.values.known(name, members.links, path, "link")
+    part.values.different(names, path)
+
+
+def _axis(link: str, carrier: str, members: Members, path: Path) -> complex:
+    """Where a link is hinged to the carrier, in the carrier's axes (m)."""
+    point = members.hinge(link, carrier)
+    if point is None:
+        raise members.unjoined(link, carrier, path, "R")
+    return members.links[carrier].points[point]
+
+
+def _pressure(part: Part) -> float:
+    angle = part.number("pressure", ANGLE)
+    if not 0 <= angle < math.pi / 2:
+        beyond = _("a pressure angle of teeth lies between 0 and 90 deg")
+        raise part.refusal("pressure", beyond, str(part.given.pressure))
+    return angle
+
+
+def _gear(name: str, part: Part, members: Members) -> Mesh:
+    given: Gear = part.given
+    between: Path = (*part.path, "between")
+    (i, j), carrier = given.between, given.carrier
+    _different((i, j, carrier), part, between, members)
+    first, second = (_axis(n, carrier, members, (*between, k)) for k, n in enumerate((i, j)))
+    distance = abs(second - first)
+    if distance == 0:
+        raise part.refusal("between", _("wheels {i} and {j} turn about one axis").format(i=i, j=j), f"{i}, {j}")
+    ratio = _ratio(part, given, distance)
+    return Mesh(name, "gear", i, j, carrier, ratio, part.number("offset", ANGLE), pressure=_pressure(part))
+
+
+def _ratio(part: Part, given: Gear, distance: float) -> float:
+    """First radius over second, negative for an outer mesh; all that is given must agree."""
+    values, path = part.values, part.path
+    teeth, radii = None, None
+    found: dict[str, float] = {}
+    if given.teeth is not None:
+        teeth = [_teeth(values, v, (*path, "teeth", k)) for k, v in enumerate(given.teeth)]
+        found["teeth"] = teeth[0] / teeth[1]
+    if given.radii is not None:
+        radii = [values.positive(v, LENGTH, (*path, "radii", k)) for k, v in enumerate(given.radii)]
+        found["radii"] = radii[0] / radii[1]
+    if given.ratio is not None:
+        found["ratio"] = part.positive("ratio", NUMBER)
+    if not found or (given.module is not None and teeth is None):
+        wanted = _("teeth, radii or ratio is wanted, with a module teeth")
+        raise part.refusal("", wanted, allowed=_("teeth: [20, 40]"))
+    size = next(iter(found.values()))
+    i, j = given.between
+    if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
+        raise part.refusal(
+            "", _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
+            ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
+        )  # fmt: skip
+    if not 1 / MANY_TEETH <= size <= MANY_TEETH or (given.inner and size == 1):
+        raise part.refusal("", _("no pair of wheels has this ratio"), f"{size:.6g}")
+    if given.module is not None and teeth is not None and radii is None:
+        module = part.positive("module", LENGTH)
+        radii = [module * number / 2 for number in teeth]
+    if radii is not None:
+        wanted_distance = abs(radii[0] - radii[1]) if given.inner else radii[0] + radii[1]
+        if abs(wanted_distance - distance) > PITCHES_TOUCH * max(wanted_distance, distance):
+            apart, needed = (
+                f"{values.units.from_si(v, LENGTH):.6g} {values.units.symbol(LENGTH)}"
+                for v in (distance, wanted_distance)
+            )
+            raise part.refusal(
+                "", _("wheels {i} and {j} do not mesh: their axes are {distance} apart").format(
+                    i=i, j=j, distance=apart
+                ), allowed=_("a distance of {wanted}").format(wanted=needed),
+            )  # fmt: skip
+    return size if given.inner else -size
+
+
+def _teeth(values: ValueReader, value: object, path: Path) -> float:
+    """A number of teeth, which is whole, whatever decimals arithmetic has left behind."""
+    teeth = values.positive(value, NUMBER, path)
+    whole: float = np.floor(teeth + 0.5)
+    if whole < 1 or abs(float(teeth) - float(whole)) > WHOLE_TEETH:
+        raise ProblemError(_("a number of teeth is whole"), path=path, found=quote(value))
+    return whole
+
+
+def _rack(name: str, part: Part, members: Members) -> Mesh:
+    given: Rack = part.given
+    wheel, rack, carrier = given.wheel, given.rack, given.carrier
+    _different((wheel, rack, carrier), part, part.path, members)
+    axis = _axis(wheel, carrier, members, (*part.path, "wheel"))
+    slide = members.slide(rack, carrier)
+    if slide is None:
+        raise members.unjoined(rack, carrier, (*part.path, "rack"), "P")
+    radius = part.positive("radius", LENGTH)
+    # the line of the guide and the forward direction of the rack, both on the carrier where it carries the guide
+    on_guide = slide.carrier == carrier
+    high = float(cross(unit(slide.direction), axis - slide.through)) if on_guide else 0.0
+    side = {"left": 1.0, "right": -1.0}[given.side] if given.side else math.copysign(1.0, high)
+    if given.side is None and abs(high) < 1e-9 * radius:
+        allowed = _("side: left or right, looking along the guide")
+        raise part.refusal("side", _("on which side of the rack is the wheel?"), allowed=allowed)
+    forward = 1.0 if slide.runner == rack else -1.0
+    return Mesh(
+        name, "rack", wheel, rack, carrier, side * forward * radius, part.number("offset", LENGTH), slide.name,
+        pressure=_pressure(part),
+    )  # fmt: skip
+
+
+def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
+    given: Cam = part.given
+    cam, follower, carrier = given.cam, given.follower, given.carrier
+    _different((cam, follower, carrier), part, part.path, members)
+    _axis(cam, carrier, members, (*part.path, "cam"))
+    slide = members.slide(follower, carrier)
+    if slide is None and carrier != FRAME:
+        text = _("on a moving carrier a follower slides: link {follower} has no guide on link {carrier}")
+        allowed = _("slides: {{on: {carrier}, along: ...}} of link {follower}")
+        names = {"follower": follower, "carrier": carrier}
+        raise part.refusal("follower", text.format(**names), allowed=allowed.format(**names))
+    if given.roller is not None and given.roller in (FRAME, *members.links):
+        wanted = _("a number of no link, such as {number}").format(number=len(members.links))
+        raise part.refusal("roller", _("a link has this number already"), given.roller, wanted)
+    if slide is None:
+        _axis(follower, FRAME, members, (*part.path, "follower"))
+    want = ANGLE if slide is None else LENGTH
+    parts = [Part(piece, (*part.path, "law", k), part.values) for k, piece in enumerate(given.law)]
+    pieces = tuple(Piece(p.positive("over", ANGLE), p.number("rise", want), p.given.law) for p in parts)
+    turn, rise = sum(p.over for p in pieces), sum(p.rise for p in pieces)
+    if abs(turn - 2 * math.pi) > 1e-9:
+        found = f"{math.degrees(turn):.6g} deg"
+        raise part.refusal("law", _("the pieces of the law do not make a full turn"), found, "360 deg")
+    if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
+        allowed = _("rises that add up to 0")
+        raise part.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
+    law = CamLaw(pieces, part.number("start", ANGLE), -sense if cam == FRAME else sense)
+    offset = part.number("offset", want)
+    return Mesh(
+        name,
+        "cam",
+        cam,
+        follower,
+        carrier,
+        offset=offset,
+        slide=slide.name if slide else "",
+        law=law,
+        roller=given.roller or "",
+    )

@@ -1,0 +1,143 @@
+"""Springs and friction in a problem file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.linkage import Friction as FrictionRecord
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.linkage import Spring as SpringRecord
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    DAMPING,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    STIFFNESS,
+    TORSION,
+    TORSION_DAMPING,
+)
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.problem.schema_parts import Name, Place, Strict, Value
+from tmm_cli.problem.values import Part, ValueReader, check_name
+
+if TYPE_CHECKING:
+    from tmm_cli.problem import schema
+
+
+class Spring(Strict):
+    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
+
+    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
+    at: list[Place] | None = Field(
+        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
+    )
+    rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
+    torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
+    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
+    preload: Value = Field(
+        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
+    )
+    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
+
+
+class PairFriction(Strict):
+    """Friction in one pair."""
+
+    coefficient: Value | None = None
+    radius: Value | None = Field(default=None, description="of the journal of a hinge")
+
+
+class Friction(Strict):
+    """Coulomb friction in pairs. Without this block nothing of it is computed."""
+
+    coefficient: Value = Field(default=0, description="in every pair that is not named")
+    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
+    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
+
+
+# Springs and friction of a problem file.
+
+
+def with_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
+    """The linkage with its springs and friction."""
+    springs, friction = _springs(linkage, shape, values), _friction(linkage, shape, values)
+    return replace(linkage, springs=springs, friction=friction)
+
+
+def _springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[SpringRecord, ...]:
+    """In the order of the file."""
+    found = []
+    for name, given in shape.springs.items():
+        check_name(name, ("springs", name), "load", shape.loads)
+        found.append(_spring(name, given, linkage, Part(given, ("springs", name), values)))
+    return tuple(found)
+
+
+def _spring(name: str, given: Spring, linkage: Linkage, part: Part) -> SpringRecord:
+    i, j = part.two_links(linkage.links)
+    twists = part.one_of("rate", "torsion") == "torsion"
+    if twists and given.at is not None:
+        raise part.refusal("at", _("a torsion spring has no ends"), at_key=True)
+    ends = [next(iter(linkage.links[n].points.values()), 0j) for n in (i, j)]
+    if given.at is not None:
+        ends = [part.values.place(place, linkage.links[n].points, (*part.path, "at", k), n)
+                for k, (n, place) in enumerate(zip((i, j), given.at, strict=True))]  # fmt: skip
+        if any({i, j} <= set(h.links) and given.at[0] == given.at[1] == h.point for h in linkage.hinges):
+            raise part.refusal(
+                "at", _("both ends of spring {name} are in hinge {point}: it has no length").format(
+                    name=name, point=given.at[0]
+                ),
+            )  # fmt: skip
+    elif not twists and any(len(linkage.links[n].points) > 1 for n in (i, j)):
+        allowed = _("at: [point of one, point of the other]")
+        raise part.refusal("at", _("where are the ends of the spring?"), allowed=allowed)
+    rate = part.positive("torsion", TORSION, zero=True) if twists else part.positive("rate", STIFFNESS, zero=True)
+    free = 0.0
+    if given.free is None and rate > 0:
+        allowed = str(ANGLE if twists else LENGTH)
+        raise part.refusal("free", _("the free length or angle of the spring is missing"), allowed=allowed)
+    if given.free is not None:
+        free = part.number("free", ANGLE) if twists else part.positive("free", LENGTH, zero=True)
+    if twists and abs(free) > math.pi:
+        raise part.refusal(
+            "free", _("a free angle lies within half a turn; what a spring is wound up beyond that is its preload"),
+            found=str(given.free),
+        )  # fmt: skip
+    preload = part.number("preload", MOMENT if twists else FORCE)
+    damping = part.positive("damping", TORSION_DAMPING if twists else DAMPING, zero=True)
+    return SpringRecord(name, i, j, ends[0], ends[1], twists, rate, free, preload, damping)
+
+
+def _friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[FrictionRecord, ...]:
+    """Pair by pair; none without its block."""
+    given = shape.friction
+    if given is None:
+        return ()
+    common = Part(given, ("friction",), values)
+    coefficient, radius = (
+        common.positive("coefficient", NUMBER, zero=True),
+        common.positive("radius", LENGTH, zero=True),
+    )
+    pairs = {p.name: p for p in analyse(linkage).pairs if p.lower}
+    own = {name: Part(one, ("friction", "pairs", name), values) for name, one in given.pairs.items()}
+    for name, part in own.items():
+        values.known(name, pairs, part.path, "turning or sliding pair", key=True)
+        if pairs[name].kind == "P" and part.given.radius is not None:
+            raise part.refusal("radius", _("a sliding pair has no journal"), at_key=True)
+    found = []
+    for name, pair in pairs.items():
+        rubs, journal = coefficient, radius
+        if name in own and own[name].given.coefficient is not None:
+            rubs = own[name].positive("coefficient", NUMBER, zero=True)
+        if name in own and own[name].given.radius is not None:
+            journal = own[name].positive("radius", LENGTH, zero=True)
+        if rubs and (pair.kind == "P" or journal):
+            found.append(FrictionRecord(name, rubs, journal if pair.kind == "R" else 0.0))
+    return tuple(found)

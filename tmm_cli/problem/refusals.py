@@ -1,0 +1,415 @@
+"""The words for each kind of refusal, registered by its class."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from functools import singledispatch
+
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.errors import (
+    AmbiguousSketchError,
+    AssemblyError,
+    BySpeedError,
+    GroupTooLargeError,
+    LinkageError,
+    LongRunError,
+    LostDigitsError,
+    MissingStrokesError,
+    MobilityError,
+    NoCycleError,
+    NoFlywheelError,
+    NoInertiaError,
+    NotOnFrameError,
+    NoTurnError,
+    OutOfRangeError,
+    RunawayError,
+    SettingError,
+    SketchMismatchError,
+    SpeedsEndError,
+    StandstillError,
+    TableBeyondCycleError,
+    UnknownNameError,
+    UnknownPositionError,
+    UnsettledError,
+    WeakMotorError,
+)
+from tmm_cli.mechanics.linkage import Linkage
+from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.units import UnitSystem
+
+
+@singledispatch
+def worded(error: LinkageError, problem: Problem) -> ProblemError:
+    """A stage's refusal, with the path of the key that it is about."""
+    return ProblemError(str(error))
+
+
+def shown(value: complex | float, units: UnitSystem) -> str:
+    """A point (m) or an angle (rad) in the units of the file."""
+    if isinstance(value, complex):
+        return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
+    return units.told(value, ANGLE)
+
+
+# Refusals of linkages that do not move as their drivers want, or are not assembled as sketched.
+
+
+MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
+
+
+def _driver_at(problem: Problem) -> str:
+    """Where the driver stands in the sketch."""
+    return problem.units.told(problem.linkage.sketch.at, place_dimension(problem.linkage.driver.kind))
+
+
+@worded.register
+def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
+    short = _("it never closes")
+    if error.residual is not None:
+        short = _("{size} short of closing").format(size=problem.units.told(error.residual, LENGTH))
+    return ProblemError(
+        _("group {group} cannot be assembled with the driver at {place}").format(
+            group=error.group.title, place=_driver_at(problem)
+        ),
+        path=("sketch", "at"), found=short, allowed=_("lengths that reach, or another place of the driver"),
+    )  # fmt: skip
+
+
+@worded.register
+def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
+    group, place, units = error.group.title, _driver_at(problem), problem.units
+    if not error.choices:
+        return ProblemError(
+            _("group {group} is in a dead position in the sketch").format(group=group),
+            path=("sketch", "at"), found=place, allowed=_("another place of the driver"),
+        )  # fmt: skip
+    told = list(error.choices.items())[:MOST_CHOICES]
+    ways = "; ".join(f"{name}: {shown(a, units)} or {shown(b, units)}" for name, (a, b) in told)
+    undecided = _(
+        "the sketch does not say how group {group} is assembled; see tmm kinematics {file} --assemblies"
+    ).format(group=group, file=problem.file or "FILE")
+    return ProblemError(
+        undecided, path=("sketch",), key=True,
+        allowed=_("with the driver at {place}, {ways}").format(place=place, ways=ways),
+    )  # fmt: skip
+
+
+@worded.register
+def _no_such_assembly(error: SketchMismatchError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("the sketch fits no assembly"), path=("sketch", error.name), found=shown(error.sketched, problem.units),
+        allowed=_("about {value} with the driver at {place}").format(
+            value=shown(error.found, problem.units), place=_driver_at(problem)
+        ),
+    )  # fmt: skip
+
+
+@worded.register
+def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("a group of so many links is not solved: {title}").format(title=error.group.title), path=("links",),
+        found=str(len(error.group.links)),
+        allowed=_("at most {most} in one group; any number of groups").format(most=error.most), key=True,
+    )  # fmt: skip
+
+
+@worded.register
+def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
+    lone = _lone_ends(problem.linkage, error.structure.under_constrained)
+    hint = _("point {point} is on link {link} alone; a hinge on the frame: points: {{{point}: [x, y]}}")
+    return mobility(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
+
+
+def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
+    """Loose links whose origin, or with fewer than two pairs any point, makes no pair; each with that point."""
+    runners = {s.runner for s in linkage.slides}
+    pairs = [h.links for h in linkage.hinges] + [(s.carrier, s.runner) for s in linkage.slides]
+    hinges = {h.point for h in linkage.hinges}
+    lone = []
+    for name in loose:
+        link = linkage.links[name]
+        few = sum(name in links for links in pairs) < 2
+        free = [p for k, p in enumerate(link.points) if p not in hinges and (few or k == 0)]
+        if free and name not in runners:
+            lone.append((name, free[0]))
+    return lone
+
+
+def mobility(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
+    """The refusal of a wrong mobility: links that are loose (with hints what holds them), or over-held ones."""
+    n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
+    higher = f" - {p2}" if p2 else ""
+    count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
+    loose, redundant = structure.under_constrained, structure.redundant_pairs
+    held = next((bodies for name, bodies in redundant if name == "driver"), None)
+    if not redundant and not loose:
+        held = structure.links
+    if held is not None:
+        number = max((k for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(held)), default=0)
+        return ProblemError(
+            _("link {link} cannot be driven: pairs or other drivers hold it already").format(
+                link=structure.drivers[number].link
+            ),
+            path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
+            found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(held)),
+            allowed=f"W = {wanted}",
+        )  # fmt: skip
+    if loose:
+        return ProblemError(
+            _("mobility is not {wanted}: these links are loose: {links}").format(wanted=wanted, links=", ".join(loose)),
+            path=("links", loose[0]), found=count,
+            allowed="; ".join([_("W = {wanted}, as many as there are drivers").format(wanted=wanted), *hints]),
+            key=True,
+        )  # fmt: skip
+    name, bodies = redundant[0]
+    links = tuple(b for b in bodies if b in structure.links)
+    return ProblemError(
+        _("mobility is not {wanted}: pair {name} holds what is held already").format(wanted=wanted, name=name),
+        path=("links", links[0]) if links else ("links",), key=True,
+        found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(bodies)),
+        allowed=f"W = {wanted}",
+    )  # fmt: skip
+
+
+# Refusals of what hangs on strokes, on the turns of a cycle, or on how far the driver comes.
+
+
+@worded.register
+def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
+    block, *__, key = error.path
+    if block == "intermittent" and key == "moves_with":
+        return ProblemError(
+            _("this link never turns back: the wheel would not stand"), path=error.path, found=quote(error.link),
+            allowed=_("a link that swings"),
+        )  # fmt: skip
+    text = _("there is no working stroke")
+    if block == "intermittent":
+        return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output that has strokes"))
+    if error.limits is not None:
+        first, last = (shown(limit, problem.units) for limit in error.limits)
+        return ProblemError(
+            _("a table against the stroke needs a driver that turns fully, so that the output makes whole strokes"),
+            path=error.path, found=_("the driver moves from {first} to {last}").format(first=first, last=last),
+            allowed=_("against: crank angle"),
+        )  # fmt: skip
+    found = _("no output is joined to the frame")
+    if error.link is not None:
+        found = _("link {link} has no ends of its stroke").format(link=error.link)
+    return ProblemError(text, path=error.path, found=found, allowed=_("see output:"))
+
+
+@worded.register
+def _speeds_end(error: SpeedsEndError, problem: Problem) -> ProblemError:
+    first, last, end = (shown(x, problem.units) for x in (error.first, error.last, error.first + error.cycle))
+    ends = _("the table goes from {first} to {last}").format(first=first, last=last)
+    if error.at is not None:
+        ends = _("{ends}, a position is at {place}").format(ends=ends, place=shown(error.at, problem.units))
+    closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
+    return ProblemError(
+        _("the table of speeds does not reach over all positions"), path=("driver", "speed", "table"), key=True,
+        found=ends, allowed=closing.format(end=end),
+    )  # fmt: skip
+
+
+@worded.register
+def _no_turn(error: NoTurnError, problem: Problem) -> ProblemError:
+    full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=error.turns)
+    return ProblemError(full, path=("cycle",), key=True)
+
+
+@worded.register
+def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
+    wanted = _("a law of motion is found for one crank that turns fully")
+    allowed = _("one driver that turns round and round")
+    if error.path[0] == "balancing":
+        wanted = _("what shakes is found for one crank that turns fully")
+    if error.path[0] == "intermittent":
+        wanted = _("intermittent motion is found over a cycle, and the driver has none")
+        fit = _("a crank that turns fully, or a driver with a stroke that the linkage can go")
+        allowed = f"{fit}; driver: {{stroke: [0, 100]}}"
+    return ProblemError(wanted, path=error.path, key=True, allowed=allowed)
+
+
+@worded.register
+def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
+    first, last = shown(error.start, problem.units), shown(error.end, problem.units)
+    return ProblemError(
+        _("the run goes where the driver does not come"), path=("dynamics", "run"), key=True,
+        allowed=_("{first} to {last}").format(first=first, last=last),
+    )  # fmt: skip
+
+
+@worded.register
+def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemError:
+    turns, units = round(error.cycle / (2 * math.pi)), problem.units
+    text = _("this row is never reached: all repeats after {turns} turns of the driver")
+    if turns == 1:
+        text = _("this row is never reached: all repeats after 1 turn of the driver")
+    allowed = _("0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns").format(
+        end=f"{units.from_si(error.cycle, ANGLE):.6g}", unit=units.spelt(ANGLE),
+        turns=max(2, math.ceil(error.argument / math.tau)),
+    )  # fmt: skip
+    return ProblemError(text.format(turns=turns), path=error.path, found=shown(error.argument, units), allowed=allowed)
+
+
+# Refusals of laws of motion and of balancing.
+
+
+@worded.register
+def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
+        path=("balancing", "counterweights"), key=True, allowed=_("larger radii, or other points of the links"),
+    )  # fmt: skip
+
+
+@worded.register
+def _by_speed(error: BySpeedError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("a law of motion is not found where forces hang on reactions or on speeds"), path=error.path, key=True,
+        allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
+    )  # fmt: skip
+
+
+@worded.register
+def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
+    reason = _("the run is not computed to its end: after {count} evaluations it has come to {time} s")
+    return ProblemError(
+        reason.format(count=error.count, time=f"{error.time:.4g}"), path=("dynamics", "run"),
+        allowed=_("a shorter run, or inertias that differ less on the way"),
+    )  # fmt: skip
+
+
+@worded.register
+def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
+    if problem.dynamics is not None and not problem.dynamics.cyclic:
+        return ProblemError(
+            _("the run does not start: what drives is no more than the loads"), path=("dynamics", "run"), key=True,
+            allowed=_("a larger drive (positive along the guide or counterclockwise), or a speed at the beginning"),
+        )  # fmt: skip
+    return ProblemError(
+        _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),
+        path=("dynamics",), key=True,
+        found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
+        allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+    )  # fmt: skip
+
+
+@worded.register
+def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("there is no law of motion: nothing that moves with the driver there has mass or inertia"),
+        path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",), key=True,
+        found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
+        allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
+    )  # fmt: skip
+
+
+@worded.register
+def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("the law of motion is lost in rounding: the links and the flywheel are too heavy for the motor to change "
+          "their speed"),
+        path=("dynamics",), key=True,
+        found=_("in a cycle the motor makes up for {share} of a difference of speed").format(
+            share=numeral(error.share, ".1g")
+        ),
+        allowed=_("masses and inertias that fit the motor: are their units right?"),
+    )  # fmt: skip
+
+
+@worded.register
+def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
+    units, unit = problem.units, problem.units.spelt(MOMENT)
+    found = _(
+        "{moment} {unit} in the mean push the driver, most at {place} of its way; its motor holds {most} "
+        "{unit} at its best"
+    )
+    wanted = _("a motor that holds more, a larger ratio, smaller loads")
+    if not math.isnan(error.speed):
+        found = _(
+            "{speed} at {place} of the driver's way and still quicker, without load {idle}; {moment} "
+            "{unit} in the mean push the driver, its motor holds {most} {unit} at its best"
+        )
+        wanted = _("a heavier flywheel, a stronger motor, smaller loads")
+    return ProblemError(
+        _("the loads push the machine on, and its motor does not hold it: it runs away"),
+        path=("dynamics", "motor"), key=True, allowed=wanted,
+        found=found.format(moment=f"{units.from_si(error.pushing, MOMENT):.4g}", unit=unit,
+                           most=f"{units.from_si(error.most, MOMENT):.4g}", place=shown(error.place, units),
+                           speed=units.told(error.speed, ANGULAR_SPEED, 4),
+                           idle=units.told(error.idle, ANGULAR_SPEED, 4)),
+    )  # fmt: skip
+
+
+@worded.register
+def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
+    units, unit = problem.units, problem.units.spelt(MOMENT)
+    return ProblemError(
+        _("the motor cannot carry the load: over the cycle this wants more than it gives at its best"),
+        path=("dynamics", "motor"), key=True,
+        found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way")
+        .format(moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=shown(error.place, units)),
+        allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio")
+        .format(moment=f"{units.from_si(error.wanted, MOMENT):.4g}", unit=unit),
+    )  # fmt: skip
+
+
+@worded.register
+def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
+    text, allowed = _("no flywheel keeps this fluctuation with this motor"), _("a larger delta")
+    if not math.isnan(error.own):
+        text = _("the fluctuation is smaller than this without any flywheel")
+        allowed = _("less than {own}, or no delta").format(own=f"{error.own:.4g}")
+        if problem.dynamics is not None and problem.dynamics.flywheel:
+            text = _("the fluctuation is smaller than this with the flywheel that is given")
+    return ProblemError(text, path=("dynamics", "delta"), found=f"{error.wanted:.6g}", allowed=allowed)
+
+
+# Refusals of names and numbers that nothing in the file has, and of one setting of several.
+
+
+@worded.register
+def _position(error: UnknownPositionError, problem: Problem) -> ProblemError:
+    return no_position(error.number, error.count, "positions")
+
+
+@worded.register
+def _name(error: UnknownNameError, problem: Problem) -> ProblemError:
+    what = _("there is no such point, link or centre of mass")
+    return unknown_name(error.name, error.allowed, what, path=("links",), key=True)
+
+
+@worded.register
+def _on_frame(error: NotOnFrameError, problem: Problem) -> ProblemError:
+    what = _("this link cannot drive: it is not joined to the frame")
+    return unknown_name(error.link, error.allowed, what, path=("links",), key=True)
+
+
+@worded.register
+def _setting(error: SettingError, problem: Problem) -> ProblemError:
+    own = worded(error.error, problem)
+    return ProblemError(own.message, path=error.path, found=own.found, allowed=own.allowed)
+
+
+# What a stage refuses, in the words and at the place of the file: a function for a refusal.
+
+
+@contextmanager
+def in_words_of(problem: Problem) -> Iterator[None]:
+    """What a stage refuses inside is said in the terms of the file. Raises ProblemError."""
+    try:
+        yield
+    except LinkageError as error:
+        raise refusal(error, problem) from None
+
+
+def refusal(error: LinkageError, problem: Problem) -> ProblemError:
+    """A stage's refusal in the words and at the place of the file."""
+    found = worded(error, problem)
+    return found.located(problem.file, problem.source) if problem.file else found

@@ -1,0 +1,326 @@
+"""The cycle at a glance: a row a position, the driver, the output and what balances it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.language import N_, Phrase, _
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis.selection import links as chosen_links
+from tmm_cli.mechanics.analysis.selection import moving_centres, moving_points
+from tmm_cli.mechanics.forces.plan import power
+from tmm_cli.mechanics.kinematics.centres import Centre
+from tmm_cli.mechanics.kinematics.motion import Motion, Turning
+from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.linkage import Driver, Linkage
+from tmm_cli.mechanics.numerics.vectors import Real, pi
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    FORCE,
+    LENGTH,
+    LINK,
+    MOMENT,
+    NUMBER,
+    POINT,
+    SLIDE,
+    Dimension,
+    NamedValues,
+    columns,
+    place_dimension,
+)
+from tmm_cli.reports.table import Column, Table
+
+OF_OUTPUT = {
+    "run": N_("s of {link}"),
+    "v": N_("v of {link}"),
+    "a": N_("a of {link}"),
+    "angle": N_("angle of {link}"),
+    "omega": N_("omega of {link}"),
+    "epsilon": N_("epsilon of {link}"),
+}
+
+
+def signs(linkage: Linkage) -> str:
+    """What is positive, in a sentence for below a table."""
+    if linkage.driver.kind == "slide":
+        return _(
+            "A driven slider's place, speed and F_b are positive along its guide, however it moves; angles and moments "
+            "counterclockwise."
+        )
+    return _(
+        "Angles, angular speeds and moments are positive counterclockwise, however the driver turns: a negative M_b "
+        "drives it clockwise."
+    )
+
+
+def driver_columns(results: Results) -> list[Column]:
+    """Number of each position and the driver's place."""
+    assert results.motion is not None
+    name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
+    return [
+        Column(N_("position"), [str(n) for n in results.numbers]),
+        _place(results, results.linkage.driver, name, results.motion.q),
+    ]
+
+
+def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
+    """A driver's places, within a turn where it turns round and round, or within the turns of a cycle of loads."""
+    full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
+    return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, place_dimension(driver.kind))
+
+
+def cycle_tables(results: Results) -> Iterable[Table]:
+    """One table; positions that cannot be reached or are dead are said so in the last column."""
+    motion = results.motion
+    assert motion is not None
+    columns = driver_columns(results)
+    for driver in results.linkage.others:
+        name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
+        columns.append(_place(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
+    for link in results.mechanism.outputs:
+        if results.linkage.output_carrier(link) not in motion.poses:  # with --of only some links move
+            continue
+        columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
+    columns += _balance(results)
+    if not bool(np.all(motion.moving & ~results.locked)):
+        columns.append(Column(N_("state"), states(results)))
+    yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage), *_beside_flywheel(results)))
+
+
+def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
+    """Run (or angle), speed and acceleration of an output: what it is called, its values, what they measure."""
+    run, first, second = output_run(motion, link)
+    v = first * motion.rate
+    a = second * motion.rate**2 + first * motion.acceleration
+    words = OF_OUTPUT if link in results.linkage.links else OF_OUTPUT | {"run": "{link}"}
+    quantities = LINK if results.linkage.output_swings(link) else SLIDE
+    for quantity, values in zip(quantities, (run, v, a), strict=False):
+        yield Phrase(words[quantity.name], link=link), values, quantity.dimension
+
+
+def _balance(results: Results) -> Iterable[Column]:
+    """What balances the driver, by both ways; with several drivers each, then the sum that both ways give."""
+    reactions, lever, motion = results.reactions, results.lever, results.motion
+    if reactions is None or lever is None or motion is None:
+        return
+    difference = Column(N_("difference, %"), lever.difference * 100, NUMBER, digits=2)
+    if len(reactions.balances) == 1:
+        balance = reactions.balance
+        if balance.kind == "moment":
+            yield Column(N_("M_b, force plan"), balance.moment, MOMENT)
+            yield Column(N_("M_b, lever"), lever.balancing, MOMENT)
+        else:
+            yield Column(N_("F_b, force plan"), balance.force, FORCE)
+            yield Column(N_("F_b, lever"), lever.balancing / balance.arm, FORCE)
+        yield difference
+        return
+    for balance in reactions.balances:
+        turns, link = balance.moment is not None, balance.driver.link
+        name = _("M_b of {link}") if turns else _("F_b of {link}")
+        yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
+    first = results.linkage.driver
+    size = MOMENT if first.kind == "turn" else FORCE
+    yield Column(Phrase("reduced to {link}, force plan", link=first.link), power(motion, reactions), size)
+    yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
+    yield difference
+
+
+def has_flywheel(results: Results) -> bool:
+    """Whether what drives has a flywheel to speed up besides the links, and nothing else, as a brake."""
+    if results.single is not None:
+        return bool(results.single.task.flywheel) and not results.single.task.brake
+    return results.steady is not None and bool(results.steady.steady.law.flywheel)
+
+
+def _beside_flywheel(results: Results) -> Iterable[str]:
+    """Where a law of motion is computed, what balances the driver is not what drives the machine."""
+    if results.reactions is None or not has_flywheel(results):
+        return
+    if results.linkage.driver.kind == "turn":
+        yield _("The flywheel is not a link: M_b moves the links alone, and what drives is M_d = M_b + J_f epsilon.")
+    else:
+        yield _("The flywheel is not a link: F_b moves the links alone, and what drives is F_d = F_b + m_f a.")
+
+
+def states(results: Results) -> list[str]:
+    """What is wrong with each position, or nothing."""
+    motion = results.motion
+    assert motion is not None
+    limits = np.zeros(np.shape(motion.q), dtype=bool) if motion.limits is None else motion.limits
+    told = np.where(motion.moving, "", _("the driver has stopped before")).astype(object)
+    told[results.locked & motion.moving] = _("locks by friction")
+    told[limits] = _("change point: limits")
+    for text, groups in ((_("{group} is dead"), motion.dead), (_("{group} cannot be assembled"), motion.missing)):
+        for group, lost in reversed(list(groups.items())):
+            told[lost & (~motion.moving | results.locked) & ~limits] = text.format(group=group)
+    return list(told)
+
+
+# Long tables: several things at every position, a row for each.
+
+
+def long_table(
+    results: Results, name: str, title: str, words: Mapping[Phrase, Sequence[str]],
+    things: Sequence[Sequence[NamedValues]], note: str = "",
+) -> Table:  # fmt: skip
+    """Position by position, a row for each thing. words: what tells the things apart, by header.
+
+    things: their columns (quantities.columns), which have the same headers.
+    """
+    count, number = len(results.numbers), len(things)
+    head = [Column(c.header, _repeated(c.values, number), c.dimension) for c in driver_columns(results)]
+    columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
+    for same in zip(*things, strict=True):
+        parts = [np.nan if values is None else values for __, values, __ in same]
+        stacked = np.stack([p if np.shape(p) == (count,) else np.broadcast_to(p, (count,)) for p in parts], axis=1)
+        header, __, dimension = same[0]
+        columns.append(Column(header, stacked.ravel(), dimension))
+    return Table(name, title, tuple(columns), long=True, notes=(note,) if note else ())
+
+
+def _repeated(values: Any, number: int) -> Any:
+    """Each value so often in a row; words and whole numbers stay such."""
+    return [v for v in values for _ in range(number)] if isinstance(values, list) else np.repeat(values, number)
+
+
+# Motion of named points, centres of mass, links and sliding pairs, with transfer functions; a row a position.
+
+
+def kinematics_tables(results: Results) -> Iterable[Table]:
+    """points, links, slides."""
+    motion = results.motion
+    assert motion is not None
+    linkage, of = results.linkage, results.of
+    points = dict(sorted(moving_points(linkage, motion, of).items())) | moving_centres(linkage, motion, of)
+    if of:
+        points = {name: points[name] for name in of if name in points}
+    if points:
+        values = [columns(POINT, point) for point in points.values()]
+        yield long_table(results, "points", _("Points and centres of mass"), {N_("point"): list(points)}, values)
+    links = chosen_links(linkage, of)
+    if links:
+        values = [columns(LINK, _half_turned(motion.link(name))) for name in links]
+        table = long_table(results, "link-motion", _("Motion of links"), {N_("link"): links}, values, signs(linkage))
+        yield _with_turns(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
+    slides = () if of else linkage.slides
+    if slides:
+        values = [columns(SLIDE, motion.slide(slide)) for slide in slides]
+        title = _("Sliding pairs: motion of the runner along the guide")
+        yield long_table(results, "slides", title, {N_("pair"): [slide.name for slide in slides]}, values)
+
+
+def _with_turns(table: Table) -> Table:
+    """With angular speeds in turns a minute beside them, as speeds of wheels are given."""
+    k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
+    turns = replace(table.columns[k], header=_("n"), unit="rpm")
+    return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
+
+
+def _half_turned(turning: Turning) -> Turning:
+    """With the angle in -180 to 180 deg, the driver's too."""
+    half = pi(turning.angle)
+    turns = np.ceil((turning.angle - half) / (2 * half))
+    return replace(turning, angle=turning.angle - 2 * half * turns)
+
+
+# Extreme places of points, links and stones; largest and smallest forces.
+
+
+SEAM = 1e-6  # rad: just before the end of a turn is its beginning
+
+
+def extremes_tables(results: Results) -> Iterable[Table]:
+    """A row a quantity; a link that turns fully has no extreme angles."""
+    found = results.extremes
+    if not found:
+        return
+    driver, units = results.linkage.driver, results.problem.units
+    place, full = place_dimension(driver.kind), results.turns > 0
+    words = {
+        "x": _("x of {name}"), "y": _("y of {name}"), "angle": _("angle of link {name}"), "s": _("s in {name}"),
+        "R": _("R in {name}"), "M": _("couple in {name}"), "R pin": _("force of the pin on the link, {name}"),
+        "M_b": _("M_b of {name}"), "F_b": _("F_b of {name}"),
+    }  # fmt: skip
+
+    def shown(values: Sequence[float]) -> list[float]:
+        return [units.from_si(value, one.dimension) for value, one in zip(values, found or (), strict=True)]
+
+    def places(values: Sequence[float]) -> list[float]:
+        turn = 2 * np.pi * max(results.turns, 1)
+        return [abs(float(np.mod(q + SEAM, turn)) - SEAM) if full else q for q in values]
+
+    low, high = [one.low for one in found], [one.high for one in found]
+    columns = (
+        Column(N_("what"), [words[one.kind].format(name=one.name) for one in found]),
+        Column(N_("least"), shown(low), NUMBER),
+        Column(N_("least, with the driver at"), places([one.low_at for one in found]), place),
+        Column(N_("largest"), shown(high), NUMBER),
+        Column(N_("largest, with the driver at"), places([one.high_at for one in found]), place),
+        Column(N_("range"), shown([most - least for most, least in zip(high, low, strict=True)]), NUMBER),
+        Column(N_("unit"), [units.spelt(one.dimension) for one in found]),
+    )
+    title = _("Largest and smallest forces") if results.reactions is not None else _("Extreme places")
+    yield Table("extremes", title, columns, notes=(_("Over the whole cycle, between the positions too."),))
+
+
+# Instantaneous centres in the positions in detail, and the mechanical advantage over the cycle.
+
+
+DEAD = 1e-9  # of the largest ratio of speeds: where an output is so slow it stands
+
+
+def name(links: tuple[str, str]) -> str:
+    """P13 of links 1 and 3."""
+    return "P" + ("" if all(len(link) == 1 for link in links) else ",").join(links)
+
+
+def centres_tables(results: Results) -> Iterable[Table]:
+    """A row a centre; then what the driver's moment or force does at the outputs."""
+    found = [(k, centre) for k, here in (results.centres or {}).items() for centre in here]
+    places = [centre.place for __, centre in found]
+    away = [None if c.direction is None else float(np.angle(c.direction) % np.pi) for __, c in found]
+    columns = (
+        Column(N_("position"), [str(results.numbers[k]) for k, __ in found]),
+        Column(N_("centre"), [name(centre.links) for __, centre in found]),
+        Column(N_("x"), [None if p is None else p.real for p in places], LENGTH),
+        Column(N_("y"), [None if p is None else p.imag for p in places], LENGTH),
+        Column(N_("at infinity, at an angle of"), away, ANGLE),
+        Column(N_("found by"), [_way(centre) for __, centre in found]),
+    )
+    note = _("P13 is the point in which links 1 and 3 move alike; 0 is the frame.")
+    yield Table("centres", _("Instantaneous centres"), columns, notes=(note,))
+    yield from _advantage(results)
+
+
+def _way(centre: Centre) -> str:
+    if centre.pair:
+        return _("pair {pair}").format(pair=centre.pair)
+    if centre.place is None and centre.direction is None:
+        return _("the links do not move beside one another")
+    if not centre.lines:
+        return _("velocities")
+    lines = [" ".join(map(name, line)) for line in centre.lines]
+    return lines[0] if len(lines) == 1 else _("{one} and {other}").format(one=lines[0], other=lines[1])
+
+
+def _advantage(results: Results) -> Iterable[Table]:
+    """Moment or force of each output over the driver's, without weights, inertia and friction."""
+    motion, linkage = results.motion, results.linkage
+    assert motion is not None
+    columns = []
+    for link in results.mechanism.outputs if not linkage.others else ():
+        slope = np.abs(output_run(motion, link)[1])
+        bounded = slope > DEAD * np.max(slope, where=np.isfinite(slope), initial=0.0)
+        gained = np.where(bounded, 1 / np.where(bounded, slope, 1.0), np.nan)
+        columns.append(Column(Phrase(N_("of {link}, SI"), link=link), gained, NUMBER))
+    if columns:
+        note = _(
+            "What an output can overcome, by the moment or force of the driver: N*m or N for one N*m or N; without "
+            "weights, inertia and friction. At the ends of a stroke it has no bound."
+        )
+        table = (*driver_columns(results), *columns)
+        yield Table("advantage", _("Mechanical advantage"), table, notes=(note,))

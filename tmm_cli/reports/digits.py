@@ -1,0 +1,376 @@
+"""Every number of the tables and of result.json, by a key that says what it is, and back to its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.language import N_, _, numeral, translated
+from tmm_cli.mechanics.accuracy.digits import FEWEST, PAPER, Digits, is_angle, judged, relative, sizes
+from tmm_cli.mechanics.accuracy.searches import Wide, blur, coarsely, searched
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions, near_dead
+from tmm_cli.mechanics.kinematics.motion import FIXED
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
+from tmm_cli.mechanics.numerics.vectors import Real, Record, mapped
+from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MOMENT, NUMBER, SPEED, Dimension
+from tmm_cli.reports.register import REPORTS, tables_of
+from tmm_cli.reports.result_json import LARGE, numbers
+from tmm_cli.reports.table import Column, Table
+
+MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
+APART = ("synthesis", "checks", "drawn")  # a search has its own digits, checks count by their words, drawings by 0.5 mm
+COMPUTED = tuple(name for name, __, part, ___ in REPORTS if part in MOVING and name not in APART)
+SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
+Cells = Mapping[Hashable, Real]
+
+
+def all_numbers(
+    results: Results, reports: Collection[str] = COMPUTED, parts: Collection[str] | None = LARGE
+) -> tuple[Cells, Cells]:
+    """Those that have one value a position, and the others, which were searched for. Keys of angles begin with True.
+
+    parts: the large ones of result.json that are wanted; None: tables alone.
+    """
+    count, turns = len(results.numbers), results.linkage.driver.kind == "turn"
+    at_positions: dict[Hashable, Real] = {}
+    searched: dict[Hashable, Real] = {}
+    for table in computed_tables(results, reports):
+        keys = keys_of(table, count)
+        for k, column in enumerate(table.columns):
+            if column.dimension is not None and keys is None:
+                searched[False, table.name, k] = column.array
+            elif column.dimension is not None and keys is not None:
+                at_positions.update(zip(keys[k], column.array.reshape(count, -1).T, strict=True))
+    for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
+        if isinstance(value, float):
+            searched[(False, *path)] = np.array([value])
+        elif getattr(value, "shape", None) == (count,) and value.dtype.kind == "f":
+            angle = path[-1] in ("angle", "angles") or (turns and path == ("positions", "driver"))
+            at_positions[(angle, *path)] = value
+    return at_positions, searched
+
+
+def cells(results: Results, shown: Collection[str] = ()) -> Cells:
+    """The numbers at positions; shown: in reports with these tables alone."""
+    reports = {name for name, __, ___, given in REPORTS if not shown or set(given) & set(shown)}
+    return all_numbers(results, reports & set(COMPUTED) - SEARCHED, None if shown else LARGE)[0]
+
+
+def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
+    """What reads the numbers of searches out of results like these; whole: those of result.json too."""
+    energy = () if results.friction is None else ("energy",)
+    return lambda other: all_numbers(other, ("quality", "pressure", *energy), energy if whole else None)[1]
+
+
+def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:
+    """Tables with computed numbers, of these reports; of chosen points and links there is their motion alone."""
+    return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
+
+
+def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
+    """For each column the keys of its rows at one position; None when the rows are no positions."""
+    if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
+        return None
+    rows = range(table.rows // count)
+    return [[(c.dimension == ANGLE, table.name, k, row) for row in rows] for k, c in enumerate(table.columns)]
+
+
+def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], Any]]:
+    """Numbers and arrays of nested content with their paths; items of lists are known by their number."""
+    found: list[tuple[tuple[str, ...], Any]] = []
+    for name, part in _parts(value):
+        if isinstance(part, dict | list):
+            found += _leaves(part, (*path, name))
+        else:
+            found.append(((*path, name), float(part) if isinstance(part, float | np.floating) else part))
+    return found
+
+
+def _parts(value: Any) -> Iterable[tuple[str, Any]]:
+    return value.items() if isinstance(value, dict) else ((str(k), part) for k, part in enumerate(value))
+
+
+def parallel(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
+    """The digits of nested content in its shape; what has none is left out, but for items of lists."""
+    if isinstance(value, dict):
+        inner = {name: parallel(part, values, (*path, name)) for name, part in value.items()}
+        return {name: part for name, part in inner.items() if part is not None} or None
+    if isinstance(value, list):
+        items = [parallel(part, values, (*path, name)) for name, part in _parts(value)]
+        return None if all(item is None for item in items) else [{} if item is None else item for item in items]
+    found = values.get(path)
+    if found is None:
+        return None
+    short = _short(found)
+    return short[0] if isinstance(value, float | np.floating) else short
+
+
+def _short(values: Real) -> list[float]:
+    """Two figures are enough for a bound; the last one is rounded up."""
+    with np.errstate(all="ignore"):
+        unit = 10.0 ** (np.floor(np.log10(values)) - 1)
+        short = np.where(values > 0, np.ceil(values / unit) * unit, values)
+    return [float(f"{v:.2g}") for v in short.tolist()]
+
+
+# Bounds by rounding that cost next to nothing: of numbers at positions, by the margins of the groups.
+
+
+HUGE = 1e300  # a bound of what is zero as far as is known
+SLOPES = ("dJ/dphi, SI", "dm/ds, SI")
+RATIOS = {  # columns that are something over a force: the less of it there is the less they are known, of zero nothing
+    ("reactions", "angle"): "F",
+    ("reactions", "acts at"): "F",
+    ("lever", "arm"): "force",
+}
+
+
+def by_margins(
+    results: Results, relative: Real, sizes: Mapping[Dimension, float], table: Table, column: Column
+) -> Real:
+    """Bounds of a column whose rows are positions: shares (margins.relative) of the largest of its kind."""
+    values = np.abs(column.array)
+    own = float(np.max(values, where=np.isfinite(values), initial=0.0))
+    assert column.dimension is not None
+    size = sizes.get(column.dimension, own)
+    if column.dimension == NUMBER and table.name in ("energy", "cycle"):
+        power = sizes.get(FORCE, 0.0) * sizes[SPEED]
+        size = _percent(results, table.name, power, sizes) if column.header.endswith("%") else max(power, own)
+        if column.header in SLOPES and results.energy is not None:  # which has nothing of speeds in it
+            size = 2 * sizes[NUMBER] * sizes[INERTIA]
+    bound = np.repeat(relative, table.rows // len(relative)) * size
+    over = RATIOS.get((table.name, column.header))
+    if over is not None:
+        force = np.abs(next(other.array for other in table.columns if other.header == over))
+        share = np.repeat(relative, table.rows // len(relative))
+        known = force > share * sizes[FORCE]
+        if column.dimension == LENGTH:  # both what stands over the force and the force are known to the share
+            bound = bound + share * values
+        return np.where(known, bound * (sizes[FORCE] / np.where(known, force, 1.0)), np.inf)
+    return np.asarray(np.minimum(bound, HUGE))
+
+
+def _percent(results: Results, table: str, power: float, sizes: Mapping[Dimension, float]) -> float:
+    """What all forces come to, as a share of what it is compared with."""
+    assert results.reactions is not None
+    if table == "energy" and results.energy is not None:
+        of, size = [results.energy.drivers, results.energy.rate], power
+    else:
+        of, size = [balance.generalized for balance in results.reactions.balances], sizes[MOMENT]
+    largest = max(float(np.max(np.abs(part), where=np.isfinite(part), initial=0.0)) for part in of)
+    return 100 * size / largest if largest > 0 else HUGE
+
+
+# Bounds by rounding and sensitivity to the data for every number of the tables and of result.json.
+#
+# Ordinarily the margins of the groups say how many digits are true (accuracy.margins), and only positions where that is
+# less than a table prints are judged. When digits are asked for all are: tables and result.json are made by their own
+# functions from the results in double-doubles and from those with changed lengths too, and compared one by one; so no
+# quantity can be forgotten, and none needs a formula of its own.
+
+
+DENSE = 361  # places of a trajectory
+WHOLE = (*FIXED - {"where"}, "mechanism", "problem", "inputs", "structure")  # fields that hold no array over positions
+LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
+PARTS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
+
+
+@dataclass(frozen=True)
+class AccuracyReport:
+    """How far the numbers of results are to be trusted: those at positions, and those that were searched for.
+
+    relative: bounds at all positions as shares of the largest of each kind (`sizes`). chosen: positions that were
+    judged; there: results at them; digits: of their numbers by key. full: whether sensitivities are wanted too. found
+    judges what was searched for when a table of it is shown.
+    """
+
+    results: Results
+    relative: Real
+    sizes: Mapping[Dimension, float]
+    found: Callable[[], Digits]
+    chosen: Real
+    there: Results
+    digits: Digits
+    full: bool
+
+    def with_bounds(self, tables: Iterable[Table]) -> Iterator[Table]:
+        """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
+        worst: list[tuple[str | float, ...]] = []
+        for table in map(self.table, tables):
+            rows = list(_worst(table)) if self.full else []
+            worst += [(table.name, *row) for row in rows]
+            yield replace(table, notes=(*table.notes, _note(rows))) if rows else table
+        if self.full:
+            yield self.summary(worst)
+
+    def table(self, table: Table) -> Table:
+        """The same table, its numbers with their bounds and sensitivities."""
+        keys = keys_of(table, len(self.relative))
+        columns = [
+            replace(column, **self._parts(table, k, None if keys is None else keys[k]))
+            for k, column in enumerate(table.columns)
+        ]
+        return replace(table, columns=tuple(columns))
+
+    def _parts(self, table: Table, k: int, keys: list[Hashable] | None) -> dict[str, Any]:
+        """The bounds of the k-th column, and its sensitivities if wanted. keys: of its rows at one position, if any."""
+        column, single = table.columns[k], (False, table.name, k)
+        if column.dimension is None or (keys is None and single not in self.found().bound):
+            return {}
+        if keys is not None and self.chosen.size and keys[0] not in self.digits.bound:  # a law of motion, as it is
+            return {}
+        wanted = tuple(PARTS) if self.full else ("bound",)
+        if keys is None:
+            return {part: getattr(self.found(), part)[single] for part in wanted}
+        near = np.searchsorted(self.chosen, np.arange(len(self.relative))).clip(max=len(self.chosen) - 1)
+        found = {part: self._judged(part, keys)[near] for part in wanted if self.chosen.size}
+        if self.chosen.size < len(near):
+            rough = by_margins(self.results, self.relative, self.sizes, table, column).reshape(len(near), -1)
+            rough[self.chosen] = found["bound"][self.chosen] if self.chosen.size else rough[self.chosen]
+            found["bound"] = rough
+        return {part: values.ravel() for part, values in found.items()}
+
+    def _judged(self, part: str, keys: list[Hashable]) -> Real:
+        """What was judged, (chosen positions, rows)."""
+        nothing = np.full(len(self.chosen), np.nan)
+        return np.stack([getattr(self.digits, part).get(key, nothing) for key in keys], axis=1)
+
+    def summary(self, rows: Sequence[tuple[str | float, ...]]) -> Table:
+        """Table by table and column by column: the largest bound, digits to be trusted, sensitivities."""
+        words = (_("table"), _("column"))
+        figures = (_("bound by rounding"), _("true digits"), _("change by 0.1 % of lengths, %"),
+                   _("change by 0.5 mm on paper, %"))  # fmt: skip
+        columns = [Column(header, [row[k] for row in rows]) for k, header in enumerate(words)]
+        for k, header in enumerate(figures, len(words)):
+            columns.append(Column(header, [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2))
+        title = _("Digits to be trusted: the worst of each column, relative to its largest value")
+        return Table("digits", title, tuple(columns), notes=(_scale(self.digits.mu),))
+
+    def json(self) -> dict[str, Any] | None:
+        """The section `digits` of result.json: bounds and sensitivities in the places of their values; if wanted."""
+        if not self.full:
+            return None
+        content = dict(numbers(self.there))
+        named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.there.numbers)}
+        for part in PARTS:
+            values = {**getattr(self.digits, part), **getattr(self.found(), part)}
+            named[part] = parallel(content, {key[1:]: v for key, v in values.items()}) or {}
+        return named
+
+
+def taken(record: Record, chosen: Real, count: int) -> Record:
+    """A record of arrays over so many positions with the chosen ones only; all that are in a finer one are chosen."""
+
+    def of_chosen(path: str, leaf: Any) -> Any:
+        return leaf[..., chosen] if isinstance(leaf, np.ndarray) and leaf.shape[-1:] == (count,) else leaf
+
+    return mapped(of_chosen, record, skip=WHOLE)
+
+
+def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:
+    """How far all numbers of results that have a motion are to be trusted; full: each of them judged.
+
+    shown: tables that alone are shown; nothing is judged then that is in result.json only.
+    """
+    motion, count = results.motion, len(results.numbers)
+    assert motion is not None
+    with np.errstate(all="ignore"):
+        mu = _mu(results) if full else float("nan")
+        wide = Wide(results) if full else coarsely(results)
+        found = cache(lambda: searched(results, reader(results, full and not shown), wide, mu))
+        start = blur(results, wide)
+        share = relative(results, start)
+        asked = share > FEWEST
+        if full:
+            asked[:: -(-count // LONG)] = True
+            asked[-1:] = True
+        if np.any(asked):
+            asked |= near_dead(motion) if motion.where is None else motion.where | near_dead(motion)
+        chosen, there, digits = np.flatnonzero(asked), results, Digits(mu=mu)
+        if 0 < len(chosen) < count:
+            there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
+        if len(chosen):
+            away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
+            digits = judged(there, partial(cells, shown=shown), mu=mu, blur=away)
+    for key, bound in digits.bound.items():
+        if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
+            digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)
+    return AccuracyReport(results, share, sizes(results), found, chosen, there, digits, full)
+
+
+def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
+    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %.
+
+    Of a table in which every row has a unit of its own, the same of each row, beside the largest value of that unit.
+    """
+    units = np.array(table.columns[-1].values) if table.columns[-1].header == "unit" else None
+    for column in table.columns:
+        if column.bound is None:
+            continue
+        parts = np.stack([column.array, *(getattr(column, part) for part in PARTS)])
+        rows = [(slice(None), slice(None), column.header)]
+        if units is not None:
+            rows = [(slice(k, k + 1), units == unit, table.columns[0].values[k]) for k, unit in enumerate(units)]
+        for own, alike, name in rows:
+            (size,), (bound, share, paper) = _most(parts[:1, alike]), _most(parts[1:, own])
+            if size > 0 and bound < size:  # else it is nothing but rounding
+                true = np.floor(-np.log10(2 * max(bound / size, ROUNDOFF)))
+                yield translated(name), bound / size, true, 100 * share / size, 100 * paper / size
+
+
+def _most(values: Real) -> Real:
+    """The largest number of each row; nan where there is none."""
+    values = np.abs(values)
+    sound = np.isfinite(values)
+    return np.where(sound.any(axis=1), np.max(values, axis=1, where=sound, initial=0.0), np.nan)
+
+
+def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
+    """What to know of the worst columns of a table."""
+    bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
+    if not share[3] > 0:
+        return _("Rounding: at most {bound} of the largest value of a column.").format(bound=numeral(bound[1], ".1e"))
+    return _(
+"Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to "
+"{lengths} % ({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper})."
+).format(bound=numeral(bound[1], ".1e"), lengths=numeral(share[3], ".2g"), by_lengths=share[0],
+        paper=numeral(paper[4], ".2g"), by_paper=paper[0],
+    )  # fmt: skip
+
+
+def _scale(mu: float) -> str:
+    return _(
+        "± lengths: when every length is 0.1 % off; ± paper: when every coordinate is {mm} mm "
+        "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first "
+        "order."
+    ).format(mm=PAPER, mu=numeral(mu, ".10g"))
+
+
+def _mu(results: Results) -> float:
+    """Scale (m a mm) at which the mechanism fits on a sheet with all its trajectories."""
+    motion, linkage = at_positions(results, results.closely(DENSE), 0), results.linkage
+    places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
+    for name in linkage.moving:
+        for point in linkage.links[name].points:
+            way = motion.spot(point)
+            way = way[np.isfinite(way)]
+            if way.size:
+                places += [complex(most(way.real), most(way.imag)) for most in (np.min, np.max)]
+    return sheet_scale(places)[1]
+
+
+def beside(table: Table) -> Table:
+    """The table with bound and sensitivities of every number beside it."""
+    columns: list[Column] = []
+    for k, column in enumerate(table.columns):
+        columns.append(column)
+        if column.bound is not None and (k > 1 or table.columns[0].header != "position"):
+            for part, header in PARTS.items():
+                columns.append(Column(header, getattr(column, part), column.dimension, digits=2, unit=column.unit))
+    return replace(table, columns=tuple(columns))

@@ -1,0 +1,308 @@
+"""Steady running: what drives the machine, its flywheel, and the law of motion at every position."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tmm_cli.language import N_, _, numeral
+from tmm_cli.mechanics.analysis.intermittent import MOST_CYCLES, Intermittent, Part
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.dynamics.balancing import Balancing
+from tmm_cli.mechanics.dynamics.steady import Running, Steady
+from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    SPEED,
+    TIME,
+    Dimension,
+    place_dimension,
+)
+from tmm_cli.reports.cycle_tables import driver_columns
+from tmm_cli.reports.quality_tables import Row, of_rows
+from tmm_cli.reports.table import Column, Table
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+
+
+STEPS = 25  # of a single run, that are shown
+
+
+def dynamics_tables(results: Results) -> Iterable[Table]:
+    """What was found, then the law of motion."""
+    running = results.running
+    assert running is not None
+    if not isinstance(running, Running):
+        yield from _single(results, running)
+        return
+    steady = running.steady
+    yield Table("dynamics", _("Steady running"), of_rows([*_driving(steady), *_flywheel(steady)], results))
+    if results.motion is not None:
+        yield _law(results)
+
+
+def _driving(steady: Steady) -> Iterable[Row]:
+    low, high = steady.speeds
+    yield _("work of the loads in a cycle, J"), steady.machine.work_of_cycle, NUMBER
+    if steady.moment < 0 and steady.task.motor is None:
+        yield _("mean moment of resistance"), -steady.moment, MOMENT
+    else:
+        yield _("mean driving moment"), steady.moment, MOMENT
+    yield _("least speed of the driver"), low, ANGULAR_SPEED
+    yield _("largest speed of the driver"), high, ANGULAR_SPEED
+    yield _("mean of both"), (low + high) / 2, ANGULAR_SPEED
+    yield _("time of a cycle, s"), steady.law.period, NUMBER
+    if not np.isnan(steady.own) and steady.law.flywheel != steady.task.flywheel:
+        yield _("fluctuation delta without it"), steady.own, NUMBER
+    yield _("fluctuation delta"), steady.delta, NUMBER
+
+
+def _flywheel(steady: Steady) -> Iterable[Row]:
+    if steady.law.flywheel == 0:
+        return
+    yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
+    if steady.found is not None:
+        ways = (_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)
+        for (name, inertia), error in zip(ways, steady.errors, strict=True):
+            yield name, inertia, INERTIA
+            yield _("{way}, off by, %").format(way=name), 100 * error, NUMBER
+        yield _("first group J_I by Mertsalov, flywheel included"), steady.first_group, INERTIA
+        yield _("links of constant speed ratio in it"), steady.machine.constant, INERTIA
+    if steady.task.ratio != 1:
+        yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
+    shape = steady.task.size.shape
+    yield _("diameter of a disk") if shape == "disk" else _("mean diameter of a rim"), steady.diameter, LENGTH
+    yield _("its width"), steady.width, LENGTH
+    yield _("its mass"), steady.mass, MASS
+
+
+def _law(results: Results) -> Table:
+    motion, running = results.motion, results.running
+    assert motion is not None and isinstance(running, Running)
+    driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
+    resists = running.steady.moment < 0 and running.task.motor is None
+    notes = (_("The loads do work; the driving moment is that of the resistance which takes it."),) if resists else ()
+    return Table(
+        "law-of-motion", _("Law of motion of the driver"),
+        (
+            *driver_columns(results),
+            Column(N_("t, s"), motion.time, NUMBER),
+            Column(N_("omega"), motion.rate, ANGULAR_SPEED),
+            Column(N_("epsilon"), motion.acceleration, ANGULAR_ACCELERATION),
+            Column(N_("driving moment"), driving, MOMENT),
+            Column(N_("work of all moments, J"), work, NUMBER),
+        ),
+        notes=notes,
+    )  # fmt: skip
+
+
+def _single(results: Results, single: SingleRun) -> Iterable[Table]:
+    """A single run: its sums, and as many of its steps as one reads."""
+    run, turns = single.run, results.linkage.driver.kind == "turn"
+    time = _("the time of {time} s is over before its way is gone").format(time=numeral(run.time[-1], ".6g"))
+    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": time}
+    place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
+    rows: list[Row] = [
+        (_("begins at"), single.first, place),
+        (_("ends at"), single.first + single.sense * run.way[-1], place),
+        (_("lasts, s"), run.time[-1], NUMBER),
+        (_("speed at its end"), run.speed[-1], speed),
+        (_("work of what drives, J"), run.driven[-1], NUMBER),
+        (_("work of the loads, J"), run.loaded[-1], NUMBER),
+        (_("work of the brake, J"), run.braked[-1], NUMBER),
+        (_("kinetic energy at the beginning, J"), run.kinetic[0], NUMBER),
+        (_("kinetic energy at the end, J"), run.kinetic[-1], NUMBER),
+    ]
+    balance = _("what works and energies leave of one another: {share} of the largest").format(
+        share=numeral(run.balance, ".1g")
+    )
+    note = _("the run ends: {why}").format(why=endings[run.ending])
+    yield Table("dynamics", _("Single run"), of_rows(rows, results), notes=(note, balance))
+    at = single.evenly(STEPS)
+    rate = single.speed(at)
+    acceleration = ANGULAR_ACCELERATION if turns else ACCELERATION
+    yield Table(
+        "law-of-motion", _("Law of motion of the driver"),
+        (
+            Column(N_("t, s"), single.time(at), NUMBER),
+            Column(N_("driver"), at, place),
+            Column(N_("speed"), rate, speed),
+            Column(N_("acceleration"), single.accelerated(at), acceleration),
+            Column(N_("kinetic energy, J"), single.kinetic(at), NUMBER),
+        ),
+    )  # fmt: skip
+
+
+# Balancing: counterweights, what shakes the frame before and after, and masses on a shaft.
+
+
+def balancing_tables(results: Results) -> Iterable[Table]:
+    """What was found, then what shakes at every position."""
+    found = results.balancing
+    assert found is not None
+    rows, notes = [*_counterweights(found), *_largest(found), *_rotor(results, found)], [*_notes(found)]
+    yield Table("balancing", _("Balancing"), of_rows(rows, results), notes=tuple(notes))
+    if found.cycle.shakes:
+        yield _positions(results, found)
+
+
+def _counterweights(found: Balancing) -> Iterable[Row]:
+    for weight in found.cycle.counterweights:
+        link = weight.place.link
+        yield _("counterweight on link {link}: mass times radius, kg*m").format(link=link), weight.size, NUMBER
+        yield _("its angle from the x axis of link {link}").format(link=link), weight.angle, ANGLE
+        if weight.mass is not None:
+            yield _("its mass at the radius of the file"), weight.mass, MASS
+
+
+def _largest(found: Balancing) -> Iterable[Row]:
+    if not found.cycle.shakes:
+        return
+    before, after = found.cycle.before, found.cycle.after
+    yield _("largest shaking force"), np.nanmax(np.abs(before.force)), FORCE
+    if found.cycle.counterweights:
+        yield _("largest shaking force, balanced"), np.nanmax(np.abs(after.force)), FORCE
+        yield _("share that is left, %"), 100 * found.cycle.left, NUMBER
+    yield _("largest shaking moment"), np.nanmax(np.abs(before.moment)), MOMENT
+    if found.cycle.counterweights:
+        yield _("largest shaking moment, balanced"), np.nanmax(np.abs(after.moment)), MOMENT
+
+
+def _rotor(results: Results, found: Balancing) -> Iterable[Row]:
+    rotor = found.task.rotor
+    if rotor is None:
+        return
+    rate = results.linkage.driver.rate
+    for words, added in ((_("shaft"), None), (_("shaft, balanced"), found.corrections)):
+        force, couple = (abs(part) * rate**2 for part in rotor.unbalance(added))
+        yield _("{shaft}: centrifugal force").format(shaft=words), force, FORCE
+        yield _("{shaft}: couple about the first plane").format(shaft=words), couple, MOMENT
+    for number, (plane, size) in enumerate(zip(rotor.planes, found.corrections.tolist(), strict=True), 1):
+        yield _("mass in plane {number}: mass times radius, kg*m").format(number=number), abs(size), NUMBER
+        yield _("its angle"), float(np.mod(np.angle(size), 2 * np.pi)), ANGLE
+        if plane.radius:
+            yield _("its mass at the radius of the file"), abs(size) / plane.radius, MASS
+
+
+def _notes(found: Balancing) -> Iterable[str]:
+    if found.cycle.shakes:
+        yield _("Shaking: forces of inertia of all links on the frame, over the cycle at constant speed of the driver.")
+    if found.cycle.alike:
+        yield _("Some counterweights could do what others do: of all ways to balance the least masses are shown.")
+    if any(weight.mass is None for weight in found.cycle.counterweights):
+        yield _("Where no radius is told, the counterweight's own moment of inertia is left out of the shaking moment.")
+
+
+def _positions(results: Results, found: Balancing) -> Table:
+    columns = driver_columns(results)
+    told = [(found.before, "F x", "F y", "F", "M")]
+    if found.cycle.counterweights:
+        told.append((found.after, N_("F x, balanced"), N_("F y, balanced"), N_("F, balanced"), N_("M, balanced")))
+    least = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
+    for shaking, *headers in told:
+        force = np.where(np.abs(shaking.force) < least, 0, shaking.force)  # rounding is none
+        values = (force.real, force.imag, np.abs(force), shaking.moment)
+        columns += [
+            Column(h, v, MOMENT if v is shaking.moment else FORCE) for h, v in zip(headers, values, strict=True)
+        ]
+    note = _("M is about {pivot}, counterclockwise.").format(pivot=found.pivot or _("the origin"))
+    return Table("shaking", _("Shaking force and moment on the frame"), tuple(columns), notes=(note,))
+
+
+# Intermittent motion: wheels that a link takes along on some strokes, stroke by stroke and over a cycle.
+
+
+def intermittent_tables(results: Results) -> Iterable[Table]:
+    """Strokes, sums over a cycle, and the course of each wheel close together."""
+    wheels = results.wheels
+    assert wheels is not None
+    place = place_dimension(results.linkage.driver.kind)
+    yield _strokes(wheels, place, back=not results.turns)
+    rows = [row for wheel in wheels for row in _cycle(wheel, place)]
+    notes = [note for wheel in wheels for note in _notes_of_wheels(wheel)]
+    yield Table("intermittent-cycle", _("Intermittent motion over a cycle"), of_rows(rows, results), notes=tuple(notes))
+    yield _course(wheels, place)
+
+
+def _strokes(wheels: Iterable[Intermittent], place: Dimension, *, back: bool) -> Table:
+    """A row a part of the cycle; back: the driver goes there and back."""
+    rows = [(wheel, part, wheel.jumps[k]) for wheel in wheels for k, part in enumerate(wheel.parts)]
+    parts = [part for __, part, ___ in rows]
+    columns = [
+        Column(N_("wheel"), [wheel.task.name for wheel, __, ___ in rows]),
+        Column(N_("state"), [_("driven") if part.ride.driven else _("stands") for part in parts]),
+    ]
+    if any(len(wheel.task.settings) > 1 for wheel in wheels):
+        columns.append(Column(N_("setting"), [_setting(wheel, part) for wheel, part, __ in rows]))
+    columns += [
+        Column(N_("driver from"), [part.ride.start for part in parts], place),
+        Column(N_("driver to"), [part.ride.end for part in parts], place),
+        Column(N_("way of the driver"), [part.ride.way for part in parts], place),
+        Column(N_("t"), [part.time for part in parts], TIME),
+        Column(N_("wheel from"), [part.angles[0] for part in parts], ANGLE),
+        Column(N_("wheel to"), [part.angles[-1] for part in parts], ANGLE),
+        Column(N_("step"), [part.step for part in parts], ANGLE),
+        Column(N_("jump of omega at the beginning"), [jump for __, ___, jump in rows], ANGULAR_SPEED),
+    ]
+    note = _("A wheel's angle is counted from the beginning of the cycle, counterclockwise.")
+    if back:
+        note = f"{note} {_('The driver is taken to turn back at once, and to be as fast on its way back.')}"
+    return Table("intermittent", _("Intermittent motion"), tuple(columns), notes=(note,))
+
+
+def _setting(wheel: Intermittent, part: Part) -> str:
+    """The parameters of the file are told by their number alone."""
+    values = wheel.task.settings[part.setting].values
+    told = ", ".join(f"{name} = {value}" for name, value in values.items())
+    return f"{part.setting + 1}: {told}" if told else str(part.setting + 1)
+
+
+def _cycle(wheel: Intermittent, place: Dimension) -> Iterable[Row]:
+    name = wheel.task.name
+    yield _("wheel {name} turns in a cycle by").format(name=name), wheel.turn, ANGLE
+    if wheel.cycles is not None:
+        yield _("cycles in which it makes whole turns"), wheel.cycles, NUMBER
+    yield _("way of the driver in a cycle"), wheel.way, place
+    yield _("share of it on which the wheel stands"), wheel.standing, NUMBER
+    for words, driven in ((_("time in which it is driven"), True), (_("time in which it stands"), False)):
+        if np.isfinite(wheel.time(driven=driven)):
+            yield words, wheel.time(driven=driven), TIME
+    yield _("largest angular speed"), wheel.omega, ANGULAR_SPEED
+    yield _("largest angular acceleration while it is driven"), wheel.epsilon, ANGULAR_ACCELERATION
+    yield _("largest jump of omega where it is taken up and let go"), wheel.shock, ANGULAR_SPEED
+
+
+def _notes_of_wheels(wheel: Intermittent) -> Iterable[str]:
+    name = wheel.task.name
+    if wheel.shock == 0:
+        yield _("Wheel {name} is taken up and let go without shock: its angular speed does not jump.").format(name=name)
+    else:
+        yield _("Wheel {name} is taken up or let go with a shock: its angular speed jumps.").format(name=name)
+    if wheel.cycles is None and wheel.turn:
+        text = _("Wheel {name} makes no whole number of turns in {most} cycles or fewer.")
+        yield text.format(name=name, most=MOST_CYCLES)
+
+
+def _course(wheels: Iterable[Intermittent], place: Dimension) -> Table:
+    every = [(wheel.task.name, part) for wheel in wheels for part in wheel.parts]
+    columns = [Column(N_("wheel"), [name for name, part in every for __ in part.ways])]
+    told = (
+        (N_("way of the driver"), "ways", place), (N_("angle"), "angles", ANGLE),
+        (N_("omega"), "omegas", ANGULAR_SPEED), (N_("epsilon"), "epsilons", ANGULAR_ACCELERATION),
+    )  # fmt: skip
+    for header, name, dimension in told:
+        values = np.concatenate([getattr(part, name) for __, part in every])
+        columns.append(Column(header, values, dimension))
+    return Table("intermittent-course", _("Course of intermittent motion"), tuple(columns), long=True)

@@ -1,0 +1,276 @@
+"""Files on disk: a file or a folder is written whole beside its place and then put there, or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import errno
+import json
+import os
+import re
+import shutil
+import sys
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from pathlib import Path
+from typing import NamedTuple
+
+from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.reports.digits import AccuracyReport
+from tmm_cli.reports.register import walk
+from tmm_cli.reports.result_json import sections
+from tmm_cli.reports.spreadsheets import Kind, files
+from tmm_cli.reports.table import Table, csv_text, json_text
+
+LISTED = 100_000  # bytes: the list of files at the end of result.json is shorter, and the rest may be very long
+LONGEST = 150  # bytes of a folder's name
+RECORD = "result.json"
+RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # devices of Windows, in every folder
+QUERY = 0x1000  # of OpenProcess: no more is asked than whether a process is there
+
+
+def folder_name(name: str) -> str:
+    """A problem's folder: its name with nothing in it that could lead elsewhere, and that every system takes."""
+    safe = re.sub(r"[^\w.-]+", "_", name).encode()[:LONGEST].decode(errors="ignore").strip(".") or "problem"
+    return f"_{safe}" if RESERVED.fullmatch(safe) else safe
+
+
+def folder_of(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
+    """The folder in `out` for results, and the one that keeps other results for that.
+
+    A problem has one folder. part: what a run has made that has not made all; it does not take the place of other
+    results than its own, and goes into a folder beside theirs.
+    """
+    usual, own = (out / folder_name(text) for text in (name, f"{name}-{part}"))
+    if not part or held(usual) in (None, part):
+        return usual, None
+    if held(own) not in (None, part):
+        raise FileExistsError(errno.EEXIST, _("other results are there"), str(own))
+    return own, usual
+
+
+def refuse_place(path: Path, *, folder: bool) -> None:
+    """Refuse a folder, or a file, that cannot be written, before there is any work for it. Raises OSError."""
+    path = Path(os.path.realpath(path))
+    if path.exists() and path.is_dir() != folder:
+        number = errno.ENOTDIR if folder else errno.EISDIR
+        raise OSError(number, os.strerror(number), str(path))
+    above = path if folder else path.parent
+    while not above.exists():
+        above = above.parent
+    if not above.is_dir() or not os.access(above, os.W_OK):
+        number = errno.EACCES if above.is_dir() else errno.ENOTDIR
+        raise OSError(number, os.strerror(number), str(above))
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write beside and rename, so that a killed run leaves the old file or the new one."""
+    path = Path(os.path.realpath(path))
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():  # a device of the system would be gone after the renaming
+        raise FileExistsError(errno.EEXIST, _("this is no file but a device"), str(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for left in _left(path, "new"):
+        left.unlink(missing_ok=True)
+    new = _beside(path, "new")
+    try:
+        new.write_bytes(content)
+        os.replace(new, path)
+    except BaseException:
+        new.unlink(missing_ok=True)
+        raise
+
+
+class Staged:
+    """A folder written whole beside the one of that name, and put in its place at the end; not at all on an error.
+
+    A new result.json takes away the files that the old one lists. All other files of the old folder stay.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = Path(os.path.realpath(folder))
+        self.new, self.old = _beside(self.folder, "new"), _beside(self.folder, "old")
+        self.names: set[str] = set()
+        self.removed: list[str] = []
+
+    def __enter__(self) -> Staged:
+        if self.folder.exists() and not self.folder.is_dir():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(self.folder))
+        self.made = not self.folder.parent.exists()
+        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        for left in _left(self.folder, "old"):
+            _carry_over(left, self.folder)
+        for left in _left(self.folder, "new"):
+            shutil.rmtree(left, ignore_errors=True)
+        self.new.mkdir()
+        return self
+
+    def write(self, name: str, content: Iterable[str | bytes]) -> None:
+        """A file of the folder, from its content piece by piece."""
+        self.names.add(name)
+        with (self.new / name).open("wb") as stream:
+            for piece in content:
+                stream.write(piece if isinstance(piece, bytes) else piece.encode())
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        try:
+            if kind is None:
+                self._exchange()
+        finally:
+            shutil.rmtree(self.new, ignore_errors=True)
+            if self.made and not self.folder.exists():
+                with contextlib.suppress(OSError):
+                    self.folder.parent.rmdir()
+
+    def _exchange(self) -> None:
+        """Two renames; when the second one cannot be, the first is taken back."""
+        for name in self.names:
+            if (self.folder / name).is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.folder / name))
+        if not self.folder.exists():
+            os.rename(self.new, self.folder)
+            return
+        if RECORD in self.names:
+            self.removed = sorted(name for name in listed(self.folder) - self.names if (self.folder / name).exists())
+        try:
+            os.rename(self.folder, self.old)
+            os.rename(self.new, self.folder)
+        except BaseException:
+            if not self.folder.exists():
+                os.rename(self.old, self.folder)
+            raise
+        _carry_over(self.old, self.folder)
+
+
+def _carry_over(old: Path, folder: Path) -> None:
+    """Move what stays of an old folder into the new one, and remove the rest; the record last, as it says which.
+
+    Nothing is lost by a run that is killed meanwhile: the next one goes on with that.
+    """
+    if not folder.exists():
+        os.rename(old, folder)
+        return
+    gone = listed(old) | {RECORD} if (folder / RECORD).exists() else set()
+    for entry in sorted(old.iterdir(), key=lambda entry: entry.name == RECORD):
+        if entry.name in gone or (folder / entry.name).exists():
+            entry.unlink()
+        else:
+            os.rename(entry, folder / entry.name)
+    old.rmdir()
+
+
+def _beside(path: Path, kind: str) -> Path:
+    """Where this process keeps a new, or an old, form of a file or folder for a moment."""
+    return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
+
+
+def _left(path: Path, kind: str) -> Iterator[Path]:
+    """The same of processes that are no more."""
+    for other in list(path.parent.iterdir()):
+        found = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
+        if found is not None and not _runs(int(found[1])):
+            yield other
+
+
+def _runs(process: int) -> bool:
+    """Whether another process of this number is running."""
+    if process == os.getpid():
+        return False
+    if sys.platform == "win32":  # where os.kill would end it
+        return bool(ctypes.windll.kernel32.OpenProcess(QUERY, False, process))
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+def listed(folder: Path) -> set[str]:
+    """The files that an earlier run wrote into the folder, as the end of its result.json lists them; never a path."""
+    try:
+        end = _end_of_record(folder)
+        names = json.loads(end[end.rindex('"files": [') + len('"files": ') :].rstrip().removesuffix("}"))
+    except (OSError, ValueError, RecursionError):
+        return set()
+    return {n for n in names if isinstance(n, str) and re.fullmatch(r"\w[\w(),-]*\.(csv|png|svg|xlsx)", n)}
+
+
+def held(folder: Path) -> str | None:
+    """Which part of a run has made the results in the folder; none: there are no results, empty: a whole one."""
+    try:
+        found = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
+    except OSError:
+        return None
+    return found[1] if found else ""
+
+
+def _end_of_record(folder: Path) -> str:
+    with (folder / RECORD).open("rb") as stream:
+        stream.seek(-min(LISTED, stream.seek(0, os.SEEK_END)), os.SEEK_END)
+        return stream.read().decode(errors="replace")
+
+
+# A problem's output folder: result.json, a CSV file a table, and what others add to it (drawings).
+
+
+NAMED = 6  # positions that stand in the name of a folder; of more of them the first and the last
+
+
+def part_of(results: Results | ChainResults, drawn: bool) -> str:
+    """What of a run is there, as its folder is named; nothing where all is."""
+    if isinstance(results, ChainResults):
+        return ""
+    if results.motion is None:
+        return "structure"
+    words = [word for word in ("assemblies", "centres", "extremes") if getattr(results, word) is not None]
+    if results.reactions is None:
+        words = [*(words or ["kinematics"]), *results.of]
+    numbers = results.numbers
+    if numbers != tuple(range(len(results.asked))):
+        few = len(numbers) <= NAMED
+        words.append("p" + ("-".join(map(str, numbers)) if few else f"{numbers[0]}-to-{numbers[-1]}"))
+    return "-".join(words if drawn or results.reactions is None else [*words, "no-drawings"])
+
+
+class Written(NamedTuple):
+    """The folder that was written, files of an earlier run that went, and the folder that keeps other results."""
+
+    folder: Path
+    removed: list[str]
+    kept: Path | None
+
+
+def write_results(
+    results: Results | ChainResults, out: Path, drawings: Iterable[tuple[str, bytes]] | None = None,
+    digits: AccuracyReport | None = None, people: Kind | None = None, part: str = "",
+) -> Written:  # fmt: skip
+    """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
+
+    Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
+    an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too. part: what
+    the drawings are, where they are others than those of a whole run.
+    """
+    part = "-".join(word for word in (part_of(results, drawings is not None), part) if word)
+    folder, kept = folder_of(out, results.problem.name, part)
+
+    def tables() -> Iterable[Table]:
+        return walk(results) if digits is None else digits.with_bounds(walk(results))
+
+    with Staged(folder) as staged:
+        with spoken(ENGLISH):
+            for table in tables():
+                staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
+        for name, content in files(people, tables(), results.problem.units) if people else ():
+            staged.write(name, content)
+        for name, picture in drawings or ():
+            staged.write(name, (picture,))
+        names = sorted(staged.names)
+        parts = sections(results, None if digits is None else digits.json())
+        with spoken(ENGLISH):
+            staged.write("result.json", json_text(chain(parts, [("part", part)] if part else [], [("files", names)])))
+    return Written(folder, staged.removed, kept)

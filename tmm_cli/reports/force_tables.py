@@ -1,0 +1,258 @@
+"""Loads and reactions. Long: a row a position."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from tmm_cli.language import N_, Phrase, _, numeral, printed, symbol
+from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.forces.free_bodies import load_names
+from tmm_cli.mechanics.forces.lever import Item
+from tmm_cli.mechanics.forces.plan import find_transmitted_forces
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.plans.lever import drawn_check, sheets
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    ENERGY,
+    FORCE,
+    LENGTH,
+    LEVER_COUPLE,
+    LEVER_FORCE,
+    LEVER_MOMENT,
+    LOAD,
+    MOMENT,
+    NUMBER,
+    REACTION,
+    TRANSMITTED,
+    NamedValues,
+    columns,
+    place_dimension,
+)
+from tmm_cli.reports.cycle_tables import driver_columns, long_table, signs
+from tmm_cli.reports.structure_tables import indeterminate
+from tmm_cli.reports.table import Column, Table
+
+
+def label(by: str, on: str) -> str:
+    """R_12 acts from link 1 on link 2."""
+    by, on = printed(by), printed(on)
+    return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
+
+
+def forces_tables(results: Results) -> Iterable[Table]:
+    """Reactions, in compound hinges link by link too, loads, and the driving link."""
+    reactions = results.reactions
+    assert reactions is not None
+    words = {
+        N_("pair"): [r.pair.name for r in reactions.all],
+        N_("name"): [label(r.by, r.on) for r in reactions.all],
+    }
+    note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
+    note = " ".join([note, *indeterminate(results.structure)])
+    values = [columns(REACTION, reaction) for reaction in reactions.directed]
+    yield long_table(results, "reactions", _("Reactions"), words, values, note)
+    pins = reactions.pins(results.linkage)
+    if pins:
+        words = {
+            N_("pin"): [pin.point for pin in pins],
+            N_("link"): [pin.link for pin in pins],
+            N_("pairs"): [", ".join(pin.pairs) for pin in pins],
+        }
+        title = _("Compound hinges: the force of the pin on each of its links")
+        note = _(
+            "The link named with all pairs, to which the others are attached, bears the force of the whole pin; the "
+            "forces on all links add up to zero."
+        )
+        yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
+    loads = reactions.applied
+    if loads:
+        words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
+        title = _("Loads: weights {G}, inertia forces {U} and couples {M}, and those of the task").format(
+            G=symbol("G"), U=symbol("U"), M=symbol("M")
+        )
+        yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
+    yield from _transmitted(results)
+    yield _balances(results)
+
+
+def _transmitted(results: Results) -> Iterable[Table]:
+    """Of every link that is driven in one pair: its pressure angle, the driving force and what of it is useful."""
+    assert results.motion is not None and results.reactions is not None
+    found = find_transmitted_forces(results.motion, results.reactions)
+    if found and results.reactions.loaded:
+        angles = {(p.group, p.link): p.angles for p in results.pressure}
+        words = {N_("driven link"): [f.link for f in found], N_("driven in pair"): [f.pair for f in found]}
+        things = [
+            [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *columns(TRANSMITTED, f)] for f in found
+        ]
+        note = _(
+            "P: reaction of the pair in which the link is driven; Q: its component along the velocity of its point. "
+            "Without weights, inertia and friction Q = P cos(pressure angle)."
+        )
+        yield long_table(results, "transmission", _("Force transmission"), words, things, note)
+
+
+def _balances(results: Results) -> Table:
+    """Every driver's moment or force, and what the frame does to the links that are driven from it."""
+    reactions = results.reactions
+    assert reactions is not None
+    found = driver_columns(results)
+    several = len(reactions.balances) > 1
+    for balance in reactions.balances:
+        link = balance.driver.link
+        if balance.moment is not None:
+            name = _("M_b of {link}").format(link=link) if several else _("M_b")
+            found.append(Column(name, balance.moment, MOMENT))
+        if balance.moment is None or balance.driver.base == FRAME:
+            name = _("F_b of {link}").format(link=link) if several else _("F_b")
+            found.append(Column(name, balance.force, FORCE))
+        for frame in (f for f in reactions.frames if f.on == link):
+            name = label(frame.by, frame.on)
+            found.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
+            found.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
+    return Table("balance", _("Driving link"), tuple(found), notes=(signs(results.linkage),))
+
+
+# The Zhukovsky lever: every force and couple with its arm and moment, a row for each at every position.
+
+
+def lever_tables(results: Results) -> Iterable[Table]:
+    """One table: forces with arms in length per unit turn of the crank, couples with the ratio of angular speeds."""
+    lever = results.lever
+    assert lever is not None
+    if not lever.items:
+        return
+    slider = results.linkage.driver.kind == "slide"
+    assert results.reactions is not None
+    own: dict[str, str] = {}  # letters of the course
+    for load in results.reactions.applied:
+        force, couple = load_names(load)
+        own |= {load.couple_name: couple, load.name: force}
+    words = {N_("name"): [own[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
+    note = _(
+        "Arms are those of the lever drawn for a crank that turns counterclockwise with 1 rad/s, 1 m for 1 m/s; "
+        "moments are positive that drive it so."
+    )
+    items = [_columns(item, slider) for item in lever.items]
+    yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
+
+
+def _columns(item: Item, slider: bool) -> list[NamedValues]:
+    force, couple = (item, None) if item.end is not None else (None, item)
+    return [
+        *columns(LEVER_FORCE, force, slider), *columns(LEVER_COUPLE, couple, slider),
+        *LEVER_MOMENT.columns(item, slider),
+    ]  # fmt: skip
+
+
+# What balances the driver as a student draws it: the force plan beside the Zhukovsky lever, in positions in detail.
+
+
+def drawn_tables(results: Results) -> Iterable[Table]:
+    """A row for each position in detail: what both ways give on paper, and how far apart they are."""
+    motion, reactions, lever = results.motion, results.reactions, results.lever
+    assert motion is not None and reactions is not None and lever is not None
+    positions = [(k, sheets(motion, reactions, lever, k)) for k in in_detail(results) if lever.items]
+    checked = [
+        (k, drawn_check(motion, reactions, drawn, drawn.scales())) for k, drawn in positions if drawn is not None
+    ]
+    if not checked:
+        return
+    moment = reactions.balance.kind == "moment"
+    name, dimension = (N_("M_b"), MOMENT) if moment else (N_("F_b"), FORCE)
+    chosen = [k for k, __ in checked]
+    head = [replace(column, values=[column.values[k] for k in chosen]) for column in driver_columns(results)]
+    exact = [100 * float(lever.difference[k]) for k in chosen]
+    columns = [
+        Column(Phrase("{name} by the force plan", name=name), [abs(c.plan) for __, c in checked], dimension, 4),
+        Column(Phrase("{name} by the lever", name=name), [abs(c.lever) for __, c in checked], dimension, 4),
+        Column(N_("difference, %"), [100 * c.difference for __, c in checked], NUMBER, 2),
+        Column(N_("exact difference, %"), [0.0 if x < 100 * NO_DIFFERENCE else x for x in exact], NUMBER, 2),
+    ]
+    note = _(
+        "As drawn: arms and segments are read off drawings on A4 to 0.5 mm, so this difference is one of drawing; the "
+        "limit `checks: lever` is for the exact difference, of what is calculated by both ways."
+    )
+    yield Table("lever-drawn", _("The force plan and the lever as drawn"), (*head, *columns), notes=(note,))
+
+
+# Power balance, reduced inertia and reduced moment at every position; friction over the cycle.
+
+
+def energy_tables(results: Results) -> Iterable[Table]:
+    """The balance, and where there is friction what it takes."""
+    found = results.energy
+    assert found is not None
+    quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
+    columns_of = columns(quantities, found, results.linkage.driver.kind == "slide")
+    table = [
+        *driver_columns(results),
+        *(Column(header, values, dimension) for header, values, dimension in columns_of),
+        Column(N_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
+    ]
+    note = _(
+        "Powers are positive that speed the mechanism up. What is reduced to the driver is by its place, which grows "
+        "counterclockwise, or along the guide, however it moves."
+    )
+    yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table), notes=(note,))
+    if results.friction is not None:
+        yield _friction(results)
+
+
+def _friction(results: Results) -> Table:
+    rubbed, lost = results.friction, results.losses
+    assert rubbed is not None
+    given = results.linkage.friction
+    notes = [_("no efficiency over the cycle: the driver is locked somewhere, or does no work")]
+    if lost is not None and lost.efficiency is not None:
+        notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
+    notes += [_("locks itself {range}").format(range=text) for text in locked_ranges(results)]
+    return Table(
+        "friction", _("Friction"),
+        (
+            Column(N_("pair"), [f.pair for f in given]),
+            Column(N_("mu"), [f.coefficient for f in given], NUMBER),
+            Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
+            Column(N_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+        ),
+        notes=tuple(notes),
+    )  # fmt: skip
+
+
+def locked_ranges(results: Results) -> list[str]:
+    """Ranges of the driver in which friction locks the mechanism, with the positions in them and the pair."""
+    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    cycle, found = 2 * np.pi * results.turns, []
+    for locked in results.losses.ranges if results.losses is not None else ():
+        ends = np.array([locked.start, locked.end])
+        asked = results.asked[list(results.numbers)]
+        if cycle:
+            whole = ends[1] - ends[0] > cycle * (1 - SAME_RATIO)
+            asked = locked.start + np.mod(asked - locked.start + SAME_PLACE, cycle) - SAME_PLACE
+            ends = ends - ends[0] if whole else np.mod(ends, cycle)
+        inside = (asked > locked.start - SAME_PLACE) & (asked < locked.end + SAME_PLACE)
+        numbers = [str(number) for number, here in zip(results.numbers, inside, strict=True) if here]
+        start, end = (numeral(float(units.from_si(q, measure)), ".5g") for q in ends)
+        pair = results.structure.pair(locked.pair)
+        if not numbers:
+            text = _(
+                "from {start} to {end} {unit}, between the positions, most of all in pair {pair} of links {i} and {j}"
+            )
+        elif len(numbers) == 1:
+            text = _(
+                "from {start} to {end} {unit} (position {numbers}), most of all in pair {pair} of links {i} and {j}"
+            )
+        else:
+            text = _(
+                "from {start} to {end} {unit} (positions {numbers}), most of all in pair {pair} of links {i} and {j}"
+            )
+        found.append(text.format(
+            start=start, end=end, unit=units.spelt(measure), numbers=", ".join(numbers), pair=locked.pair, i=pair.i,
+            j=pair.j,
+        ))  # fmt: skip
+    return found

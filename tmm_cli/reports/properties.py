@@ -1,0 +1,259 @@
+"""Properties that a file shows: quantities by name, each as one number, beside what the file expects."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+
+import numpy as np
+
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis import pipeline
+from tmm_cli.mechanics.analysis.named_quantities import STAGES, Quantity, of_wheels, quantities, relative_angles
+from tmm_cli.mechanics.analysis.pipeline import Results, at_places
+from tmm_cli.mechanics.numerics.roots import greatest, roots
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.problem.build import build
+from tmm_cli.problem.errors import Path, ProblemError, no_position, path_text, quote, under, unknown_name
+from tmm_cli.problem.reader import with_settings
+from tmm_cli.problem.record import Problem
+from tmm_cli.problem.refusals import in_words_of
+from tmm_cli.problem.schema import Shown
+
+STEPS = 720  # in a turn, or over the driver's way
+PARTS = 60  # of the way between two positions, through which an angle is followed
+MET = 1e-9  # of the value, or of one in SI: rounding of what is found by search
+
+
+@dataclass(frozen=True)
+class Property:
+    """A number (SI; nan where there is none) by the words of the file, and what is expected of it, if that is told."""
+
+    name: str
+    value: float
+    dimension: Dimension
+    expected: float | None = None
+
+    @property
+    def met(self) -> bool:
+        return self.expected is None or math.isclose(self.value, self.expected, rel_tol=MET, abs_tol=MET)
+
+
+def properties_shown(results: Results | ChainResults) -> tuple[Property, ...]:
+    """What the file shows, as far as its stages have run. Raises ProblemError."""
+    problem = results.problem
+    if isinstance(results, ChainResults):
+        return tuple(_of_chain(name, task, results) for name, task in problem.shows.items())
+    return _of_linkage(results)
+
+
+@lru_cache(maxsize=1)
+def _of_linkage(results: Results) -> tuple[Property, ...]:
+    problem = results.problem
+    if problem is None or results.of:
+        return ()
+    found = []
+    for name, task in problem.shows.items():
+        try:
+            with under("shows", name):
+                one = _property(name, task, results)
+        except ProblemError as error:
+            raise error.located(problem.file, problem.source) from None
+        found += [one] if one is not None else []
+    return tuple(found)
+
+
+def _of_chain(name: str, task: Shown, results: ChainResults) -> Property:
+    found, path = results.chain, ("shows", name)
+    known = {"W": found.mobility, "Wm": found.local_mobility, "q": found.redundant, "m": found.manoeuvrability}
+    value = known.get(task.of)
+    if value is None or not isinstance(task.expected, int | None):
+        key, raw = ("of", task.of) if value is None else ("expected", task.expected)
+        allowed = ", ".join(k for k, v in known.items() if v is not None) if value is None else _("a number")
+        message = _("a chain without dimensions shows whole numbers")
+        error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
+        raise error.located(results.problem.name, results.problem.source)
+    return Property(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
+
+
+def _property(name: str, task: Shown, results: Results) -> Property | None:
+    """None where a stage that it needs has not run."""
+    problem: Problem = results.problem
+    values = problem.values
+    assert values is not None
+    if task.set:
+        results = _with_settings(task, results)
+    if task.without is not None:
+        results = _broken(task.without, results)
+    linkage = results.linkage
+    known = {
+        **quantities(linkage, results.structure), **of_wheels(results.inputs.wheels), **relative_angles(linkage),
+    }  # fmt: skip
+    if task.of not in known:
+        raise unknown_name(task.of, known, _("there is no quantity of that name"), path=("of",))
+    quantity = known[task.of]
+    if task.without is not None and quantity.stage != "structure":
+        raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
+    if not _ran(quantity, results):
+        return None
+    by = known.get(task.per) if isinstance(task.per, str) else None
+    ratio = by is not None and task.over in ("largest", "least")
+    if by is not None:
+        if by.dimension != quantity.dimension or (ratio and by.dimension == ANGLE):
+            raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(task.per))
+        if not _ran(by, results):
+            return None
+    value = _one(quantity, task, results, by if ratio else None)
+    dimension = quantity.dimension
+    if task.within is not None:
+        dimension = place_dimension(results.linkage.driver.kind)
+    if task.per is not None:
+        if by is None:
+            value /= values.positive(task.per, dimension, ("per",))
+        elif not ratio:
+            by_value = _one(by, task, results)
+            value = value / by_value if by_value else np.nan
+        dimension = NUMBER
+    compared = task.expected is not None and (quantity.stage == "structure" or not _of_own_numbers(task, problem))
+    expected = values.number(task.expected, dimension, ("expected",)) if compared else None
+    return Property(name, value, dimension, expected)
+
+
+def _of_own_numbers(task: Shown, problem: Problem) -> bool:
+    """Whether parameters are set on the command line and the expected number holds only for those of the file."""
+    source = problem.source
+    if source is None or not source.given:
+        return False
+    names = set(re.findall(r"[^\W\d]\w*", str(task.expected)))
+    return names.isdisjoint(source.data.get("parameters", {}))
+
+
+def _ran(quantity: Quantity, results: Results) -> bool:
+    if quantity.stage == "structure":
+        return True
+    forces = quantity.order >= STAGES.index("forces")
+    return results.motion is not None and not (forces and results.reactions is None)
+
+
+def _with_settings(task: Shown, results: Results) -> Results:
+    """The same linkage with other values of parameters, as far as the results go."""
+    problem: Problem = results.problem
+    assert problem.source is not None
+    stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
+    stage = stage if results.reactions is None else "forces"
+    try:
+        other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+        inputs = replace(
+            results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None
+        )
+        with in_words_of(other):
+            return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
+    except ProblemError as error:  # its place is that of what the parameters spoil
+        told = _("with these parameters the file would be refused: {reason}")
+        reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+        raise ProblemError(
+            told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
+        ) from None
+
+
+def _broken(hinge: str, results: Results) -> Results:
+    """The structure without a hinge."""
+    linkage = results.linkage
+    results.problem.values.known(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
+    left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
+    return replace(results, inputs=replace(results.inputs, linkage=left), structure=analyse(left), motion=None)
+
+
+def _one(quantity: Quantity, task: Shown, results: Results, per: Quantity | None = None) -> float:
+    """The number that a task asks of a quantity, or of its ratio to another one at every place."""
+    ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
+    if quantity.whole:
+        if ways or task.within is not None:
+            message = _("this belongs to the mechanism, and to no position")
+            raise ProblemError(message, path=((*ways, "within")[0],), found=quote(task.of))
+        return float(np.asarray(quantity.read(results)).ravel()[0])
+    if len(ways) != 1 or (task.within is not None and ways != ["at"]):
+        wanted = _("in one position, between two, or over the way of the driver")
+        raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
+    read = partial(_read, quantity, results) if per is None else partial(_ratio, quantity, per, results)
+    if task.over is not None:
+        return _over(read, task.over, results, quantity.dimension == ANGLE)
+    numbers = [(task.at, ("at",))] if task.at is not None else [
+        (number, ("between", k)) for k, number in enumerate(task.between or [])
+    ]  # fmt: skip
+    places = [_place(number, path, results) for number, path in numbers]
+    if task.within is not None:
+        most = results.problem.values.positive(task.within, quantity.dimension, ("within",))
+        return _zone(read, places[0], most, results)
+    if len(places) == 1:
+        return float(read(np.array(places))[0])
+    way = np.linspace(places[0], places[1], PARTS + 1)
+    values = read(way)
+    values = np.unwrap(values) if quantity.dimension == ANGLE else values
+    return float(values[-1] - values[0])
+
+
+def _read(quantity: Quantity, results: Results, q: Real) -> Real:
+    """The values at places of the driver; sizes of vectors."""
+    there = at_places(results, q)
+    found = np.asarray(quantity.read(there))
+    return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
+
+
+def _ratio(quantity: Quantity, per: Quantity, results: Results, q: Real) -> Real:
+    """The ratio of two quantities at places of the driver; nan where the second one is zero."""
+    value, divisor = _read(quantity, results, q), _read(per, results, q)
+    found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
+    return found
+
+
+def _place(number: int, path: Path, results: Results) -> float:
+    asked = results.asked
+    if number >= len(asked):
+        raise no_position(number, len(asked), *path)
+    return float(asked[number])
+
+
+def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
+    """The largest, the least, or their difference over the way of the driver, found between its places."""
+    q = results.closely(STEPS * max(results.turns, 1) + 1)
+    values = read(q)[None, :]
+    values = np.unwrap(values) if turns else values
+
+    def extreme(sign: float) -> float:
+        def curve(_rows: Real, places: Real) -> Real:
+            return sign * read(places.ravel()).reshape(places.shape)
+
+        return sign * float(greatest(curve, q, sign * values, turns=turns)[0])
+
+    if over == "range":
+        return extreme(1.0) - extreme(-1.0)
+    return extreme(1.0 if over == "largest" else -1.0)
+
+
+def _zone(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
+    """How far the driver goes about a place while a quantity differs from its value there by no more than so much."""
+    middle = read(np.array([place]))[0]
+    way = abs(results.closely(2)[1] - results.closely(2)[0])
+    low, high = np.min(results.closely(2)), np.max(results.closely(2))
+    ends = []
+
+    def beyond(q: Real) -> Real:
+        over = np.abs(read(q) - middle) - most
+        return np.where(np.isnan(over), np.inf, over)
+
+    for sign in (-1.0, 1.0):
+        far = way if results.turns else abs((low if sign < 0 else high) - place)
+        q = place + sign * np.linspace(0, far, STEPS * max(results.turns, 1) + 1)
+        gone = np.flatnonzero(beyond(q) > 0)
+        if not gone.size:
+            ends.append(float(q[-1]))
+            continue
+        ends.append(float(roots(beyond, q[gone[:1] - 1], q[gone[:1]])[0]))
+    return min(ends[1] - ends[0], way if results.turns else np.inf)

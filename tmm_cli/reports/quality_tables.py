@@ -1,0 +1,321 @@
+"""Range of the driver, strokes of the output, dead positions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.language import N_, Phrase, _, numeral
+from tmm_cli.mechanics.analysis.checks import Check, checks
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.assembly.enumerate import Assemblies, GroupAssemblies, listed
+from tmm_cli.mechanics.kinematics.driver_range import SCAN
+from tmm_cli.mechanics.kinematics.strokes import OutputCurve, Stroke, Strokes, Travel
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.numerics.tolerances import CAME_BACK, NO_PRESSURE, SAME_PLACE, SEAM_OF_EXTREMES
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.problem.record import Problem
+from tmm_cli.reports.properties import properties_shown
+from tmm_cli.reports.table import Column, Table, table_of_words, with_unit
+
+Row = tuple[str, Any, Dimension]
+
+
+def quality_tables(results: Results) -> Iterable[Table]:
+    """One row a fact; values keep their own dimension."""
+    driver_range = results.driver_range
+    assert driver_range is not None
+    place = place_dimension(results.linkage.driver.kind)
+    rows: list[Row] = []
+    if driver_range.turns > 1:
+        rows.append((_("turns of the driver in a cycle"), driver_range.turns, NUMBER))
+    if not driver_range.full:
+        rows += [(_("driver can go from"), driver_range.start, place), (_("driver can go to"), driver_range.end, place)]
+    for strokes in (results.strokes, *results.further):
+        if strokes is not None and strokes.strokes:
+            rows += _strokes(results, strokes, place)
+        elif strokes is not None and driver_range.full and results.linkage.output_swings(strokes.link):
+            rows.append(
+                (_("link {link} turns in a cycle by").format(link=strokes.link), _turned(results, strokes), ANGLE)
+            )
+    for travel in results.travels:
+        rows += _travel(results.linkage, travel, place)
+    if results.losses is not None and results.losses.efficiency is not None:
+        rows.append((_("efficiency over the cycle"), results.losses.efficiency, NUMBER))
+    rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
+    if rows:
+        yield Table("quality", _("Quality"), of_rows(rows, results))
+
+
+def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[Row]:
+    """Strokes of an output that goes there and back as the driver turns."""
+    linkage = results.linkage
+    link, run = strokes.link, place_dimension(strokes.kind)
+    point, guide = linkage.output_point(link), linkage.output_guide(link)
+    name = _("swing psi of link {link}") if guide is None else _("stroke H of link {link}")
+    if point is not None:
+        name = _("travel of {link}")
+    elif guide is not None and FRAME not in (guide.carrier, guide.runner):
+        name = _("stroke H of link {link} along link {carrier}")
+    yield name.format(link=link, carrier=guide.carrier if guide is not None else ""), strokes.travel, run
+    arm = linkage.output_arm(link)
+    if arm is not None:
+        yield _("stroke H = psi l of point {point}").format(point=arm[0]), strokes.travel * arm[1], LENGTH
+    yield _("coefficient of change of mean speed k"), strokes.k, NUMBER
+    if len(strokes.strokes) == 2:
+        yield _("1/k = T_idle/T_working"), 1 / strokes.k, NUMBER
+        yield _("stroke angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
+    every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
+    if results.counts_strokes:
+        every = list(enumerate(_in_order(results, strokes), 1))
+    for number, stroke in every:
+        starts, lasts, dwell = _of_stroke(stroke, number)
+        yield starts, stroke.start, place
+        then = _("link {link} is then at") if point is None else _("{link} is then at")
+        yield then.format(link=link), stroke.low, run
+        yield lasts, stroke.length, place
+        if stroke.rest:
+            yield dwell, stroke.rest, place
+
+
+def _in_order(results: Results, strokes: Strokes) -> list[Stroke]:
+    """From position 0 on; the first of them begins before it where it is within a stroke."""
+
+    def gone(stroke: Stroke) -> float:
+        way = results.linkage.driver.sense * (stroke.start - results.start)
+        return float(np.mod(way + SEAM_OF_EXTREMES, strokes.cycle)) - SEAM_OF_EXTREMES
+
+    found = sorted(strokes.strokes, key=gone)
+    return found if gone(found[0]) <= SEAM_OF_EXTREMES else [found[-1], *found[:-1]]
+
+
+def _of_stroke(stroke: Stroke, number: int) -> tuple[str, str, str]:
+    """What its start, its length and the dwell after it are called; number: 0 of one that is not counted."""
+    if number:
+        names = _("stroke {number} starts at"), _("stroke {number} lasts"), _("dwell after stroke {number}")
+        starts, lasts, dwell = (name.format(number=number) for name in names)
+        return starts, lasts, dwell
+    if stroke.working:
+        return _("working stroke starts at"), _("working stroke lasts"), _("dwell after the working stroke")
+    return _("idle stroke starts at"), _("idle stroke lasts"), _("dwell after the idle stroke")
+
+
+def _turned(results: Results, strokes: Strokes) -> float:
+    """By how much (rad) an output turns that does not come back."""
+    curve = OutputCurve(results.linkage, results.kernels, strokes.link)
+    angle = np.unwrap(curve.place(results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)))
+    turned = abs(float(angle[-1] - angle[0]))
+    whole = 2 * np.pi * round(turned / (2 * np.pi))  # whatever repeats has turned by whole turns
+    return whole if abs(turned - whole) < CAME_BACK else turned
+
+
+def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]:
+    """How far an output goes over the positions asked."""
+    link, run = travel.link, place_dimension(travel.kind)
+    point, guide = linkage.output_point(link), linkage.output_guide(link)
+    name, extremes = _("swing psi of link {link} over the positions asked"), _("extreme position of link {link}")
+    if point is not None:
+        name, extremes = _("travel of {link} over the positions asked"), _("extreme of {link}")
+    elif guide is not None and FRAME not in (guide.carrier, guide.runner):
+        name = _("stroke H of link {link} along link {carrier} over the positions asked")
+    elif guide is not None:
+        name = _("stroke H of link {link} over the positions asked")
+    carrier = guide.carrier if guide is not None else ""
+    yield name.format(link=link, carrier=carrier), travel.high - travel.low, run
+    for extreme, at in ((travel.low, travel.low_at), (travel.high, travel.high_at)):
+        yield extremes.format(link=link), extreme, run
+        yield _("with the driver at"), at, place
+
+
+def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
+    """Rows of different dimensions: the unit stands in a column of its own."""
+    units = results.problem.units
+    return (
+        Column(N_("what"), [name for name, __, __ in rows]),
+        Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
+        Column(N_("unit"), [units.spelt(dim) for __, __, dim in rows]),
+    )
+
+
+# Pressure and transmission angles of every group over the driver's way, with what is allowed.
+
+
+def pressure_tables(results: Results) -> Iterable[Table]:
+    """A row for each driven link."""
+    found = results.pressure
+    if not found:
+        return
+    driver, driver_range = results.linkage.driver, results.driver_range
+    places = [p.place if p.largest > NO_PRESSURE else math.nan for p in found]
+    others = [p.other_place for p in found]
+    if driver.kind == "turn" and driver_range is not None and driver_range.full:
+        places = [place % (2 * math.pi * driver_range.turns) for place in places]
+        others = [place % (2 * math.pi * driver_range.turns) for place in others]
+    note = (
+        _("Allowed: as the file says.")
+        if any(results.problem.limits_set)
+        else _("Allowed where the file says nothing: 30 deg on a sliding link, 45 deg on a turning one.")
+    )
+    yield Table(
+        "pressure", _("Pressure angles"),
+        (
+            Column(N_("group"), [p.group for p in found]),
+            Column(N_("driven link"), [p.link for p in found]),
+            Column(N_("it"), [_("slides") if p.slides else _("turns") for p in found]),
+            Column(N_("driven in pair"), [p.pair for p in found]),
+            Column(N_("largest"), [p.largest for p in found], ANGLE),
+            Column(N_("driver there at"), places, place_dimension(driver.kind)),
+            Column(N_("other extreme"), [p.other for p in found], ANGLE),
+            Column(N_("driver then at"), others, place_dimension(driver.kind)),
+            Column(N_("least transmission angle"), [p.transmission for p in found], ANGLE),
+            Column(N_("force increase"), [p.gain for p in found], NUMBER),
+            Column(N_("allowed"), [p.allowed for p in found], ANGLE),
+            Column(N_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
+        ),
+        notes=(note,),
+    )  # fmt: skip
+
+
+# Properties that the file shows, beside what it expects.
+
+
+def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
+    """A row a property; values keep their own dimension."""
+    rows, units = properties_shown(results), results.problem.units
+    if not rows:
+        return
+    columns = [
+        Column(N_("property"), [row.name for row in rows]),
+        Column(N_("value"), [units.from_si(row.value, row.dimension) for row in rows], NUMBER),
+    ]
+    if any(row.expected is not None for row in rows):
+        wanted = [None if r.expected is None else units.from_si(r.expected, r.dimension) for r in rows]
+        columns.append(Column(N_("expected"), wanted, NUMBER))
+    columns.append(Column(N_("unit"), [units.spelt(row.dimension) for row in rows]))
+    yield Table("properties", _("Properties"), tuple(columns))
+
+
+# What is worth a second look: each check with its number, the limit, and where the driver is then.
+
+
+def checks_tables(results: Results) -> Iterable[Table]:
+    """A row a check."""
+    rows = [
+        (*_said(check, results), _place(check, results), _("ok") if check.holds else _("warn"))
+        for check in checks(results)
+    ]
+    if rows:
+        headers = (_("check"), _("of"), _("found"), _("limit"), _("driver at"), _("verdict"))
+        yield table_of_words("checks", _("Checks"), headers, rows)
+
+
+def _place(check: Check, results: Results) -> str:
+    if check.at is None:
+        return ""
+    at = check.at if abs(check.at) > SAME_PLACE else 0.0
+    units, dimension = results.problem.units, place_dimension(results.linkage.driver.kind)
+    place, none = (with_unit(units, each, dimension, 4) for each in (at, 0.0))
+    again = with_unit(units, 2 * math.pi * results.turns, dimension, 4) if results.turns else ""
+    return none if place == again else place
+
+
+def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
+    """What is checked, of what, the number, and its limit."""
+    units = results.problem.units
+    match check.kind:
+        case "slot":
+            slide = results.linkage.slide(check.of)
+            slot = _("link {runner} in slot {slot} of link {carrier}").format(
+                runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier
+            )
+            found = _("{far} left before {point}") if check.holds else _("{far} beyond {point}")
+            far = with_unit(units, abs(check.value), LENGTH, 4)
+            return _("stone in its slot"), slot, found.format(far=far, point=check.detail), _("its ends")
+        case "pressure":
+            link = _("link {link} of {group}").format(link=check.of, group=check.detail)
+            most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE, 4))
+            return _("pressure angle"), link, with_unit(units, check.value, ANGLE, 4), most
+        case "load":
+            found = _("one way")
+            if not check.holds:
+                found = (
+                    _("drives in the working stroke ({work} J), resists in the idle one")
+                    if check.detail == "working"
+                    else _("resists in the working stroke, drives in the idle one ({work} J)")
+                ).format(work=numeral(check.value, ".6g"))
+            wanted = _("one way; or when: working stroke")
+            return _("load without `when`"), _("load {load}").format(load=check.of), found, wanted
+        case "near dead":
+            limit = _("at least {margin}").format(margin=numeral(check.limit, ".6g"))
+            found = numeral(check.value if check.value > 1e-12 else 0.0, ".3g")
+            return _("margin to dead and change points"), check.of, found, limit
+        case "lever":
+            limit = _("at most {share} %").format(share=numeral(100 * check.limit, ".6g"))
+            value = 100 * check.value
+            return _("lever against force plan"), "", f"{numeral(0.0 if check.at is None else value, '.3g')} %", limit
+
+
+# All real assemblies of each group at a place of the driver; a table a group, a row an assembly.
+
+
+def assemblies_tables(results: Results) -> Iterable[Table]:
+    """In solving order of the groups, at each place that was asked for."""
+    for stem, here, group in listed(results.assemblies or ()):
+        yield _table(stem, here, group, results)
+
+
+def place(problem: Problem, q: float, number: int | None) -> str:
+    """Which position it is and where the driver stands (rad or m), which at the sketch has no number."""
+    crank = problem.linkage.driver.kind == "turn"
+    measure = place_dimension(problem.linkage.driver.kind)
+    value = problem.units.from_si(q % math.tau if crank else q, measure)
+    at = f"{numeral(round(value, 9) + 0.0, '.6g')} {problem.units.spelt(measure)}"
+    if number is None:
+        text = _("place of the sketch, crank at {place}") if crank else _("place of the sketch, driver at {place}")
+        return text.format(place=at)
+    text = _("position {number}, crank at {place}") if crank else _("position {number}, driver at {place}")
+    return text.format(number=number, place=at)
+
+
+def notes(group: GroupAssemblies) -> Iterable[str]:
+    """How sure it is that there are no others, and what is odd about these."""
+    number = len(group.assemblies)
+    if group.moves:
+        yield _("The group moves by itself at this place: it has assemblies without end, one of them is shown.")
+    elif group.method == "polynomial":
+        yield _("There are no others: they are the real roots of a polynomial of degree {most}.").format(
+            most=group.most
+        )
+    elif group.method == "closed form" and group.most == 2:
+        yield _("There are no others: a group of class II is solved in closed form.")
+    elif group.method in ("closed form", "angles"):
+        yield _("There are no others: its equations have one solution.")
+    else:
+        yield _("Found by Newton's method from many starts: it is not proved that there are no others.")
+    if number == 0 and group.complete:
+        yield _("At this place of the driver the group cannot be assembled.")
+    if group.dead and not group.moves:
+        yield _("Where the margin is 0 the group is dead: two assemblies meet in one.")
+
+
+def _table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results) -> Table:
+    every = group.assemblies
+    names = list(every[0].points) if every else []
+    columns = [
+        Column(N_("group"), [group.group.title] * len(every)),
+        Column(N_("assembly"), [str(k + 1) for k in range(len(every))]),
+        Column(N_("that of"), [_("sketch") if a.of_sketch else "" for a in every]),
+        Column(N_("margin"), [a.margin for a in every], NUMBER, digits=3),
+        *(Column(Phrase("angle of {link}", link=n), [a.angles[n] for a in every], ANGLE) for n in group.group.links),
+    ]
+    for name in names:
+        columns.append(Column(Phrase("{point} x", point=name), [a.points[name].real for a in every], LENGTH))
+        columns.append(Column(Phrase("{point} y", point=name), [a.points[name].imag for a in every], LENGTH))
+    title = _("Real assemblies of {group}, {place}: {count}").format(
+        group=group.group.title, count=len(every), place=place(results.problem, here.q, here.number)
+    )
+    return Table(stem, title, tuple(columns), notes=tuple(notes(group)))

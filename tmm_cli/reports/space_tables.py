@@ -1,0 +1,270 @@
+"""A planar linkage in space: contours, redundant constraints, and pairs that would take them away."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tmm_cli.language import N_, _, printed
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.quantities import NUMBER
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.graph import Contour, contours, is_dependent
+from tmm_cli.mechanics.structure.group import ROMAN
+from tmm_cli.mechanics.structure.redundancy import space
+from tmm_cli.mechanics.structure.spatial import AXLES, CONTACTS, ChainResults, Findings, LocalFreedom
+from tmm_cli.reports.structure_tables import left_out
+from tmm_cli.reports.table import Column, Table, table_of_words
+from tmm_cli.synthesis.schemes.chains import KinematicChain
+from tmm_cli.synthesis.schemes.schemes import TYPES, Scheme
+
+
+def space_tables(results: Results) -> Iterable[Table]:
+    """Three small tables."""
+    structure = results.structure
+    yield contour_table(contours(structure.pairs, structure.links), structure)
+    found = space(results.linkage, structure)
+    facts = [
+        (_("W by Somov-Malyshev"), found.chain.count),
+        (_("redundant constraints q = Wo + Wm - W"),
+         redundancy(found.wanted, found.local, found.chain.mobility, found.redundant)),
+    ]  # fmt: skip
+    if found.replacements:
+        q = redundancy(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
+        facts += [(_("W by Somov-Malyshev, with the pairs below"), found.proposed.count)]
+        facts += [(_("redundant constraints q = Wo + Wm - W, with the pairs below"), q)]
+    note = _(
+        "No replacement of turning pairs by cylindrical or spherical ones and of sliding pairs "
+        "by cylindrical or planar ones was found that leaves q = 0."
+    )
+    yield table_of_words(
+        "space", _("The same pairs in space: redundant constraints"), (_("what"), _("value")), facts,
+        () if found.replacements is not None else (note,),
+    )  # fmt: skip
+    if found.replacements:
+        note = _(
+            "Pairs on the frame stay, they position shafts and guides. Out of the plane, the "
+            "conditions of these pairs are independent (checked by rank)."
+        )
+        title, notes = _("Pairs that leave no redundant constraints"), [note]
+        if found.redundant_then:
+            title = _("Pairs that leave no redundant constraints out of the plane")
+            notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(left_out(structure))))
+        yield table_of_words(
+            "replacements", title,
+            (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
+            [(r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
+             for r in found.replacements],
+            tuple(notes),
+        )  # fmt: skip
+
+
+def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
+    """Contours by links and pairs; of a planar linkage with redundant links or pairs, which of them are dependent."""
+    headers, rows = [_("contour"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
+    if structure is None or not any(is_dependent(contour, structure) for contour in found):
+        return table_of_words("contours", _("Independent contours"), headers, rows)
+    kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in found]
+    rows = [[*row, kind] for row, kind in zip(rows, kinds, strict=True)]
+    note = _("A dependent contour repeats another one: the links or pairs that close it are redundant.")
+    return table_of_words("contours", _("Contours"), [*headers, _("kind")], rows, (note,))
+
+
+def redundancy(wanted: int, local: int, mobility: int, redundant: int) -> str:
+    """Redundant constraints as they are counted."""
+    w = f"({mobility})" if mobility < 0 else str(mobility)
+    return f"{wanted} + {local} - {w} = {redundant}"
+
+
+# A chain given by pairs alone: mobility, pairs, contours, local freedoms, manoeuvrability.
+
+
+def chain_tables(results: ChainResults) -> Iterable[Table]:
+    """Up to four small tables."""
+    found = results.chain
+    yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(found), _notes(found))
+    yield table_of_words(
+        "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
+        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class])
+         for p in found.chain.pairs],
+    )  # fmt: skip
+    if found.contours:
+        yield contour_table(found.contours)
+    if found.local:
+        yield table_of_words(
+            "local", _("Local freedoms"), (_("links"), _("freedoms"), _("between pairs"), _("what it does")),
+            [(", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _how(x)) for x in found.local],
+        )  # fmt: skip
+
+
+def _facts(found: Findings) -> Iterable[tuple[str, str]]:
+    chain = found.chain
+    yield _("moving links n"), str(len(chain.links))
+    yield _("pairs with 1 to 5 freedoms"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
+    yield _("W by Somov-Malyshev"), chain.count
+    yield _("independent contours K = p - n"), str(len(chain.pairs) - len(chain.links))
+    yield _("chain"), _form(found)
+    yield _("local freedoms Wm"), str(found.local_mobility)
+    yield _("without them, W - Wm"), str(found.effective)
+    if found.wanted is not None and found.redundant is not None:
+        q = redundancy(found.wanted, found.local_mobility, found.mobility, found.redundant)
+        yield _("redundant constraints q = Wo + Wm - W"), q
+    if found.output is not None:
+        yield _("manoeuvrability m: W with link {link} held").format(link=found.output), chain.held(found.output).count
+
+
+def _form(found: Findings) -> str:
+    if found.form == "mixed":
+        return _("closed, with open branches (links {links})").format(links=", ".join(found.branches))
+    return _("open") if found.form == "open" else _("closed: every link lies in a contour")
+
+
+def _notes(found: Findings) -> Iterable[str]:
+    seen = sum(x.freedoms for x in found.local)
+    if found.given_local is not None and found.given_local < seen:
+        yield _("{given} local freedoms are given, the pairs show {found}.").format(given=found.given_local, found=seen)
+    if found.immobile:
+        yield _(
+            "W - Wm < 1: by the count links {links} cannot move. If they do, by special dimensions such as parallel "
+            "axes, give the mobility that is meant (wanted: 1): the redundant constraints q are then counted."
+        ).format(links=", ".join(found.immobile))
+    if found.redundant is not None and found.redundant > 0 and found.effective < 1:
+        yield _("q = {q}: the chain moves with exact dimensions only, by the count it cannot.").format(
+            q=found.redundant
+        )
+    if found.redundant is not None and found.redundant < 0:
+        yield _("q < 0: the chain has {many} freedoms more than are wanted.").format(many=-found.redundant)
+    m, idle = found.manoeuvrability, found.idle_manoeuvrability
+    if m is not None and m < 1:
+        yield _("m = {m}: with the output held the chain cannot move; m >= 1 is wanted.").format(m=m)
+    elif m is not None and m - idle < 1:
+        yield _("m = {m}, but {local} of it are local freedoms: the arm cannot go round an obstacle.").format(
+            m=m, local=idle
+        )
+
+
+def _how(part: LocalFreedom) -> str:
+    kinds = part.kinds
+    if kinds & CONTACTS and kinds & {*AXLES}:
+        return _("rotates about its own axis as a roller")
+    if part.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
+        return _("rotates about its own axis if the ball lies on it")
+    if part.freedoms == 1 and len(part.ends) == 2 and kinds <= {"spherical", "planar"}:
+        if kinds == {"spherical"}:
+            return _("turns about the line of both centres")
+        if kinds == {"planar"}:
+            return _("slides along both planes")
+        return _("turns about the normal of the plane through the centre")
+    return _("moves with its neighbours held")
+
+
+# Schemes and kinematic chains as tables and as plain data.
+
+
+DEGREES = (N_("binary"), N_("ternary"), N_("quaternary"))
+
+Written = Sequence[tuple[Path, bool] | None]
+"""The file of each scheme and whether it was solved with its forces; None where no pose could be assembled."""
+
+
+def schemes_table(
+    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+) -> Table:
+    """Number, formula, groups, links and pairs, file. types: the types of groups that were enumerated."""
+    columns = [
+        Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
+        Column(N_("formula of structure"), [s.formula for s in found]),
+        Column(N_("groups"), [", ".join(s.types) for s in found]),
+        Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
+        Column(N_("turning pairs"), [_pairs(s, "R") for s in found]),
+        Column(N_("sliding pairs"), [_pairs(s, "P") for s in found]),
+    ]
+    if written is not None:
+        none = _("none: no pose was found that assembles")
+        columns.append(Column(N_("file"), [one[0].name if one else none for one in written]))
+    title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
+    return Table(
+        "schemes", title, tuple(columns), notes=(_("{count} schemes").format(count=len(found)), *not_enumerated(types))
+    )
+
+
+def not_enumerated(types: Iterable[str]) -> Iterable[str]:
+    """A sentence about the groups that are missing where a class higher than II was requested."""
+    if any(TYPES[name].grade > 2 for name in types):
+        yield _(
+            "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
+            "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
+        )
+
+
+def _pairs(scheme: Scheme, kind: str) -> str:
+    return " ".join(f"{i}-{j}" for i, j, this in scheme.joints if this == kind)
+
+
+def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> Table:
+    """How many chains there are of each assortment of links."""
+    counts = _assortments(found)
+    most = max((len(assortment) for assortment in counts), default=0)
+    names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
+    columns = [Column(name, [a[k] if k < len(a) else 0 for a in counts], NUMBER) for k, name in enumerate(names)]
+    columns.append(Column(N_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
+    columns.append(Column(N_("of them fractionated"), [parts for __, parts in counts.values()], NUMBER))
+    title = _("Kinematic chains of {links} links, W = {mobility}: {count}").format(
+        links=links, mobility=mobility, count=len(found)
+    )
+    note = _("Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its links.")
+    return Table("chains", title, tuple(columns), notes=(note,))
+
+
+def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple[int, int]]:
+    """Chains of each assortment, and the fractionated ones among them."""
+    found = list(found)
+    parts = Counter(chain.assortment for chain in found if chain.fractionated)
+    return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in found).items()}
+
+
+def schemes_json(
+    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+) -> dict[str, Any]:
+    """Everything about the schemes as plain data."""
+    rows = []
+    for k, scheme in enumerate(found):
+        row: dict[str, Any] = {
+            "number": k + 1,
+            "formula": scheme.formula,
+            "mobility": scheme.mobility,
+            "groups": [
+                {"class": ROMAN[g.type.grade], "type": g.type.name, "links": list(g.links),
+                 "attached_to": [known for known, *__ in g.outer]}
+                for g in scheme.groups
+            ],
+            "pairs": [{"links": [i, j], "kind": kind} for i, j, kind in scheme.joints],
+        }  # fmt: skip
+        if written is not None:
+            file, solved = written[k] or (None, False)
+            row |= {"file": file and str(file), "solved": solved}
+        rows.append(row)
+    return {
+        "links": links,
+        "mobility": mobility,
+        "count": len(found),
+        "schemes": rows,
+        "not_enumerated": list(not_enumerated(types)),
+    }
+
+
+def chains_json(found: Sequence[KinematicChain], links: int, mobility: int) -> dict[str, Any]:
+    """Everything about the chains as plain data; links of a chain are numbered from 0."""
+    return {
+        "links": links,
+        "mobility": mobility,
+        "count": len(found),
+        "fractionated": sum(chain.fractionated for chain in found),
+        "assortments": [
+            {"links_with_2_3_pairs_and_more": list(key), "count": count, "fractionated": parts}
+            for key, (count, parts) in _assortments(found).items()
+        ],
+        "chains": [{"pairs": [list(pair) for pair in c.pairs], "fractionated": c.fractionated} for c in found],
+    }

@@ -1,0 +1,156 @@
+"""Tables for spreadsheets of people: rounded as on a terminal, in the language that is spoken.
+
+A workbook has a sheet a table; CSV has semicolons and decimal commas, as spreadsheets of most of Europe read it. What
+is computed with further stands in result.json and in the other CSV files, with all digits that are true.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from io import BytesIO
+from typing import Any, Final, Literal
+
+from tmm_cli.language import _, half_up, typeset
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.reports.table import Column, Table, csv_cell
+from tmm_cli.reports.terminal import figures
+
+INSTALL: Final = "pip install 'tmm-cli[excel]'"
+WRITTEN: Final = datetime(2000, 1, 1)  # the same tables give the same bytes
+PLAIN: Final = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False,
+                "strings_to_numbers": False}  # fmt: skip
+
+
+def empty_workbook(file: str, stream: BytesIO, options: Mapping[str, bool] = PLAIN, allowed: str = INSTALL) -> Any:
+    """One of xlsxwriter that is to be written into a stream; file: what a refusal calls it. Raises ProblemError."""
+    try:
+        from xlsxwriter import Workbook
+    except ImportError:
+        raise ProblemError(
+            _("{file} is written by xlsxwriter, which is not installed").format(file=file), allowed=allowed
+        ) from None
+    return Workbook(stream, dict(options))
+
+
+Kind = Literal["xlsx", "csv-local"]
+Cell = str | float | None
+Files = Iterator[tuple[str, Iterable[str | bytes]]]
+
+NUMBER = re.compile(r"-?(0|[1-9]\d{0,14})([.,]\d+)?(e[+-]?\d{1,2})?")  # in a column of words: a position, a value
+MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
+WIDTHS = 8.0, 60.0  # of columns, letters: at least, at most
+HEAD_HEIGHT = 32  # points: two lines
+LONGEST_NAME, FORBIDDEN = 31, re.compile(r"[\[\]:*?/\\']")  # of sheets
+
+
+def files(kind: Kind, tables: Iterable[Table], units: UnitSystem) -> Files:
+    """By their names, piece by piece. Raises ProblemError."""
+    if kind == "xlsx":
+        yield "tables.xlsx", (workbook(tables, units),)
+        return
+    for table in tables:
+        yield f"{table.name}-local.csv", local_csv(table, units)
+
+
+def cells(column: Column, units: UnitSystem) -> list[Cell]:
+    """Numbers with the figures that a terminal prints, words; None where there is nothing."""
+    if column.dimension is None:
+        return [_of_word(str(value)) for value in column.values]
+    values = column.numbers(units).tolist()
+    return [_rounded(value, n) for value, n in zip(values, figures(column, units).tolist(), strict=True)]
+
+
+def _of_word(text: str) -> Cell:
+    if not text:
+        return None
+    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else typeset(text)
+
+
+def _rounded(value: float, count: int) -> float | None:
+    if count < 0:
+        return None
+    return float(f"{half_up(value):.{count}g}") + 0.0 if count else 0.0
+
+
+def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
+    """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
+    yield "\ufeff" + ";".join(csv_cell(typeset(on_paper(column.heading(units)))) for column in table.columns) + "\n"
+    for row in zip(*(cells(column, units) for column in table.columns), strict=True):
+        yield ";".join(map(_text, row)) + "\n"
+
+
+def _text(cell: Cell) -> str:
+    if isinstance(cell, float):
+        return f"{cell:.15g}".replace(".", ",")
+    return "" if cell is None else csv_cell(cell)
+
+
+def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
+    """Sheets with headings that stay in sight. Texts are written as texts: nothing in it is a formula or a link."""
+    stream = io.BytesIO()
+    with empty_workbook("tables.xlsx", stream) as book:
+        book.set_properties({"created": WRITTEN})
+        formats = {
+            "title": book.add_format({"bold": True, "font_size": 12}),
+            "words": book.add_format({"align": "left", "indent": 1}),
+            "head": book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top", "indent": 1}),
+            "head of numbers": book.add_format(
+                {"bold": True, "bottom": 1, "text_wrap": True, "valign": "top", "align": "right"}
+            ),
+            "note": book.add_format({"italic": True, "font_color": "#555555"}),
+        }
+        taken: set[str] = set()
+        for table in tables:
+            _sheet(book.add_worksheet(_name(table.title, taken)), table, units, formats)
+    return stream.getvalue()
+
+
+def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
+    """Title, headings, rows, notes."""
+    heads = [typeset(on_paper(column.heading(units))) for column in table.columns]
+    columns = [cells(column, units)[:MOST_ROWS] for column in table.columns]
+    for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
+        sheet.set_column(k, k, _width(head, column))
+    sheet.freeze_panes(2, 1)
+    sheet.set_landscape()
+    sheet.set_paper(9)  # A4
+    sheet.fit_to_pages(1, 0)
+    sheet.repeat_rows(1)
+    sheet.write_string(0, 0, table.title, formats["title"])
+    sheet.set_row(1, HEAD_HEIGHT)
+    words = [column.dimension is None for column in table.columns]
+    for k, head in enumerate(heads):
+        sheet.write_string(1, k, head, formats["head" if words[k] else "head of numbers"])
+    for n, row in enumerate(zip(*columns, strict=True), 2):
+        for k, cell in enumerate(row):
+            if isinstance(cell, float):
+                sheet.write_number(n, k, cell, formats["words"] if words[k] else None)
+            elif cell is not None:
+                sheet.write_string(n, k, cell, formats["words"])
+    for n, note in enumerate(table.notes, 3 + min(table.rows, MOST_ROWS)):
+        sheet.write_string(n, 0, typeset(note), formats["note"])
+
+
+def _width(head: str, column: Sequence[Cell]) -> float:
+    """Room for the longest word of the heading, which may be broken, and for every cell."""
+    longest = max((len(_text(cell)) for cell in column), default=0)
+    word = max(map(len, head.split()), default=0)
+    least, most = WIDTHS
+    return min(max(least, longest + 3, word + 3, len(head) / 1.6), most)
+
+
+def _name(title: str, taken: set[str]) -> str:
+    """A name that a sheet may have, and no other one has."""
+    name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
+    if len(name) > LONGEST_NAME:
+        name = name[: LONGEST_NAME - 4].rpartition(" ")[0] or name[: LONGEST_NAME - 4]
+        name = re.sub(r"( \w{1,3})+$", "", name)  # not "Balance of powers and"
+    name = name.rstrip(",;. ") or "-"
+    names = (name if n == 1 else f"{name} {n}" for n in range(1, len(taken) + 2))
+    found = next(one for one in names if one.casefold() not in taken)
+    taken.add(found.casefold())
+    return found

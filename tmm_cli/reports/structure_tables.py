@@ -1,0 +1,291 @@
+"""Structure: mobility, links, pairs, Assur groups."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+import numpy as np
+
+from tmm_cli.language import N_, _, printed
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
+from tmm_cli.mechanics.structure.naming import basic_schemes, is_parallelogram_coupler, link_motion, six_bar_schemes
+from tmm_cli.reports.table import Table, table_of_words
+
+PLACES, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad
+ROLES = {
+    "crank": N_("crank"),
+    "rocker": N_("rocker"),
+    "coupler": N_("coupler"),
+    "slider": N_("slider"),
+    "stone": N_("stone"),
+    "slotted link": N_("slotted link"),
+    "rod": N_("rod"),
+    "rocking slider": N_("rocking slider"),
+    "wheel": N_("toothed wheel"),
+    "planet": N_("planet"),
+    "carrier": N_("carrier"),
+    "rack": N_("rack"),
+    "cam": N_("cam"),
+    "follower": N_("follower"),
+    "cylinder": N_("cylinder"),
+    "piston": N_("piston"),
+}
+COMMON = {
+    *ROLES.values(),
+    N_("connecting rod"),
+    N_("crankshaft"),
+    N_("lever"),
+    N_("piston rod"),
+    N_("ram"),
+    N_("wheel"),
+}  # names that files give to links and that every language has
+PAIRS = {
+    "R": N_("turning (R)"),
+    "P": N_("sliding (P)"),
+    "G": N_("toothed wheels (G)"),
+    "K": N_("wheel and rack (K)"),
+    "C": N_("cam and follower (C)"),
+}
+HIGHER = {
+    "G": N_("{count} of toothed wheels"),
+    "K": N_("{count} of wheel and rack"),
+    "C": N_("{count} of cam and follower"),
+}
+CLASSES = {
+    "open": N_("open"),
+    "closed": N_("closed"),
+    "elementary": N_("elementary: the driver alone"),
+    "simple": N_("simple: the driver and one group"),
+    "complex": N_("complex: the driver and several groups"),
+    "same type": N_("of the same type"),
+    "several types": N_("of several types"),
+    "combined": N_("combined: some groups alike, others not"),
+}
+SIX_BARS = {
+    "Watt I": N_("Watt I"),
+    "Watt II": N_("Watt II"),
+    "Stephenson I": N_("Stephenson I"),
+    "Stephenson II": N_("Stephenson II"),
+    "Stephenson III": N_("Stephenson III"),
+}
+SCHEMES = {
+    "hinged four-bar": N_("hinged four-bar"),
+    "crank-slider": N_("crank-slider"),
+    "slotted-lever": N_("slotted-lever"),
+    "sine": N_("sine (Scotch yoke)"),
+    "tangent": N_("tangent"),
+    "double slotted-link": N_("double slotted-link (Oldham)"),
+    "double-slider": N_("double-slider (elliptic trammel)"),
+}
+
+
+def structure_tables(results: Results) -> Iterable[Table]:
+    """Four small tables."""
+    structure, linkage = results.structure, results.linkage
+    yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(structure))
+    links, roles = [linkage.links[name] for name in structure.links], results.roles
+    note = _("A crank is told from a rocker by moving the linkage.")
+    yield table_of_words(
+        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points"), _("motion")),
+        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(results, x.name))
+         for x in links],
+        (note,) if results.motion is None and results.mechanism.turned else (),
+    )  # fmt: skip
+    yield table_of_words(
+        "pairs", _("Kinematic pairs"),
+        (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
+        [(p.name, f"{printed(p.i)} - {printed(p.j)}", _(PAIRS[p.kind]),
+          _("on the frame") if FRAME in (p.i, p.j) else _("between moving links"),
+          str(p.freedoms), str(p.pair_class), p.code) for p in structure.pairs],
+    )  # fmt: skip
+    yield table_of_words(
+        "groups", _("Assur groups, in solving order"),
+        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"),
+         _("type number"), _("letters")),
+        [(", ".join(map("+".join, g.bodies)), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
+          ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in g.outer), counted_mobility(g.count),
+          str(g.type_number or ""), g.letters) for g in structure.groups],
+    )  # fmt: skip
+
+
+def mobility_with_rollers(structure: Structure) -> str:
+    """3*5 - 2*6 - 1 = 2: rollers counted as links, each hinged to its follower, and the local freedoms they add."""
+    rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
+    n, higher = len(structure.links) + len(rollers), structure.higher
+    mobility = counted_mobility((n, len(structure.pairs) - higher + len(rollers), higher))
+    text = _("{mobility}, of which Wm = {local} is local: the turning of rollers ({rollers}) moves nothing else")
+    return text.format(mobility=mobility, local=len(rollers), rollers=", ".join(rollers))
+
+
+def left_out(structure: Structure) -> Iterable[str]:
+    """What the structural report leaves out or counts as one, with the redundant constraints q that it adds."""
+    for rigid in structure.reduction.rigid:
+        links = ", ".join(link for link in rigid.links if link != FRAME)
+        if FRAME in rigid.links:
+            text = _("rigid to the frame, and part of it: {links}")
+            if rigid.constraints:
+                text = _("rigid to the frame, and part of it: {links}, adds q = {q}")
+        else:
+            text = _("links {links} are rigid to one another and count as one")
+            if rigid.constraints:
+                text = _("links {links} are rigid to one another and count as one, add q = {q}")
+        yield text.format(links=links, q=rigid.constraints)
+    for link in structure.reduction.links:
+        text = _("link {links} is redundant, adds q = {q}")
+        if len(link.links) > 1:
+            text = _("links {links} are redundant, add q = {q}")
+        yield text.format(links=", ".join(link.links), q=link.constraints)
+    for pair in structure.reduction.pairs:
+        text = _("pair {pair} is redundant, adds q = {q}")
+        if pair.left:
+            text = _("pair {pair} counts as a higher pair: one of its two constraints is redundant, adds q = {q}")
+        yield text.format(pair=pair.pair, q=pair.constraints)
+
+
+def indeterminate(structure: Structure) -> Iterable[str]:
+    """What redundant constraints do to reactions: nothing to the balancing load."""
+    among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
+    if among:
+        yield _(
+            "Redundant constraints make the reactions of links {links} with one another statically indeterminate: the "
+            "least ones are given. The balancing load is exact."
+        ).format(links=", ".join(among))
+
+
+def counted_mobility(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 = 1: Chebyshev's formula with its numbers."""
+    n, lower, higher = count
+    held = f" - {higher}" if higher else ""
+    return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
+
+
+def counted_by_classes(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 - 0 = 1: 3n - 2 p5 - p4 with its numbers, from n, lower and higher pairs."""
+    n, lower, higher = count
+    return f"3*{n} - 2*{lower} - {higher} = {3 * n - 2 * lower - higher}"
+
+
+def counted_generally(count: tuple[int, int, int]) -> str:
+    """3*3 - 2*4 - 1*0 = 1: the generalised formula with H = 3 motions of a free link, so H - 1 = 2 and H - 2 = 1."""
+    n, lower, higher = count
+    return f"3*{n} - 2*{lower} - 1*{higher} = {3 * n - 2 * lower - higher}"
+
+
+def counted_with_replacements(count: tuple[int, int, int]) -> str:
+    """3*5 - 2*7 = 1: the mobility after each higher pair is replaced by a link with two revolute pairs."""
+    n, lower, higher = count
+    return counted_mobility((n + higher, lower + 2 * higher, 0))
+
+
+def motion_of_link(results: Results, name: str) -> str:
+    """Return the motion of a link relative to the frame: rotation, translation or plane motion.
+
+    Lengths alone do not distinguish a parallelogram from an antiparallelogram, so its coupler is moved as well.
+    """
+    motion = link_motion(results.linkage, name)
+    if motion == "plane motion" and is_parallelogram_coupler(results.linkage, name) and _keeps_direction(results, name):
+        return "translation"
+    return motion
+
+
+def motion_in_words(results: Results, name: str) -> str:
+    """The motion of a link relative to the frame, with its centre or its guide."""
+    linkage = results.linkage
+    motion = motion_of_link(results, name)
+    if motion == "rotation":
+        return _("turns about {point}").format(point=linkage.shared(FRAME, name))
+    guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
+    if guides:
+        return _("slides along guide {guide}").format(guide=guides[0])
+    return _("translation") if motion == "translation" else _("plane motion")
+
+
+def _keeps_direction(results: Results, name: str) -> bool:
+    """Whether a link has one direction at places over the driver's range, as the coupler of a parallelogram has."""
+    reach = results.driver_range
+    if reach is None:
+        return False
+    motion = at_positions(results, np.linspace(reach.start, reach.end, PLACES), 0)
+    turned = np.angle(motion.poses[name].z / motion.poses[name].z[motion.placed][:1])[motion.placed]
+    return bool(turned.size) and bool(np.all(np.abs(turned) < SAME_DIRECTION))
+
+
+def schemes_in_words(structure: Structure) -> str:
+    """The basic schemes of the contours of four links, and of the whole if it is a six-bar; empty without a name."""
+    names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
+    six_bar = six_bar_schemes(structure)
+    if six_bar:
+        names.append(_("six-bar: {names}").format(names=_(" or ").join(_(SIX_BARS[scheme]) for scheme in six_bar)))
+    return ", ".join(names)
+
+
+def kind_in_words(structure: Structure) -> str:
+    """Return the kind of the chain and of the structure: closed, complex: the driver and several groups."""
+    return ", ".join(_(CLASSES[word]) for word in classification(structure))
+
+
+def contours_in_words(structure: Structure) -> str:
+    """Return K = p - n and how many of these contours only repeat another one."""
+    dependent = sum(is_dependent(contour, structure) for contour in contours(structure.pairs, structure.links))
+    if not dependent:
+        return str(structure.contours)
+    return _("{count}, of which dependent: {dependent}").format(count=structure.contours, dependent=dependent)
+
+
+def primary_mechanisms_in_words(structure: Structure) -> str:
+    """Return the primary mechanisms, and their freedoms together: each driver has one."""
+    names = ", ".join(map(structure.driver_title, structure.drivers))
+    return _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
+
+
+def called(label: str) -> str:
+    """The file's own name of a link; a usual one in the reader's language."""
+    return _(label) if label in COMMON else label
+
+
+def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
+    n, higher, w = len(structure.links), structure.higher, structure.mobility
+    lower = len(structure.pairs) - higher
+    turning = sum(p.kind == "R" for p in structure.pairs)
+    yield _("moving links n"), str(n)
+    yield (
+        _("lower pairs p1"),
+        _("{all} ({r} turning, {p} sliding)").format(all=lower, r=turning, p=lower - turning),
+    )
+    if higher:
+        kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
+        told = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER.items() if kinds[kind])
+        yield _("higher pairs p2"), f"{higher} ({told})"
+        yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
+    else:
+        yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
+    count = (n, lower, higher)
+    yield _("by classes, W = 3n - 2 p5 - p4"), counted_by_classes(count)
+    yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), counted_generally(count)
+    if higher:
+        text = _("{mobility} (each by a link with two turning pairs)")
+        yield (
+            _("W with links in place of higher pairs"),
+            text.format(mobility=counted_with_replacements(count)),
+        )
+    if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
+        yield _("W with rollers as links"), mobility_with_rollers(structure)
+    if structure.passive:
+        yield _("W in truth, by rank"), str(w + structure.redundant)
+    yield _("independent contours K = p - n"), contours_in_words(structure)
+    yield _("formula of structure"), structure.formula
+    if len(structure.drivers) > 1:
+        yield _("primary mechanisms"), primary_mechanisms_in_words(structure)
+    for sentence in left_out(structure):
+        yield "", sentence
+    if structure.reduction:
+        yield _("W of the formula of structure"), counted_mobility(structure.count)
+    yield _("chain, and kind of structure"), kind_in_words(structure)
+    yield _("class of the mechanism"), structure.roman
+    schemes = schemes_in_words(structure)
+    if schemes:
+        yield _("basic schemes"), schemes

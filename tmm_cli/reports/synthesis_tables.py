@@ -1,0 +1,158 @@
+"""Tables and JSON of a synthesis: what was asked, what was found, what is measured on the mechanism.
+
+Each is a listing (see tmm_cli.synthesis.record), of which the table and the records of result.json are written.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from tmm_cli.language import N_, _, numeral, translated
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.quantities import KINDS
+from tmm_cli.problem.record import Synthesised
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.reports.table import Column, Table, plain
+from tmm_cli.synthesis.measures import MeasuredDemand, measured_on
+from tmm_cli.synthesis.record import Kind, Listing, Value
+
+NUMERIC = (*KINDS, "share")
+ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
+DIGITS = 10  # on a terminal; files have 15
+# columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
+# what has no header is in result.json only
+VALUE = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
+MEASURED = (
+    ("quantity", N_("quantity"), "word"), ("asked", N_("by"), "by"), ("wanted", N_("wanted"), "mixed"),
+    ("measured", N_("measured"), "mixed"), ("kind", N_("unit"), "unit"),
+    ("difference", N_("relative difference"), "share"), ("open", "", "share"), ("met", "", "by"),
+)  # fmt: skip
+
+
+def synthesis_tables(results: Results) -> Iterable[Table]:
+    """As `tmm synthesis` has them."""
+    synthesis = results.problem.synthesis
+    if synthesis is not None and results.motion is not None:
+        yield from tables_of(synthesis, measured_on(results), results.problem.units)
+
+
+def tables_of(
+    found: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
+) -> Iterable[Table]:
+    """Asked, found, measured (None: there is no linkage)."""
+    outcome = found.outcome
+    bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else None
+    title, source = (
+        _("Asked: {task}").format(task=found.task),
+        _("Source: {source}").format(source=translated(outcome.source)),
+    )
+    yield _table(_values("asked", title, outcome.asked, bounded), units, digits)
+    given = _values("found", N_("Found"), outcome.found, found.names or None)
+    yield _table(given, units, digits, (*outcome.notes, source))
+    for listing in outcome.listings:
+        yield _table(listing, units, digits)
+    if measured:
+        yield _table(_measured(measured), units, digits)
+
+
+def parameters(found: Synthesised, units: UnitSystem) -> Table:
+    """For `tmm explain`: the parameters that were found."""
+    values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
+    listing, note = _values("", N_("Parameters found by synthesis"), values, found.names or None), _("Asked: {task}")
+    return _table(listing, units, DIGITS, (note.format(task=found.task),))
+
+
+def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
+    """What is not met, and what rounding leaves open, in words."""
+    for m in measured:
+        if m.open:
+            yield _(
+                "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open"
+            ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
+        if not m.met:
+            wanted, on = (_shown(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
+            yield _("{quantity}: wanted {wanted}, measured {found}").format(
+                quantity=translated(m.demand.text), wanted=f"{wanted} {_unit(m.demand.kind, units)}".rstrip(), found=on
+            )
+
+
+def to_json(found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True) -> dict[str, Any]:
+    """Everything in SI and radians; long: tables for files too."""
+    outcome = found.outcome
+    keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
+    return {
+        "task": found.task,
+        "asked": _records(_values("asked", "", outcome.asked, keys)),
+        "found": _records(_values("found", "", outcome.found, keys)),
+        "parameters": {found.names[n]: plain(float(v.value)) for n, v in outcome.parameters.items()},
+        "tables": {listing.name: _records(listing) for listing in outcome.listings if long or not listing.long},
+        "source": outcome.source,
+        "measured": None if measured is None else _records(_measured(measured)),
+        "met": None if measured is None else all(m.met for m in measured),
+    }  # fmt: skip
+
+
+def _values(name: str, title: str, values: Sequence[Value], names: Mapping[str, str] | None) -> Listing:
+    """Quantities row by row; names: how their parameters are called; None: there are none."""
+    rows = tuple((v.text, v.value, v.kind) for v in values)
+    if names is None:
+        return Listing(name, title, VALUE, rows)
+    named = tuple((names.get(v.name), *row) for v, row in zip(values, rows, strict=True))
+    return Listing(name, title, (("name", N_("parameter"), "word"), *VALUE), named)
+
+
+def _measured(measured: Sequence[MeasuredDemand]) -> Listing:
+    rows = tuple(
+        (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
+        for m in measured
+    )
+    return Listing("measured", N_("What was asked and foretold, measured on the mechanism"), MEASURED, rows)
+
+
+def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
+    columns = []
+    for k, (__, header, kind) in enumerate(listing.columns):
+        values, dimension = [row[k] for row in listing.rows], None
+        if kind in KINDS:
+            dimension = KINDS[kind].dimension
+        elif kind == "mixed":
+            values = [_shown(v, own, units, digits) for v, own in zip(values, _kinds(listing), strict=True)]
+        elif kind == "unit":
+            values = [_unit(own, units) for own in values]
+        elif kind == "by":
+            values = [_("asked") if value else _("foretold") for value in values]
+        elif kind == "share":
+            values = [numeral(0.0 if abs(value) < ROUNDING else value, ".2g") for value in values]
+        else:
+            values = ["" if v is None else translated(v) for v in values]
+        columns += [Column(header, values, dimension)] if header else []
+    name = f"synthesis-{listing.name}".rstrip("-")
+    return Table(name, translated(listing.title), tuple(columns), listing.long, tuple(map(translated, notes)))
+
+
+def _records(listing: Listing) -> list[dict[str, Any]]:
+    """Rows by the names of their columns, SI and radians."""
+    return [
+        {name: plain(float(value)) if value is not None and (own if kind == "mixed" else kind) in NUMERIC else value
+         for (name, __, kind), value in zip(listing.columns, row, strict=True)}
+        for row, own in zip(listing.rows, _kinds(listing), strict=True)
+    ]  # fmt: skip
+
+
+def _kinds(listing: Listing) -> list[Kind]:
+    """The kind of each row's numbers, where they are of several kinds."""
+    unit = next((k for k, (*__, kind) in enumerate(listing.columns) if kind == "unit"), None)
+    return ["" if unit is None else row[unit] for row in listing.rows]
+
+
+def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
+    if value is None or kind == "word":
+        return "" if value is None else translated(value)
+    number = float(value)
+    return _("none") if math.isnan(number) else numeral(units.from_si(number, KINDS[kind].dimension), f".{digits}g")
+
+
+def _unit(kind: Kind, units: UnitSystem) -> str:
+    return units.spelt(KINDS[kind].dimension) if kind in KINDS else ""

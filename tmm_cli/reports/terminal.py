@@ -1,0 +1,106 @@
+"""Tables on a terminal, in the units of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.table import Table as RichTable
+from rich.text import Text
+
+from tmm_cli.language import N_, _, numeral, typeset
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.reports.table import Column, Table
+
+MOST_ROWS = 120  # on a terminal; files have them all
+GAP = 3  # between columns
+ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
+MORE_ROWS = N_("... and {rows} rows more: -o DIR writes them all, --json too")
+MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
+
+
+def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
+    """Words with printed signs, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
+    if column.dimension is None:
+        return [typeset(str(column.values[k])) for k in rows]
+    values, count = column.numbers(units), figures(column, units)
+    return [_number(float(values[k]), int(count[k])) for k in rows]
+
+
+def figures(column: Column, units: UnitSystem) -> Any:
+    """How many figures of each number are worth printing: 0 of what is only rounding, -1 where there is none."""
+    values, found = column.numbers(units), column.true_figures(units)
+    if found is None:
+        nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
+        found = np.where(np.abs(values) <= nothing, 0, 17)
+    return np.where(np.isfinite(values), np.minimum(found, column.digits), -1)
+
+
+def _number(value: float, count: int) -> str:
+    if count < 0:
+        return "-"
+    return numeral(value, f".{count}g") if count else "0"
+
+
+def show(
+    table: Table, units: UnitSystem, console: Console, rows: set[int] | None = None, *,
+    most: int | None = MOST_ROWS, more: str = MORE_ROWS,
+) -> None:  # fmt: skip
+    """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts.
+
+    more: the word that says how many rows beyond `most` (None: no bound) are left out, and where they all are.
+    """
+    chosen = [k for k in range(table.rows) if rows is None or k in rows]
+    printed = chosen[:most]
+    texts = [[typeset(column.heading(units)), *cells(column, units, printed)] for column in table.columns]
+    words = [column.dimension is None for column in table.columns]
+    least = [_least(*column) for column in zip(texts, words, strict=True)]
+    for number, part in enumerate(_parts(words, least, console.width)):
+        title = table.title if number == 0 else _("{title} (continued)").format(title=table.title)
+        rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+        wide = [max(map(len, texts[k])) for k in part]
+        for k, width in zip(part, _widths(wide, [least[k] for k in part], console.width), strict=True):
+            rich_table.add_column(Text(texts[k][0]), justify="left" if words[k] else "right", width=width)
+        for row in range(1, len(printed) + 1):
+            rich_table.add_row(*(Text(texts[k][row]) for k in part))
+        console.print(rich_table)
+    if len(chosen) > len(printed):
+        console.print(Text(_(more).format(rows=len(chosen) - len(printed)), style="dim"))
+    for note in table.notes:
+        console.print(Text(typeset(note), style="dim"))
+
+
+def _least(texts: Sequence[str], words: bool) -> int:
+    """The least width of a column: headings and words may be broken between words, numbers may not."""
+    parts = [*texts[0].split(), *(part for text in texts[1:] for part in (text.split() if words else [text]))]
+    return max(map(len, parts), default=0)
+
+
+def _widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
+    """Widths of columns beside each other: as their texts want, less of the widest where they do not fit."""
+    while sum(wide) > width + 1 - GAP * len(wide):
+        slack = [k for k in range(len(wide)) if wide[k] > least[k]]
+        if not slack:
+            break
+        wide[max(slack, key=lambda k: wide[k])] -= 1
+    return wide
+
+
+def _parts(words: Sequence[bool], least: Sequence[int], width: int) -> list[list[int]]:
+    """Columns that fit beside each other; what tells the rows apart stands in every part."""
+    count = len(words)
+    keys = next((k for k in range(count) if not words[k] and k != 1), count)
+    wide = [w + GAP for w in least]
+    if keys == count:  # words only: the first column tells the rows apart
+        if sum(wide) <= width + 1:
+            return [list(range(count))]
+        keys = 1
+    parts: list[list[int]] = []
+    for k in range(keys, count):
+        if not parts or sum(wide[i] for i in parts[-1]) + wide[k] > width + 1:
+            parts.append(list(range(keys)))
+        parts[-1].append(k)
+    return parts

@@ -1,0 +1,439 @@
+"""What was understood of a problem before anything is computed, and what in it is probably a slip."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.linkage import FRAME, Driver, Link, SpeedTable
+from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics.tolerances import PARALLEL
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    PRESSURE,
+    SPEED,
+    Dimension,
+)
+from tmm_cli.problem.errors import Path, Tree, path_text
+from tmm_cli.problem.reader import unused
+from tmm_cli.problem.record import Problem, TaskProblem
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.reports.table import with_unit
+
+SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
+FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
+SWINGS = 0.02  # of the range of a table: a smooth curve that goes beyond it by more is hardly meant
+BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
+SLENDER = 1 / 50  # of a link: a uniform rod has a radius of gyration of 0.29
+HEAVY_CRANK = 10  # largest links: cheeks and a flywheel make the radius of gyration of a crank larger than the crank
+FAR = 2  # largest links: a mechanism is hardly longer
+STRONG = 1e9  # Pa: no hydraulic or gas drive has such a pressure
+UNIFORM = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
+SAME_SPEED = 0.01  # relative: two speeds of one shaft that differ by less differ by rounding on paper
+ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of drivers and of a run
+    ("dynamics", "mean speed"), ("dynamics", "mean_speed"), ("dynamics", "motor", "free"),
+    ("dynamics", "motor", "synchronous"), ("dynamics", "motor", "speed"), ("synthesis", "crank_speed"),
+)  # fmt: skip
+
+
+def understood(task: Problem | TaskProblem) -> Iterable[str]:
+    """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
+    yield bare_units(task.units)
+    problem = task.whole
+    if problem.source is not None and problem.source.given:
+        yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
+    linkage = problem.linkage
+    for driver in linkage.drivers:
+        yield _("driver: link {link}, {motion}").format(link=driver.link, motion=motion(driver))
+    sizes = "; ".join(_ranges(problem))
+    yield (
+        _("sizes: {sizes}; {gravity}").format(sizes=sizes, gravity=gravity(linkage.gravity))
+        if sizes
+        else gravity(linkage.gravity)
+    )
+
+
+def _ranges(problem: Problem) -> Iterator[str]:
+    """From the least to the largest length, mass, force, moment and pressure, with the names of what has them."""
+    linkage = problem.linkage
+    spans = sorted((span, points) for span, points in _spans(problem).values())
+    if spans:
+        (small, short), (large, long) = spans[0], spans[-1]
+        yield _("from {small} ({short}) to {large} ({long})").format(
+            small=with_unit(problem.units, small, LENGTH), short=short,
+            large=with_unit(problem.units, large, LENGTH), long=long,
+        )  # fmt: skip
+    largest = [(load, max(map(abs, load.table.values)) if load.table is not None else 1.0) for load in linkage.loads]
+    every = (
+        (MASS, _("masses"), [(link.mass, name) for name, link in linkage.links.items()]),
+        (FORCE, _("forces"), [(abs(load.force) * size, load.name) for load, size in largest]),
+        (MOMENT, _("moments"), [(abs(load.moment) * size, load.name) for load, size in largest]),
+        (PRESSURE, _("pressures"), [(pressure, str(path[1])) for path, pressure in _pressures(problem)]),
+    )
+    for dimension, title, values in every:
+        present = sorted((float(rounded(value)), name) for value, name in values if value)
+        if present:
+            yield f"{title} {_range(problem, present, dimension)}"
+
+
+def _range(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
+    """The first and the last of the values, which are sorted, with their names; all in one if there is one alone."""
+    sizes = dict.fromkeys((values[0], values[-1]))
+    ends = [f"{with_unit(problem.units, size, dimension)} ({name})" for size, name in sizes]
+    if len(ends) == 1 or values[0][0] == values[-1][0]:
+        return ends[0]
+    return _("from {least} to {largest}").format(least=ends[0], largest=ends[1])
+
+
+def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
+    """The largest pressure (Pa) of each load by a pressure, and of a piston that drives, with its place in the file."""
+    if problem.source is None or problem.values is None:
+        return
+    data = problem.source.data
+    blocks: list[tuple[Path, Any]] = [(("loads", name), load) for name, load in (data.get("loads") or {}).items()]
+    blocks = [((*path, "pressure"), load["pressure"]) for path, load in blocks if load.get("pressure")]
+    drive = ((data.get("dynamics") or {}).get("run") or {}).get("drive")
+    if isinstance(drive, dict) and drive.get("area") is not None:
+        blocks.append((("dynamics", "run", "drive"), drive))
+    for path, block in blocks:
+        rows = [row[1] for row in block["table"]] if block.get("table") else [block["size"]]
+        yield path, max(abs(float(rounded(problem.values.number(row, PRESSURE, path)))) for row in rows)
+
+
+def bare_units(units: UnitSystem) -> str:
+    """What numbers without a unit mean."""
+    names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
+    return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
+        units=", ".join(names), angular=units.spelt(ANGULAR_SPEED), linear=units.spelt(SPEED)
+    )
+
+
+def motion(driver: Driver) -> str:
+    """`70 rad/s = 668 rpm, counterclockwise`."""
+    if driver.kind == "slide":
+        text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
+        return text.format(speed=_short(driver.rate))
+    if driver.law is not None:
+        text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
+        if driver.sense < 0:
+            text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, clockwise; {between}")
+        speeds = np.sqrt([float(rounded(square)) for square in driver.law.squares.values])
+        low, high = float(speeds.min()), float(speeds.max())
+        return text.format(
+            low=_short(low), high=_short(high), least=_short(low * 30 / math.pi), most=_short(high * 30 / math.pi),
+            between=between_rows(driver.law),
+        )  # fmt: skip
+    text = _("{speed} rad/s = {turns} rpm, counterclockwise")
+    if driver.sense < 0:
+        text = _("{speed} rad/s = {turns} rpm, clockwise")
+    return text.format(speed=_short(driver.rate), turns=_short(driver.rate * 30 / math.pi))
+
+
+def between_rows(law: SpeedTable) -> str:
+    """What is between rows of a table of speeds, and where accelerations are from."""
+    if law.squares.between == "linear":
+        text = _("constant acceleration from row to row")
+    elif law.squares.closed:
+        text = _("a cubic spline of squares of speeds that closes, accelerations from its slope")
+    else:
+        text = _("a natural cubic spline of squares of speeds, accelerations from its slope")
+    if law.accelerations is not None:
+        text = _("a spline of squares of speeds; accelerations by a table of their own")
+        if law.squares.between == "linear":
+            text = _("squares of speeds linear from row to row; accelerations by a table of their own")
+    return text
+
+
+def gravity(pull: complex) -> str:
+    """Its size and direction."""
+    if not pull:
+        return _("no gravity")
+    if pull.real == 0 > pull.imag:
+        return _("gravity {size} m/s^2 downwards").format(size=numeral(-pull.imag, ".6g"))
+    return _("gravity [{x}, {y}] m/s^2").format(x=numeral(pull.real, ".6g"), y=numeral(pull.imag, ".6g"))
+
+
+def doubts(problem: Problem) -> Iterable[str]:
+    """What is allowed and computed, and yet is probably not what was meant."""
+    data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
+    if problem.source is not None:
+        yield from without_effect(problem.source, [path[1] for path in problem.source.given])
+    yield from _bare_speed(problem, data)
+    if problem.values is not None:
+        yield from bare_speeds(data, problem.values, problem.linkage.drivers)
+        yield from _speeds_apart(problem, data)
+        yield from _fluctuation(data, problem.values)
+    for driver in problem.linkage.drivers:
+        if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
+            yield _("the driver's speed, {motion}, is more than machines have: is the unit right?").format(
+                motion=motion(driver)
+            )
+    yield from _sizes(problem)
+    yield from _masses(problem, data)
+    yield from _far_places(problem)
+    yield from _high_pressures(problem)
+    yield from _sliders_twice(problem)
+    yield from _smooth_tables(problem)
+    yield from _several_strokes(problem)
+    positions = data.get("positions", {})
+    if "at" in positions and "count" in positions:
+        yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
+
+
+def without_effect(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
+    """That parameters which are given other values beside the file change nothing."""
+    for name in unused(tree, names):
+        yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
+
+
+def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+    """A speed without a unit is in rad/s or m/s also where the file counts in degrees or millimetres."""
+    driver, units = problem.linkage.driver, problem.units
+    named = {key.replace("_", " ") for key in data.get("units", {})}
+    if not problem.bare_speed or not driver.rate:
+        return
+    fastest = driver.rate if driver.law is None else math.sqrt(max(driver.law.squares.values))  # that stands in a row
+    if driver.kind == "turn" and units.factor(ANGLE) != 1 and "angular speed" not in named:
+        yield _(
+            "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
+            "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
+        ).format(motion=motion(driver), angle=units.spelt(ANGLE), speed=numeral(fastest, ".6g"))
+    if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
+        yield _(
+            "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
+            "write `{speed} m/s`, or `{speed} {length}/s` if that is meant"
+        ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
+
+
+def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
+    """Speeds without a unit beside that of the first driver, in a file that counts in degrees or millimetres.
+
+    Args:
+        data: the file as it is read.
+        values: how its values are read.
+        drivers: those of its linkage, if it has one.
+    """
+    units, named = values.units, {key.replace("_", " ") for key in data.get("units") or {}}
+    slides = bool(drivers) and drivers[0].kind == "slide"
+    speeds: list[tuple[Path, bool]] = [(path, False) for path in ANGULAR_SPEEDS]
+    speeds += [(("dynamics", "run", "speed"), slides)]
+    speeds += [(("driver", k, "speed"), driver.kind == "slide") for k, driver in enumerate(drivers) if k]
+    for path, linear in speeds:
+        base, dimension, kind = (LENGTH, SPEED, "speed") if linear else (ANGLE, ANGULAR_SPEED, "angular speed")
+        value: Any = data
+        for key in path:
+            present = isinstance(value, list) or (isinstance(value, dict) and key in value)
+            value = value[key] if present else None
+        scalar = value is not None and not isinstance(value, dict)
+        if not scalar or units.factor(base) == 1 or kind in named or not values.bare(value):
+            continue
+        speed = float(rounded(values.number(value, dimension, path)))
+        if not speed:  # rest is rest in any unit
+            continue
+        text = _(
+            "{key} has no unit and is taken as {speed} rad/s = {turns} rpm, though angles are in {unit}: "
+            "write `{written} rad/s`, or `{written} rpm` if turns a minute are meant"
+        )
+        if linear:
+            text = _(
+                "{key} has no unit and is taken as {speed} m/s, though lengths are in {unit}: "
+                "write `{written} m/s`, or `{written} {unit}/s` if that is meant"
+            )
+        yield text.format(
+            key=path_text(path), speed=_short(speed), turns=_short(speed * 30 / math.pi),
+            unit=units.spelt(base), written=numeral(speed, ".6g"),
+        )  # fmt: skip
+
+
+def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
+    """A mean speed of the law of motion beside another speed of the driver."""
+    task, speed = problem.dynamics, float(rounded(problem.linkage.driver.rate))
+    mean = getattr(task, "mean", None)
+    if mean is None or not speed or not {"mean speed", "mean_speed"} & set(data.get("dynamics") or {}):
+        return
+    mean = float(rounded(mean))
+    if abs(mean / speed - 1) > SAME_SPEED:
+        yield _(
+            "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
+            "{speed_rpm} rpm: the law of motion takes the mean speed; write one of them, or both the same"
+        ).format(
+            mean=_short(mean), mean_rpm=_short(mean * 30 / math.pi), speed=_short(speed),
+            speed_rpm=_short(speed * 30 / math.pi),
+        )  # fmt: skip
+
+
+def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
+    """A coefficient of fluctuation that is written in per cent twice over."""
+    written = (data.get("dynamics") or {}).get("delta")
+    if written is None:
+        return
+    delta = float(rounded(values.number(written, NUMBER, ("dynamics", "delta"))))
+    if delta < UNIFORM:
+        yield _(
+            "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
+            "`{per_cent} %`, if that is meant"
+        ).format(
+            written=written, parts=f"{1 / delta:.0f}", hundredfold=numeral(100 * delta, ".6g"),
+            per_cent=numeral(1e4 * delta, ".6g"),
+        )  # fmt: skip
+
+
+def _far_places(problem: Problem) -> Iterator[str]:
+    """Centres of mass, points of load and ends of springs farther from their link than the mechanism is long."""
+    linkage = problem.linkage
+    size, longest = max(_spans(problem).values(), default=(math.inf, ""))
+    places: list[tuple[str, str, complex]] = [
+        (f"masses.{name}", name, link.centre) for name, link in linkage.links.items() if link.mass
+    ]
+    places += [(f"loads.{load.name}", load.link, load.at) for load in linkage.loads if load.force]
+    for spring in (spring for spring in linkage.springs if not spring.turns):
+        places += [(f"springs.{spring.name}", spring.i, spring.at_i), (f"springs.{spring.name}", spring.j, spring.at_j)]
+    for key, link, at in places:
+        distances = [float(abs(point - at)) for point in linkage.links[link].points.values()]
+        distance = min(distances, default=0.0)
+        if distance > FAR * size:
+            sentence = _(
+                "{key}: this place is {distance} from every point of link {link}, farther than the mechanism is long "
+                "(its largest link, {points}, is {size}): is the unit right? a bare length is in {unit}"
+            ).format(
+                key=key, distance=with_unit(problem.units, distance, LENGTH), link=link, points=longest,
+                size=with_unit(problem.units, size, LENGTH), unit=problem.units.spelt(LENGTH),
+            )  # fmt: skip
+            names = "".join(list(linkage.links[link].points)[:2])
+            share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
+            yield share if len(distances) > 1 else sentence
+
+
+def _high_pressures(problem: Problem) -> Iterator[str]:
+    """Pressures in bare pascals, which are taken as megapascals."""
+    for path, pressure in _pressures(problem):
+        if pressure > STRONG:
+            yield _(
+                "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
+                "meant"
+            ).format(
+                key=path_text(path), pressure=with_unit(problem.units, pressure, PRESSURE),
+                number=numeral(problem.units.from_si(pressure, PRESSURE), ".6g"),
+            )  # fmt: skip
+
+
+def _sizes(problem: Problem) -> Iterable[str]:
+    for link, (span, points) in _spans(problem).items():
+        size = with_unit(problem.units, span, LENGTH)
+        if span > LARGE:
+            yield _("{points} is {size}, more than 50 m: is the unit right?").format(points=points, size=size)
+        elif span < SMALL and link != FRAME:
+            yield _("{points} is {size}, less than 5 mm: is the unit right?").format(points=points, size=size)
+
+
+def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+    """Inertias that do not fit their links, and bodies that are put in one point."""
+    linkage, spans = problem.linkage, _spans(problem)
+    largest = max((span for span, points in spans.values()), default=math.inf)
+    wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
+    cranks = {driver.link for driver in linkage.cranks if driver.kind == "turn"}
+    runners = {slide.runner for slide in linkage.slides}
+    for name, given in data.get("masses", {}).items():
+        link = linkage.links[name]
+        if not link.mass or not link.inertia:
+            continue
+        radius = math.sqrt(link.inertia / link.mass)
+        told = with_unit(problem.units, radius, LENGTH)
+        allowed = HEAVY_CRANK * largest if name in cranks else spans[name][0] if name in spans else math.inf
+        if name in spans and name not in wheels and radius > allowed:
+            yield _(
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, more than the link itself "
+                "({points}, {size}): are the units of inertia right?"
+            ).format(
+                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH)
+            )
+        elif name in spans and radius < SLENDER * spans[name][0] <= SLENDER * LARGE:
+            yield _(
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, less than 1/50 of the link ({points}, "
+                "{size}): are the units of inertia right? a uniform rod has I = {inertia}"
+            ).format(
+                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH),
+                inertia=with_unit(problem.units, link.mass * spans[name][0] ** 2 / 12, INERTIA, 3),
+            )  # fmt: skip
+        elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
+            yield _(
+                "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
+                "sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is meant"
+            ).format(link=name, point=next(iter(link.points)), radius=told)
+
+
+def _sliders_twice(problem: Problem) -> Iterator[str]:
+    """Two links that share a point and slide along one direction on the same link move as one body."""
+    linkage = problem.linkage
+    for a, b in combinations(linkage.slides, 2):
+        for base in sorted({a.carrier, a.runner} & {b.carrier, b.runner}):
+            links = [slide.runner if slide.carrier == base else slide.carrier for slide in (a, b)]
+            # a guide as the base sees it
+            angles = [slide.direction - (0.0 if slide.carrier == base else slide.turned) for slide in (a, b)]
+            points = [h.point for h in linkage.hinges if links[0] != links[1] and set(links) <= set(h.links)]
+            if points and abs(math.sin(angles[0] - angles[1])) < PARALLEL:
+                yield _(
+                    "links {a} and {b} move as one slider: both have point {point} and slide in one direction on "
+                    "{base}. Remove one of them"
+                ).format(
+                    a=links[0], b=links[1], point=points[0],
+                    base=_("the frame") if base == FRAME else _("link {link}").format(link=base),
+                )  # fmt: skip
+
+
+def _smooth_tables(problem: Problem) -> Iterable[str]:
+    """A spline may swing far beyond its rows."""
+    for load in problem.linkage.loads:
+        row, share = load.table.overshoot if load.table is not None else (0, 0.0)
+        if share > SWINGS:
+            yield _(
+                "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
+                "{share} % of their range: write `between: linear`, or give more rows there"
+            ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
+
+
+def _several_strokes(problem: Problem) -> Iterable[str]:
+    """In a cycle of several turns there are several working strokes."""
+    turns = problem.linkage.turns
+    for load in problem.linkage.loads if turns > 1 else ():
+        if load.working_stroke_only:
+            yield _(
+                "load {load} acts in every working stroke of the {turns} turns: `when: [from, to]` picks one of them"
+            ).format(load=load.name, turns=turns)
+
+
+def _spans(problem: Problem) -> dict[str, tuple[float, str]]:
+    """Of each link with several places a large distance of two points (of three points the largest), and which two."""
+    found = {}
+    for name, link in problem.linkage.links.items():
+        points = list(link.points)
+        if len(points) < 2:
+            continue
+        a = _farthest(link, points[0])
+        b = _farthest(link, a)
+        span = float(abs(link.points[a] - link.points[b]))
+        if span > 0:
+            found[name] = (span, "".join(sorted((a, b), key=points.index)))
+    return found
+
+
+def _farthest(link: Link, point: str) -> str:
+    return max(link.points, key=lambda other: float(abs(link.points[other] - link.points[point])))
+
+
+def _short(number: float) -> str:
+    """Four figures, and all those before the point of a number that people would write so."""
+    return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

@@ -1,0 +1,51 @@
+"""What the user should know besides the numbers. A warning is a function in a file here, and a name in WARNINGS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.reports import warnings_of_forces as forces
+from tmm_cli.reports import warnings_of_motion as motion
+from tmm_cli.reports import warnings_of_motion as pairs
+
+WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
+    motion.limited,
+    motion.far_from_sketch,
+    motion.dead_positions,
+    motion.unreached_positions,
+    motion.stopped_driver,
+    motion.opposite_run,
+    motion.short_drive,
+    motion.near_dead,
+    pairs.passive_pairs,
+    motion.endless,
+    pairs.left_slots,
+    pairs.pressure_angles,
+    forces.locked_positions,
+    forces.wound_springs,
+    forces.springs_of_no_length,
+    pairs.impacts,
+    forces.driving_loads,
+    forces.short_tables,
+    forces.long_tables,
+    forces.open_tables,
+    forces.without_strokes,
+    forces.unmet_demands,
+    forces.lever_apart,
+)
+IN_CHECKS = (
+    pairs.left_slots,
+    pairs.pressure_angles,
+    forces.lever_apart,
+)  # the table of checks has them with numbers
+
+
+def warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
+    """One sentence each, in the units of the file. checked: also of what the table of checks has with its number."""
+    if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
+        return
+    for warning in WARNINGS:
+        if checked or warning not in IN_CHECKS:
+            yield from warning(results)

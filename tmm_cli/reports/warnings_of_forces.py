@@ -1,0 +1,288 @@
+"""Friction that locks, springs wound too far, loads that drive, tables too short or not closed, demands, the lever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.forces.loads import (
+    Applied,
+    acts,
+    acts_always,
+    ends_with_stroke,
+    given_loads,
+    reach_of_tables,
+    table_argument,
+    twisted,
+)
+from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
+from tmm_cli.mechanics.numerics.tolerances import NO_WORK, SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
+from tmm_cli.problem.units import UnitSystem
+from tmm_cli.reports.force_tables import locked_ranges
+from tmm_cli.reports.given_loads import argument_dimension
+from tmm_cli.reports.synthesis_tables import missed
+from tmm_cli.reports.table import with_unit
+from tmm_cli.reports.warnings_of_motion import driver_place
+from tmm_cli.synthesis.measures import measured_on
+
+CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
+ENDS_MEET = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
+WORK_POSITIONS = 120  # positions a turn at which the power of a load is compared with zero
+
+
+def locked_positions(results: Results) -> Iterable[str]:
+    """Where friction locks the mechanism, also between the positions, by the pair that rubs most."""
+    ranges = locked_ranges(results)
+    if ranges:
+        yield _(
+            "the mechanism locks itself by friction {ranges}; no forces are given there. Write smaller coefficients in "
+            "friction, or let another link drive"
+        ).format(ranges="; ".join(ranges))
+
+
+def wound_springs(results: Results) -> Iterable[str]:
+    """Torsion springs that come to half a turn from their free angle."""
+    springs = [s for s in results.linkage.springs if s.turns]
+    if not springs or results.reactions is None:
+        return
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(CLOSELY * turns + 1), 0)
+    for spring in springs:
+        with np.errstate(invalid="ignore"):
+            jumps = np.flatnonzero(np.abs(np.diff(twisted(spring, motion))) > np.pi)
+        if jumps.size:
+            yield _(
+                "torsion spring {spring} is turned by more than half a turn from its free angle at "
+                "{place}: its moment jumps there, as angles are counted within half a turn"
+            ).format(spring=spring.name, place=_in_cycle(results, float(motion.q[jumps[0]])))
+
+
+def springs_of_no_length(results: Results) -> Iterable[str]:
+    """Linear springs whose ends meet within the cycle: the direction of their force reverses there."""
+    springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
+    if not springs or results.reactions is None:
+        return
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(CLOSELY * turns + 1))
+    for spring in springs:
+        apart = motion.point(spring.j, spring.at_j).x - motion.point(spring.i, spring.at_i).x
+        step = np.diff(apart)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.clip(np.nan_to_num(-dot(apart[:-1], step) / np.abs(step) ** 2), 0, 1)
+        nearest = np.abs(apart[:-1] + share * step)  # to the chord between two positions
+        if not np.any(np.isfinite(nearest)):
+            continue
+        k = int(np.nanargmin(nearest))
+        if nearest[k] <= ENDS_MEET * np.nanmax(np.abs(apart)):
+            q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
+            yield _(
+                "the ends of spring {spring} meet at {place}: its force reverses its direction there. Write other "
+                "points in between, or a torsion spring"
+            ).format(spring=spring.name, place=_in_cycle(results, q))
+
+
+def _in_cycle(results: Results, q: float) -> str:
+    """A driver coordinate; an angle of a driver that turns fully is counted within its cycle."""
+    cycle = 2 * np.pi * results.turns
+    return driver_place(results, float(np.mod(q + SAME_PLACE, cycle) - SAME_PLACE) if cycle else q)
+
+
+def driving_loads(results: Results) -> Iterable[str]:
+    """Loads of the working stroke that act along the motion, or do no work, all through it."""
+    loads = [load for load in results.linkage.loads if load.working_stroke_only and not load.resists]
+    if not loads or results.reactions is None:
+        return
+    turns = results.driver_range.turns if results.driver_range else 1
+    motion = at_positions(results, results.closely(WORK_POSITIONS * turns + 1))
+    acting = list(given_loads(motion, results.strokes))
+    for load in loads:
+        its = [applied for applied in acting if applied.name in (load.name, f"{load.name}'")]
+        power, largest = _power(motion, its)
+        works = np.abs(power) > NO_WORK * largest
+        if np.any(works) and np.all(power[works] > 0):
+            yield _driving(results, load)
+        elif not np.any(works) and np.any(largest > 0):
+            yield _idle(results, load, motion, its[0])
+
+
+def _power(motion: Motion, acting: Iterable[Applied]) -> tuple[Real, Real]:
+    """Power of a load and of its opposite, and the largest that they could have at this speed; zero at rest (W)."""
+    crank = motion.linkage.driver.kind == "turn"
+    reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
+    power = largest = np.zeros(np.shape(motion.q))
+    for load in acting:
+        work = dot(load.force, motion.point(load.link, load.at).v) + load.moment * motion.link(load.link).omega
+        power = power + np.where(motion.moving, work, 0.0)
+        largest = largest + np.abs(motion.rate) * (np.abs(load.force) * reach + np.abs(load.moment))
+    return power, np.where(motion.moving, largest, 0.0)
+
+
+def _driving(results: Results, load: Load) -> str:
+    strokes = results.strokes
+    if strokes is None or not strokes.working:
+        return _(
+            "load {load} acts in the direction of motion during the whole working stroke. Reverse its sign"
+        ).format(load=load.name)
+    other = "backward" if strokes.working[0].run > 0 else "forward"
+    link = results.linkage.output_point(strokes.link) or strokes.link
+    text = _(
+        "load {load} acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
+        "other stroke: {output}"
+    ).format(load=load.name, output=f"output: {{link: {link}, working: {other}}}")
+    working = strokes.of_link(load.stroke_link).working
+    if load.table is None or load.table.key != "pressure" or len(working) != 1:
+        return text
+    start = working[0].start
+    low, high = np.degrees(sorted((start, start + results.linkage.driver.sense * working[0].length)))
+    turns = np.floor(high / 360) * 360  # a window that begins before the zero begins at a negative angle
+    low, high = np.floor((low - turns) * 1000) / 1000, np.ceil((high - turns) * 1000) / 1000  # holds both ends
+    window = f"when: [{low:.10g} deg, {high:.10g} deg]"
+    return _("{text}. In an engine, where the gas drives the piston: {window}").format(text=text, window=window)
+
+
+def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str:
+    """What to write instead is seen at the position in which the point of the load is fastest."""
+    velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
+    acting = motion.moving & (np.abs(applied.force) > 0)
+    k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))
+    if not np.any(acting):
+        return _("load {load} does no work in the working stroke: link {link} does not rotate. Write a force").format(
+            load=load.name, link=load.link
+        )
+    if not abs(velocity[k]):
+        return _("load {load} does no work in the working stroke: its point is at rest. Write the link or the point "
+                 "that moves").format(load=load.name)  # fmt: skip
+    turned = motion.poses[load.link].z[k] if load.follows else 1.0
+    angle = round(float(np.angle(-velocity[k] / turned)), 6) + 0.0  # no signed zero
+    written = f"angle: {results.problem.units.told(angle, ANGLE, 4)}"
+    if load.table is None:
+        written = f"force: {{size: {results.problem.units.told(abs(load.force), FORCE)}, {written}}}"
+    return _(
+        "load {load} does no work in the working stroke: its force is perpendicular to the motion of its point. "
+        "Write it against the motion: {written}"
+    ).format(load=load.name, written=written)
+
+
+def short_tables(results: Results) -> Iterable[str]:
+    """Tables of loads that end before the motion does."""
+    for load in results.linkage.loads if results.loads else ():
+        if load.table is not None and _short(results, load, load.table):
+            sentence = _(
+                "the table of load {load} does not reach as far as the {against} goes: its end value is held"
+            ).format(load=load.name, against=_(load.table.against))
+            if load.table.against == "stroke" and not load.table.shares:
+                sentence = _("{slip}; rows in shares reach over every stroke (against: share of stroke)").format(
+                    slip=sentence
+                )
+            yield sentence
+
+
+def long_tables(results: Results) -> Iterable[str]:
+    """Tables of loads that go on beyond the stroke."""
+    units = results.problem.units
+    for load, last, stroke in reach_of_tables(results.linkage, results.strokes) if results.loads else ():
+        assert load.table is not None
+        if last > stroke and not ends_with_stroke(last, stroke):
+            measure = argument_dimension(results.linkage, load.table)
+            yield _(
+                "the table of load {load} goes on to {last}, but the stroke is {stroke}: its last rows are never "
+                "reached. Is the unit right? Rows in shares fit every stroke (against: share of stroke)"
+            ).format(load=load.name, last=with_unit(units, last, measure), stroke=with_unit(units, stroke, measure))
+
+
+def tables_of_many(
+    linkage: Linkage, units: UnitSystem, reach: Mapping[str, Sequence[tuple[float, float]]]
+) -> Iterable[str]:
+    """Tables of loads that do not end with the stroke, among many mechanisms of one kind.
+
+    Args:
+        linkage: any of the mechanisms.
+        units: those of the file.
+        reach: by the name of the load, the last row of its table and the stroke of each mechanism (m or rad).
+    """
+    for load in linkage.loads:
+        lasts, strokes = np.array(reach.get(load.name) or np.zeros((0, 2))).T
+        apart = ~ends_with_stroke(lasts, strokes)
+        if load.table is not None and np.any(apart):
+            measure = argument_dimension(linkage, load.table)
+            yield _(
+                "the table of load {load} does not end with the stroke in {apart} of {count} mechanisms: its last row "
+                "is {last}, their strokes are {least} to {largest}. Rows in shares fit every stroke (against: share of "
+                "stroke)"
+            ).format(
+                load=load.name, apart=np.count_nonzero(apart), count=len(apart),
+                last=with_unit(units, lasts[apart][0], measure), least=with_unit(units, np.min(strokes), measure),
+                largest=with_unit(units, np.max(strokes), measure),
+            )  # fmt: skip
+
+
+def open_tables(results: Results) -> Iterable[str]:
+    """In steady running: tables of loads that end otherwise than they begin."""
+    for load in results.linkage.loads if results.steady is not None else ():
+        if load.table is not None and _jumps_at_the_end(results, load.table):
+            first, last = (
+                with_unit(results.problem.units, value, FORCE if load.force else MOMENT)
+                for value in (load.table.values[0], load.table.values[-1])
+            )
+            yield _(
+                "the table of load {load} does not close over the cycle: it begins with {first} and ends with {last}, "
+                "and the load jumps there; with the same value in both rows it would not"
+            ).format(load=load.name, first=first, last=last)
+
+
+def without_strokes(results: Results) -> Iterable[str]:
+    """Loads of a working stroke that there is not."""
+    for load in results.linkage.loads:
+        if load.working_stroke_only and acts_always(load, results.strokes):
+            yield _(
+                "load {load} is one of the working stroke, but there are no whole strokes on this way of "
+                "the driver: it acts always"
+            ).format(load=load.name)
+
+
+def _short(results: Results, load: Load, table: LoadTable) -> bool:
+    """Whether a load acts beyond the first or last argument of its table."""
+    motion = results.motion
+    assert motion is not None
+    acting = motion.placed & acts(load, motion.q, results.linkage, results.strokes)
+    if not np.any(acting):
+        return False
+    argument = table_argument(table, motion, results.strokes)[acting]
+    first, last = table.arguments[0], table.arguments[-1]
+    slack = 1e-6 * (last - first)
+    return bool(np.any((argument < first - slack) | (argument > last + slack)))
+
+
+def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
+    """Whether a table against the crank, between whose rows one goes evenly, ends otherwise than it begins."""
+    rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
+    whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_PLACE
+    jump = abs(float(table.values[-1]) - float(table.values[0]))
+    largest = max(abs(float(value)) for value in table.values)
+    return table.against != "stroke" and table.between == "linear" and whole and jump > SAME_RATIO * largest
+
+
+def unmet_demands(results: Results) -> Iterable[str]:
+    """What a synthesis was asked and did not do."""
+    return missed(measured_on(results), results.problem.units)
+
+
+def lever_apart(results: Results) -> Iterable[str]:
+    """A lever that does not agree with the force plan."""
+    motion = results.motion
+    if results.lever is None or results.lever_holds or motion is None:
+        return
+    worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
+    k = int(np.argmax(worst))
+    yield _(
+        "the lever differs from the force plan by {difference} % at position {number}, more than the limit of {limit} %"
+    ).format(
+        number=results.numbers[k], difference=numeral(100 * float(worst[k]), ".3g"),
+        limit=numeral(100 * results.problem.lever_limit, ".3g"),
+    )  # fmt: skip

@@ -1,0 +1,293 @@
+"""Pairs that repeat conditions, slots that are left, pressure angles, cams that hit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from tmm_cli.language import _, numeral
+from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.assembly.search import sketch_deviations
+from tmm_cli.mechanics.groups.base import Closed
+from tmm_cli.mechanics.groups.sequence import DriverMotion
+from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, SPEED, place_dimension
+from tmm_cli.reports.table import with_unit
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.dynamics.task import Profile
+
+
+MOST_POSITIONS = 100  # that cannot be reached, each with its own words
+FEW = 12  # positions that are named in one sentence
+DRIVE_REACHES = 1e-6  # of a run: a table of its drive that begins or ends nearer to an end of the run reaches it
+SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
+
+
+def driver_place(results: Results, q: float) -> str:
+    """A place of the driver."""
+    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
+
+
+def limited(results: Results) -> Iterable[str]:
+    """Where the driver does not go all the way round, what stops it, and what that does to the positions."""
+    driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
+    assert driver_range is not None
+    start, end = driver_place(results, driver_range.start), driver_place(results, driver_range.end)
+    groups = ", ".join(dict.fromkeys(limit.group for limit in driver_range.limits if limit.group))
+    said = []
+    if groups and driver.kind == "turn":
+        text = _(
+            "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} "
+            "comes to its dead position"
+        )
+        said.append(text.format(link=driver.link, start=start, end=end, groups=groups))
+    if any(limit.driver for limit in driver_range.limits):
+        text = _("driving link {link} goes from {start} to {end} only: it slows down and stops there")
+        said.append(text.format(link=driver.link, start=start, end=end))
+    for what in said:
+        if request.places:
+            yield what
+        elif isinstance(request.start, str) or not request.start:
+            yield _("{what}; results are given for that range").format(what=what)
+        else:
+            yield _(
+                "{what}; results are given for that range; positions.from ({start}) is for a driver that turns fully"
+            ).format(what=what, start=driver_place(results, request.start))
+
+
+def far_from_sketch(results: Results) -> Iterable[str]:
+    """Points that are sketched far from where they are."""
+    linkage = results.linkage
+    there = move(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
+    for point, off in sketch_deviations(linkage, there.poses).items():
+        if off > SKETCH:
+            yield _(
+                "in the sketch {point} is {share} % of the mechanism's size from its place with the "
+                "driver at {place}: is sketch.at right?"
+            ).format(point=point, share=f"{100 * off:.0f}", place=driver_place(results, linkage.sketch.at))
+
+
+def dead_positions(results: Results) -> Iterable[str]:
+    """Dead positions and change points inside the range of the driver."""
+    closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, Closed)}
+    for dead in results.dead:
+        text = (
+            _(
+                "change point of {group} inside the cycle at {place} (margin {margin}): there the group may go over "
+                "into another assembly; the results go smoothly through, as a machine that runs does (the other: "
+                "`change points: keep side`)"
+            )
+            if dead.passed and dead.group in closed
+            else _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): there the group "
+                "may leave its way for that of another assembly; the results go on along the smooth one"
+            )
+            if dead.passed
+            else _(
+                "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and "
+                "forces grow without bound there, and the group may leave it either way; the results "
+                "keep to the side of the sketch"
+            )
+        )
+        yield text.format(place=driver_place(results, dead.place), group=dead.group, margin=numeral(dead.margin, ".2g"))
+
+
+def unreached_positions(results: Results) -> Iterable[str]:
+    """Positions that have no numbers."""
+    motion, units = results.motion, results.problem.units
+    assert motion is not None
+    unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
+    for k in unreached[:MOST_POSITIONS]:
+        number, place = results.numbers[k], driver_place(results, float(motion.q[k]))
+        for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
+            if lost[k]:
+                gap = with_unit(units, float(at.residual[k]), LENGTH)
+                yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
+                    number=number, place=place, group=group, gap=gap
+                )
+        for group, dead in motion.dead.items():
+            if dead[k] and motion.limits is not None and motion.limits[k]:
+                yield _(
+                    "position {number} ({place}): {group} is in a change point, which it passes smoothly; velocities "
+                    "and accelerations are limits, reactions have none there"
+                ).format(number=number, place=place, group=group)
+            elif dead[k]:
+                yield _(
+                    "position {number} ({place}): {group} is in its dead position; no velocities and forces"
+                ).format(number=number, place=place, group=group)
+    if len(unreached) > MOST_POSITIONS:
+        yield _("... and {count} positions more that cannot be reached or are dead").format(
+            count=len(unreached) - MOST_POSITIONS
+        )
+
+
+def stopped_driver(results: Results) -> Iterable[str]:
+    """Positions that the driver does not come to, by its own law of motion."""
+    motion = results.motion
+    assert motion is not None
+    stopped = np.flatnonzero(~np.isfinite(motion.rate))
+    if stopped.size:
+        said = [str(results.numbers[k]) for k in stopped[:FEW]] + ["..."] * (stopped.size > FEW)
+        text = _(
+            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
+            "it does not come to"
+        )
+        if results.single is not None and results.single.run.ending != "standstill":
+            text = _(
+                "the run of driver {link} ends before positions {numbers}: no velocities and forces there, as it does "
+                "not come to them"
+            )
+        yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
+
+
+def opposite_run(results: Results) -> Iterable[str]:
+    """A single run against the sense that the file gives for the driver."""
+    single, driver = results.single, results.linkage.driver
+    if single is None or single.sense == driver.sense:
+        return
+    ends = (single.first, single.first + single.sense * single.machine.length)
+    first, last = (driver_place(results, end) for end in ends)
+    if driver.kind == "turn":
+        yield _(
+            "the run goes from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
+            "from and to"
+        ).format(
+            first=first, last=last, link=driver.link, turns="ccw" if single.sense > 0 else "cw",
+            sense=_("counterclockwise") if single.sense > 0 else _("clockwise"),
+        )  # fmt: skip
+        return
+    speed = f"{'-' if single.sense < 0 else ''}{with_unit(results.problem.units, driver.rate, SPEED)}"
+    yield _(
+        "the run goes from {first} to {last}, against the speed of driver {link}: write speed: {speed} there, or "
+        "exchange from and to"
+    ).format(first=first, last=last, link=driver.link, speed=speed)
+
+
+def short_drive(results: Results) -> Iterable[str]:
+    """A table of a single run's drive that begins late or ends early, so that its first or last value is held."""
+    single = results.single
+    if single is None or len(single.task.edges or single.task.way_edges) < 2:
+        return
+    drive = cast("Profile", single.task.drive)
+    by_time = drive.against == "time"
+    reached = float(single.run.time[-1]) if by_time else float(single.run.way[-1])
+    first, last = drive.arguments[0], drive.arguments[-1]
+    measure = place_dimension(results.linkage.driver.kind)
+
+    def argument(value: float) -> str:
+        return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)
+
+    if first > DRIVE_REACHES * reached and drive.values[0] != 0:
+        yield _("the table of the drive begins at {first}: its first value is held before; write a row at 0").format(
+            first=argument(first)
+        )
+    if reached - last > DRIVE_REACHES * reached and drive.values[-1] != 0:
+        yield _(
+            "the table of the drive ends at {last}: its last value is held to {reached}, the end of the run; write a "
+            "row there"
+        ).format(last=argument(last), reached=argument(reached))
+
+
+def near_dead(results: Results) -> Iterable[str]:
+    """The position of each group that is nearest to a dead one, if it is near."""
+    motion = results.motion
+    assert motion is not None
+    for kernel, at in zip(motion.kernels, motion.placements, strict=True):
+        margin = np.where(motion.moving, at.margin, np.inf)
+        if margin.size and np.min(margin) < kernel.near:
+            k = int(np.argmin(margin))
+            yield _(
+                "position {number} is near a dead position of {group}: sine of the transmission angle {margin}"
+            ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
+
+
+def endless(results: Results) -> Iterable[str]:
+    """A cycle of which no end was found."""
+    if results.driver_range is not None and not results.driver_range.repeats:
+        yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
+
+
+def passive_pairs(results: Results) -> Iterable[str]:
+    """Pairs without which the links would be held where they are."""
+    for passive in results.structure.passive:
+        i, j = passive.links
+        yield _(
+            "pair {pair} holds link {j} on link {i} where it would be without it: this works with "
+            "exact dimensions only, and the reactions of links {among} are indeterminate (given: the "
+            "least ones)"
+        ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
+
+
+def left_slots(results: Results) -> Iterable[str]:
+    """Stones that leave the segment of their guide."""
+    units, driver_range = results.problem.units, results.driver_range
+    assert driver_range is not None
+    cycle = driver_range.end - driver_range.start
+    for excess in results.slots:
+        slide, ways = excess.slide, []
+        for start, end in excess.ways:
+            first = start % cycle if driver_range.full else start
+            way = _("from {start} to {end}")
+            if end - start >= cycle * (1 - 1e-9):
+                way = _("everywhere")
+            elif start == end:
+                way = _("at {start}")
+            ways.append(way.format(start=driver_place(results, first), end=driver_place(results, first + end - start)))
+        if ways:
+            yield _(
+                "link {runner} leaves its slot {slot} of link {carrier}, which is {length} long: it is up to {far} "
+                "beyond {point} (driver {ways}); a longer slot, or slides: {{..., unbounded: true}} where it is meant"
+            ).format(
+                runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier, point=excess.point,
+                length=with_unit(units, excess.length, LENGTH), far=with_unit(units, excess.far, LENGTH),
+                ways=", ".join(ways),
+            )  # fmt: skip
+
+
+def pressure_angles(results: Results) -> Iterable[str]:
+    """Pressure angles beyond what the file allows, or what is usual where a synthesis chose them freely."""
+    units, limits_set = results.problem.units, results.problem.limits_set
+    chosen = results.driver_range is not None and results.driver_range.full and _chosen_freely(results)
+    if not (chosen or any(limits_set)):
+        return
+    for pressure in results.pressure:
+        said = limits_set[0 if pressure.slides else 1]
+        if pressure.holds or not (chosen or said):
+            continue
+        largest, allowed = (with_unit(units, angle, ANGLE, 4) for angle in (pressure.largest, pressure.allowed))
+        text = (
+            _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
+            if said
+            else _(
+                "the pressure angle on link {link} comes to {largest}; usual is at most {allowed} "
+                "(another limit: checks: {{{check}: ...}})"
+            )
+        )
+        check = "pressure_sliding" if pressure.slides else "pressure_turning"
+        yield text.format(link=pressure.link, largest=largest, allowed=allowed, check=check)
+
+
+def _chosen_freely(results: Results) -> bool:
+    """Whether a synthesis found the linkage, and was asked nothing about its pressure angle."""
+    found = results.problem.synthesis
+    if found is None:
+        return False
+    asked = [d for d in found.outcome.demands if d.asked or found.task == "optimal"]
+    return not any(d.of == "pressure" for d in asked)
+
+
+def impacts(results: Results) -> Iterable[str]:
+    """Cams whose law has jumps of the follower's speed."""
+    units = results.problem.units
+    for mesh in results.linkage.meshes:
+        jumps = mesh.law.jumps() if mesh.law is not None else ()
+        if jumps:
+            places = ", ".join(numeral(units.from_si(a, ANGLE), ".6g") for a in jumps)
+            yield _(
+                "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
+                "a hard impact, the acceleration there is not finite and is not in the tables"
+            ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.spelt(ANGLE)}")

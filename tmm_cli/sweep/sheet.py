@@ -1,0 +1,224 @@
+"""Quantities over one parameter as curves, over two as lines of equal value; where no mechanism goes is hatched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from tmm_cli.drawing.paper.chart import (
+    LEFT,
+    PLAIN,
+    RIGHT,
+    ROW,
+    SMALL,
+    TICKS,
+    Across,
+    Curve,
+    Panel,
+    Plot,
+    chart,
+    filling,
+    limits,
+    room,
+    round_up,
+)
+from tmm_cli.drawing.paper.contours import borders, contour, hatching, region
+from tmm_cli.drawing.paper.fonts import width
+from tmm_cli.drawing.paper.record import POINT, Drawing, Style
+from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, THIN, Sheet, safe, with_unit
+from tmm_cli.language import _, numeral, spelt, translated
+from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.quantities import ANGLE
+from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.sweep.grid import Axis
+from tmm_cli.sweep.quantities import Shown
+from tmm_cli.sweep.record import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
+
+PANELS = 4  # of a sheet
+LEVELS = 12  # lines of equal value at most
+NODES = 150  # of a grid that are drawn in each direction; of more of them a part
+PITCH = {True: 1.8, False: 3.2}  # mm of hatching: where no mechanism goes, where a limit is exceeded
+COLOURS = {True: THIN, False: "#e3b27a"}
+NAMED = 5  # borders that have their values written
+SAMPLE = 6.0  # mm of a field in the legend
+LEAST = 15.0  # mm of a line that gets its value
+
+
+def sheets(title: str, sweep: Swept, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:
+    """Every sheet with its file's stem."""
+    if len(sweep.axes) == 1:
+        parts = [range(first, min(first + PANELS, len(sweep.shown))) for first in range(0, len(sweep.shown), PANELS)]
+        for number, part in enumerate(parts):
+            yield (f"sweep-{number + 1}" if len(parts) > 1 else "sweep"), curves(title, sweep, part, units)
+        return
+    for k, one in enumerate(sweep.shown):
+        if np.any(np.isfinite(sweep.values[:, k])):
+            yield f"sweep-{safe(one.name)}", contours(title, sweep, k, units)
+
+
+def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> Drawing:
+    """Some of the quantities over the one parameter, each in a panel."""
+    (axis,) = sweep.axes
+    caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
+    sheet = Sheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
+    start, most = room(sheet)
+    over = filling(float(axis.values[0]), float(axis.values[-1]), start, most)
+    plots = []
+    for k in part:
+        one = sweep.shown[k]
+        values = sweep.values[:, k] / units.factor(one.dimension)
+        plots.append(Plot(_words(one, units), [Curve(axis.values, values)], degrees=_degrees(one, units)))
+    ends = [float(axis.values[0]), *(mark.at[0] for mark in sweep.marks), float(axis.values[-1])]
+    goes = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
+    spans = [(low, high, translated(WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
+    panels = chart(sheet, plots, Across(over, _axis_words(axis), spans=spans if sweep.marks else ()))
+    for panel, plot in zip(panels, plots, strict=True):
+        for curve in plot.curves:
+            sheet.ground.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
+        for (low, high), n in zip(pairwise(ends), goes, strict=True):
+            if n >= LIMIT:
+                _stretch(panel, low, high, fails=n >= STOPS)
+    for mark in sweep.marks[:NAMED]:
+        _value(panels[0], axis, mark)
+    return sheet.finish()
+
+
+def _stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
+    """A hatched stretch of a panel."""
+    left, right = (float(panel.x.on(value)) for value in (low, high))
+    corners = [complex(left, panel.y.start), complex(right, panel.y.start), complex(right, panel.y.end),
+               complex(left, panel.y.end)]  # fmt: skip
+    for start, end in hatching([corners], PITCH[fails]):
+        panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
+
+
+def _value(panel: Panel, axis: Axis, mark: Mark) -> None:
+    """Of a border, beside it in the first panel."""
+    place = float(panel.x.on(mark.at[0]))
+    text = f"{numeral(mark.at[0], '.6g')} {spelt(axis.unit)}".strip()
+    panel.sheet.label(text, complex(place, panel.y.end - ROW), SMALL, DARK)
+
+
+def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
+    """A quantity over both parameters."""
+    one = sweep.shown[k]
+    caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_words(one, units))
+    sheet = Sheet(title, caption, paper=LANDSCAPE)
+    low, high = sheet.ground.low, sheet.ground.high
+    across, up = sweep.axes
+    x = filling(float(across.values[0]), float(across.values[-1]), low.real + LEFT, (high - low).real - LEFT - RIGHT)
+    bottom = low.imag + 2.6 * ROW
+    y = filling(float(up.values[0]), float(up.values[-1]), bottom, high.imag - 1.6 * ROW - bottom)
+    panel = Panel(sheet, x, y)
+    panel.grid()
+    panel.numbers_across(0.2 * ROW)
+    sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_words(across), PLAIN, ha="center")
+    sheet.text(complex(low.real, high.imag - ROW / 2), _axis_words(up), PLAIN)
+    columns, rows = (_drawn(len(axis.values)) for axis in sweep.axes)
+    values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
+    state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
+    lines = _Grid(panel, sweep, (columns, rows))
+    drawn = [
+        (fails, name) for fails, name in ((True, _("no such mechanism")), (False, _("beyond a limit")))
+        if np.any((state >= STOPS) if fails else (state == LIMIT))
+    ]  # fmt: skip
+    for fails, __ in drawn:
+        lines.hatched(state, fails=fails)
+    _levels(lines, values, degrees=_degrees(one, units))
+    _legend(panel, drawn)
+    return sheet.finish()
+
+
+def _drawn(count: int) -> Real:
+    """Which of so many nodes are drawn, the ends among them."""
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, NODES))).astype(int))
+
+
+class _Grid:
+    """Nodes of a sweep on a panel. drawn: which of each parameter."""
+
+    def __init__(self, panel: Panel, sweep: Swept, drawn: Sequence[Real]) -> None:
+        self.panel = panel
+        axes = [axis.values[nodes] for axis, nodes in zip(sweep.axes, drawn, strict=True)]
+        self.x, self.y = axes
+        self.marks: dict[tuple[int, int], list[float]] = {}  # by the parameter and the line along which they lie
+        for mark in sweep.marks:
+            across = 1 - mark.along
+            line = int(np.argmin(np.abs(axes[across] - mark.at[across])))
+            if axes[across][line] == mark.at[across]:
+                self.marks.setdefault((mark.along, line), []).append(mark.at[mark.along])
+
+    def on(self, places: Any) -> Any:
+        """Places column + i row on paper, mm."""
+        found = np.asarray(places)
+        x = np.interp(found.real, np.arange(len(self.x)), self.x)
+        y = np.interp(found.imag, np.arange(len(self.y)), self.y)
+        return self.panel.at(x, y)
+
+    def share(self, one: tuple[int, int], other: tuple[int, int]) -> float:
+        """Where between two nodes a border was found."""
+        along = 0 if one[0] != other[0] else 1
+        values = (self.x, self.y)[along]
+        low, high = float(values[one[along]]), float(values[other[along]])
+        found = [at for at in self.marks.get((along, one[1 - along]), ()) if low <= at <= high]
+        return (found[0] - low) / (high - low) if found else 0.5
+
+    def hatched(self, state: Any, *, fails: bool) -> None:
+        """Where no mechanism goes, or a limit is exceeded, with the outline against what works."""
+        inside, outline = (state >= STOPS, state >= STOPS) if fails else (state == LIMIT, state != WORKS)
+        pieces = [self.on(piece).tolist() for piece in region(inside, self.share)]
+        for start, end in hatching(pieces, PITCH[fails]):
+            self.panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, faint=True)
+        style: Style = "-" if fails else "--"
+        colour, z = (DARK, 2.5) if fails else (LOAD, 2.4)
+        for line in borders(outline, self.share):
+            self.panel.sheet.line(self.on(line).tolist(), colour, 1.1 if fails else 0.9, style, z, blocks=False)
+
+
+def _levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
+    """Lines of equal value at round values, each with its value on its longest stretch."""
+    low, high = limits([values])
+    if not high > low:
+        return
+    sheet = lines.panel.sheet
+    step = round_up((high - low) / LEVELS, TICKS)
+    for n in range(int(np.ceil(low / step)), int(np.floor(high / step)) + 1):
+        found = [lines.on(line) for line in contour(values, n * step)]
+        lengths = [float(np.sum(np.abs(np.diff(line)))) for line in found]
+        for line in found:
+            sheet.line(line.tolist(), INERTIA, 0.9, z=2, faint=True)
+        if found and max(lengths) > LEAST:
+            line = found[int(np.argmax(lengths))]
+            k = len(line) // 2
+            text = numeral(n * step, ".10g") + ("°" if degrees else "")
+            sheet.text(complex(line[k]), text, SMALL, colour=INERTIA, ha="center")
+
+
+def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
+    """What the hatching means, above the panel on the right."""
+    at = panel.x.end - sum(SAMPLE + 5 + width(text, SMALL * POINT) for __, text in drawn)
+    height = panel.sheet.ground.high.imag - ROW / 2
+    for fails, text in drawn:
+        field = [complex(at, height - 1.3), complex(at + SAMPLE, height - 1.3), complex(at + SAMPLE, height + 1.3),
+                 complex(at, height + 1.3)]  # fmt: skip
+        for start, end in hatching([field], PITCH[fails] / 1.5):
+            panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
+        panel.sheet.line([*field, field[0]], DARK, 0.5, blocks=False)
+        panel.text(complex(at + SAMPLE + 1.5, height), text)
+        at += SAMPLE + 5 + width(text, SMALL * POINT)
+
+
+def _degrees(one: Shown, units: UnitSystem) -> bool:
+    return one.dimension == ANGLE and units.symbol(ANGLE) == "deg"
+
+
+def _words(one: Shown, units: UnitSystem) -> str:
+    return with_unit(one.words, one.dimension, units)
+
+
+def _axis_words(axis: Axis) -> str:
+    return f"{axis.name}, {on_paper(spelt(axis.unit))}" if axis.unit else axis.name

@@ -1,0 +1,338 @@
+"""Crank-slider from its stroke, or its mean speed, and two more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import N_, _
+from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.problem.schema_parts import Value as FileValue
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.synthesis.blocks import Block, numbers, one_of
+from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box, circle
+from tmm_cli.synthesis.measures import crank_turns, k_of, mean_speed, pressure, ratio, stroke, theta_of
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
+
+DRAWN: Final = 0.01  # rad: the least theta that shows on a drawing
+
+
+def construction(found: Found) -> Construction:
+    """The extreme positions, and the circle on which B1B2 is seen under theta, with O on it at the distance e.
+
+    B1 is the far extreme position (the rod in line with the crank), B2 the near one; the crank's pivot O is the origin.
+    It may be on the circle from B2 to the place over B2, where e = H cot(theta).
+    """
+    r, l, e, height, theta = (float(getattr(found, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
+    near, far = (float(np.sqrt((x - e) * (x + e))) for x in (l - r, l + r))
+    o, b1, b2 = 0j, complex(far, -e), complex(near, -e)
+    pin1, pin2 = r * b1 / abs(b1), -r * b2 / abs(b2)
+    segments = [
+        Segment(complex(near - 0.12 * height, -e), complex(far + 0.12 * height, -e), "axis"),
+        Segment(o, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
+        Segment(pin2, o, "link2", "r"), Segment(o, b2, "link2", "l − r"),
+    ]  # fmt: skip
+    arcs = [circle(o, r)]
+    spots = [
+        Spot("O", o, "support"), Spot("A1", pin1, "hinge"), Spot("A2", pin2, "hinge"),
+        Spot("B1", b1, "slider"), Spot("B2", b2, "slider"),
+    ]  # fmt: skip
+    sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
+    plain = Construction(
+        N_("Extreme positions of the slider"), tuple(segments), tuple(arcs), tuple(spots), sizes=sizes,
+        wishes=(box(o, r),), chain="crank-slider", values=(("r", r, "length"), ("l", l, "length")),
+    )  # fmt: skip
+    if not theta > DRAWN:
+        return plain
+    middle, radius = (b1 + b2) / 2, height / 2 / float(np.sin(theta))
+    centre = middle + 1j * height / 2 / np.tan(theta)
+    over, first = complex(near, 2 * centre.imag + e), float(np.angle(b1 - centre))
+    start, end = (first + float(np.mod(np.angle(z - centre) - first, 2 * np.pi)) for z in (over, b2))
+    arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
+    return replace(
+        plain,
+        title=N_("Extreme positions of the slider, and the circle on which {B}1{B}2 is seen under theta"),
+        segments=(*segments, Segment(b1, b2, "thin")), arcs=tuple(arcs),
+        angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
+        centres=(Centre(centre, radius, (b1, b2)),), wishes=(box(o, r), (centre,), box(centre, radius)),
+        values=(*plain.values, ("θ", theta, "angle")),
+        notes=(N_("red: where {O} may be, so that the crank turns fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
+    )  # fmt: skip
+
+
+# Crank-slider from its stroke (tasks 1 to 4): h = H/r, L = l/r, nu = e/r, theta between the extreme cranks.
+#
+# The triangle A B1 B2 of the crank's pivot and the slider's extreme positions has the sides L + 1, L - 1 and h, the
+# height nu on h, and the angle theta at A:
+#     h = sqrt((L + 1)^2 - nu^2) - sqrt((L - 1)^2 - nu^2) = 2 sqrt(1 + (L^2 - 1) sin^2(theta/2)),
+#     nu = (L^2 - 1) sin(theta) / h,   sin(lambda_max) = (1 + nu)/L.
+# All functions take floats or arrays. Differences of near numbers are nowhere taken.
+
+
+PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
+QUANTITIES: Final = {  # that a task may give: kind and what they are called
+    "stroke": ("length", N_("stroke H")), "speed": ("speed", N_("mean speed of the slider")),
+    "crank_speed": ("angular speed", N_("speed of the crank")), "ratio": ("number", N_("L = l/r")),
+    "nu": ("number", N_("nu = e/r")), "k": ("number", N_("k")),
+    "pressure": ("angle", N_("largest pressure angle lambda")), "e": ("length", N_("offset of the guide e")),
+}  # fmt: skip
+FOUND: Final = {
+    "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")), "e": QUANTITIES["e"],
+    "h": ("number", N_("h = H/r")), "theta": ("angle", N_("theta, between the extreme cranks")),
+    "printed": ("number", N_("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
+    "error": ("number", N_("relative error of that")),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Task:
+    """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
+    e (m), L and k, pressure (largest angle, rad) and nu, pressure and k, e and k. Floats or arrays; None: not given.
+    """
+
+    stroke: Any = None
+    speed: Any = None
+    crank_speed: Any = None
+    ratio: Any = None
+    nu: Any = None
+    k: Any = None
+    pressure: Any = None
+    e: Any = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths r, l, e and the stroke (m), theta and the largest pressure angle (rad), L, nu, h, k.
+
+    printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: of that, relative.
+    """
+
+    r: Any
+    l: Any  # noqa: E741  its name in every course
+    e: Any
+    stroke: Any
+    ratio: Any
+    nu: Any
+    h: Any
+    theta: Any
+    k: Any
+    pressure: Any
+    printed: Any
+    error: Any
+
+
+def nu_of(length: Any, theta: Any) -> Any:
+    """Offset nu for a ratio L and theta."""
+    sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
+    more = (length - 1) * (length + 1)
+    return more * sine * cosine / np.sqrt(1 + more * sine * sine)
+
+
+def theta_between(length: Any, nu: Any) -> Any:
+    """Theta for a ratio L and an offset nu, from the sides and the height of the triangle."""
+    near, far = np.sqrt((length - 1 - nu) * (length - 1 + nu)), np.sqrt((length + 1 - nu) * (length + 1 + nu))
+    return np.arctan2(4 * length * nu / (near + far), near * far + nu * nu)
+
+
+def stroke_ratio(length: Any, nu: Any) -> Any:
+    """h = H/r for a ratio L and an offset nu."""
+    near, far = (length - 1 - nu) * (length - 1 + nu), (length + 1 - nu) * (length + 1 + nu)
+    return 4 * length / (np.sqrt(near) + np.sqrt(far))
+
+
+def largest_theta(length: Any) -> Any:
+    """The bound of theta for a ratio L: beyond it the crank does not turn fully; tan(theta/2) = 1/sqrt(L)."""
+    return 2 * np.arctan(1 / np.sqrt(length))
+
+
+def least_pressure(theta: Any) -> Any:
+    """The least possible largest pressure angle for theta, over all L; see `shortest`.
+
+    The derivative of sin(lambda) over sigma vanishes where sin(sigma)^2 = s cos(sigma).
+    """
+    s = np.sin(theta / 2)
+    cosine = 2 / (s + np.sqrt(s * s + 4))
+    return np.arcsin(np.sqrt(s * cosine) * (2 - s / cosine) / np.cos(theta / 2))
+
+
+def shortest(theta: Any, pressure: Any) -> Any:
+    """The least ratio L for theta at which the largest pressure angle is the given one; nan where there is none.
+
+    With sigma half the sum of the angles of both extreme rods with the guide, s = sin(theta/2), c = cos(theta/2):
+    L = tan(sigma) c/s, nu = (sin(sigma)^2 - s^2)/(s cos(sigma)); so 1 + nu = L sin(lambda) becomes, with w =
+    sin(sigma)/s, an equation that theta = 0 does not spoil: s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda). It falls
+    from w = 1 to the least of lambda.
+    """
+    theta, pressure = np.broadcast_arrays(theta, pressure)
+    s, c, sine = np.sin(theta / 2), np.cos(theta / 2), np.sin(pressure)
+    end = np.sqrt(2 / (s + np.sqrt(s * s + 4)) / np.where(s > 0, s, 1.0))
+    end = np.where(s > 0, end, 2 / sine)
+
+    def excess(w: Any) -> Any:
+        return s * (w - 1) * (w + 1) + np.sqrt((1 - s * w) * (1 + s * w)) - w * c * sine
+
+    good = (excess(end) <= 0) & (excess(np.ones_like(end)) > 0)
+    w = roots(excess, np.ones_like(end), end)
+    return np.where(good, w * c / np.sqrt((1 - s * w) * (1 + s * w)), np.nan)
+
+
+def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
+    """L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
+
+    (l + r)(l - r) sin(theta) = H e is twice the triangle's area; the law of cosines gives the sums of the squares.
+    """
+    tangent = np.tan(theta / 2)
+    return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
+
+
+def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
+    """The crank r (m) for a stroke H (m), an offset e (m) and a ratio L, or nan where no crank has them.
+
+    The sums of the squares of the sides r (L + 1), r (L - 1) and of twice the area H e/2 of the triangle of the
+    extreme positions give r^2 = ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2); under the
+    root is H^2 ((L^2 - 1)^2 H^2 - 16 L^2 e^2). The other sign is a crank that does not turn fully.
+    """
+    more = (length - 1) * (length + 1) * height
+    under = (more - 4 * length * e) * (more + 4 * length * e)
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(height * ((length * length + 1) * height + np.sqrt(under)) / 8) / length
+
+
+def find(task: Task) -> Found:
+    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    height = _stroke(task)
+    theta = None if task.k is None else theta_of(task.k)
+    if task.ratio is not None:
+        length = np.asarray(task.ratio)
+    elif task.e is not None:
+        length = ratio_of_offset(height, task.e, theta)
+    elif theta is not None:
+        length = shortest(theta, task.pressure)
+    else:
+        length = (1 + np.asarray(task.nu)) / np.sin(task.pressure)
+    if theta is not None:
+        nu = nu_of(length, theta)
+    elif task.nu is not None:
+        nu = np.asarray(task.nu)
+    else:
+        nu = task.e / crank_of_offset(height, task.e, length)
+    if theta is None:
+        theta, h = theta_between(length, nu), stroke_ratio(length, nu)
+    else:
+        half = np.sin(theta / 2)
+        h = 2 * np.sqrt(1 + (length - 1) * (length + 1) * half * half)
+    r = height / h
+    if task.e is not None:
+        nu = task.e / r
+    scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
+    return Found(
+        r, length * r, nu * r, height, length, nu, h, theta, k_of(theta), np.arcsin((1 + nu) / length), nu * scale,
+        (scale - 1) * (nu != 0),
+    )  # fmt: skip
+
+
+def _stroke(task: Task) -> Any:
+    """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
+    if task.stroke is not None:
+        return np.asarray(task.stroke)
+    return np.pi * task.speed / task.crank_speed
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason."""
+    ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
+    if nu is not None and not nu >= 0:
+        raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"))
+    if e is not None and ratio is None and not e > 0:
+        raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"))
+    if e is not None and not e >= 0:
+        raise Infeasible("e", _("the offset is a distance; turn the drawing over for the other side"))
+    if ratio is not None and not ratio > 1:
+        raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"))
+    if ratio is not None and nu is not None and not nu < ratio - 1:
+        raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"))
+    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke(task):
+        raise Infeasible("e", _("the crank does not turn fully: it needs l > r + e"))
+    theta = 0.0 if task.k is None else _refuse_k(task)
+    if pressure is not None and not pressure < np.pi / 2:
+        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
+    if pressure is not None and pressure < least_pressure(theta):
+        raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"))
+
+
+def _refuse_k(task: Task) -> float:
+    """Theta, from 0 up to its bound for what else is given."""
+    theta, limit = float(theta_of(task.k)), np.pi / 2
+    if not task.k >= 1:
+        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
+    if task.e is not None and theta == 0:
+        raise Infeasible("k", _("with an offset k is more than 1"))
+    if task.ratio is not None:
+        limit = float(largest_theta(task.ratio))
+    elif task.e is not None:  # the pivot O is on the circle between B2 and the place over it: e < H cot(theta)
+        limit = float(np.arctan2(_stroke(task), task.e))
+    if theta >= np.pi / 2:
+        raise Infeasible("k", _("no crank-slider whose crank turns fully has k of 3 or more"))
+    if theta >= limit and task.ratio is not None:
+        raise Infeasible("k", _("the crank does not turn fully: k is too large for this ratio of rod and crank"))
+    if theta >= limit:
+        raise Infeasible("k", _("the crank does not turn fully: k is too large for this stroke and offset"))
+    return theta
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
+    refuse(task)
+    found = find(task)
+    lengths = tuple(Value(name, getattr(found, name), *FOUND[name]) for name in PARAMETERS)
+    rest = [name for name in ("stroke", "ratio", "nu", "k", "pressure") if getattr(task, name) is None]
+    more = tuple(
+        Value("", getattr(found, name), *(QUANTITIES | FOUND)[name])
+        for name in ("h", *rest, "theta", "printed", "error")
+    )
+    demands = [Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False)]
+    if task.speed is not None:
+        demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_speed))
+    for name, measure in (("stroke", stroke), ("k", ratio), ("pressure", pressure)):
+        kind, text = QUANTITIES[name]
+        wanted = float(getattr(found, name))
+        demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
+    return Outcome(
+        given(task, QUANTITIES), lengths + more,
+        N_("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
+          "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
+        tuple(demands), (construction(found),), output="slide",
+    )  # fmt: skip
+
+
+# Crank-slider by its stroke: keys of the task.
+
+
+STROKES = (("stroke",), ("speed", "crank_speed"))
+PAIRS = (("ratio", "nu"), ("ratio", "e"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
+
+
+class Shape(Block):
+    """A crank-slider by its stroke (or mean speed) and two of L, nu, e, k, pressure angle."""
+
+    task: Literal["crank-slider"]
+    stroke: FileValue | None = Field(default=None, description="stroke H of the slider")
+    speed: FileValue | None = Field(default=None, description="mean speed of the slider, instead of the stroke")
+    crank_speed: FileValue | None = Field(default=None, description="of the crank, with the mean speed: 300 rpm")
+    ratio: FileValue | None = Field(default=None, description="L = l/r, rod over crank")
+    nu: FileValue | None = Field(default=None, description="nu = e/r, offset of the guide over crank")
+    k: FileValue | None = Field(default=None, description="coefficient of change of mean speed, 1 or more")
+    pressure: FileValue | None = Field(
+        default=None, description="largest pressure angle allowed: the shortest rod that keeps it is found"
+    )
+    e: FileValue | None = Field(default=None, description="offset of the guide from the crank's axis")
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
+    for sets in (STROKES, PAIRS):
+        one_of(shape, sets)
+    return Task(**numbers(shape, values, QUANTITIES))

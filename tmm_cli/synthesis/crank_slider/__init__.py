@@ -1,1 +1,0 @@
-"""Crank-slider from its stroke, or its mean speed, and two more."""

@@ -1,0 +1,213 @@
+"""Which links of a four-bar, a crank-slider or a slotted lever turn fully."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import N_, _, translated
+from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema_parts import Value as FileValue
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.synthesis.blocks import UNDETERMINED, Block, numbers
+from tmm_cli.synthesis.four_bar import CHANGE, TYPES, FourBar, turning
+from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
+
+PARAMETERS: Final[dict[str, str]] = {}
+LINKS: Final = {  # that a task may give: kind and what they are called
+    "l1": ("length", N_("link 1")), "l2": ("length", N_("link 2")), "l3": ("length", N_("link 3")),
+    "l4": ("length", N_("link 4")), "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")),
+    "e": ("length", N_("offset e")), "OA": ("length", N_("crank OA")), "OC": ("length", N_("frame OC")),
+}  # fmt: skip
+FOUR_BARS: Final = {
+    "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
+    "GCRR": N_("GCRR: crank-rocker-rocker (crank-rocker)"),
+    "GRCR": N_("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
+    "GRRC": N_("GRRC: rocker-rocker-crank (rocker-crank)"),
+    "RRR1": N_("RRR1: triple rocker, the frame longest"),
+    "RRR2": N_("RRR2: triple rocker, the input longest"),
+    "RRR3": N_("RRR3: triple rocker, the coupler longest"),
+    "RRR4": N_("RRR4: triple rocker, the output longest"),
+    "SCCC": N_("SCCC: crank-crank-crank with change points"),
+    "SCRR": N_("SCRR: crank-rocker-rocker with change points"),
+    "SRCR": N_("SRCR: rocker-crank-rocker with change points"),
+    "SRRC": N_("SRRC: rocker-rocker-crank with change points"),
+    "S2X": N_("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
+    "S3X": N_("S3X: four equal links (rhombus), change points"),
+}
+SLIDERS: Final = {  # by the number of the kind
+    "crank": N_("the crank turns fully"),
+    "rod": N_("the crank rocks, the rod turns fully"),
+    "none": N_("neither crank nor rod turns fully"),
+    "change": N_("change point: the slider may leave its side"),
+}
+LEVERS: Final = {
+    "swings": N_("the crank turns fully, the slotted link swings"),
+    "turns": N_("the crank turns fully, and the slotted link with it"),
+    "none": N_("the crank does not turn fully"),
+    "change": N_("change point: the stone may pass the hinge of the slotted link"),
+}
+
+
+@dataclass(frozen=True)
+class CrankSlider:
+    """Crank r, rod l, offset e (m)."""
+
+    r: Any
+    l: Any  # noqa: E741  its name in every course
+    e: Any = 0.0
+
+
+@dataclass(frozen=True)
+class SlottedLever:
+    """Crank OA, frame OC, and the distance e of the slot's line from C (m)."""
+
+    OA: Any
+    OC: Any
+    e: Any = 0.0
+
+
+@dataclass(frozen=True)
+class Condition:
+    """kind: number in SLIDERS or LEVERS; margin (m): by how much the crank turns fully (negative: does not)."""
+
+    kind: Any
+    margin: Any
+
+
+Task = FourBar | CrankSlider | SlottedLever
+
+
+def crank_slider(task: CrankSlider) -> Condition:
+    """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
+    r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
+    same = SAME_RATIO * (r + rod + e)
+    margin = rod - (r + e)
+    other = r - (rod + e)
+    kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
+    kind = np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind)
+    return Condition(kind, _without_rounding(margin, same))
+
+
+def slotted_lever(task: SlottedLever) -> Condition:
+    """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
+    crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
+    same = SAME_RATIO * (crank + frame + e)
+    margin = np.abs(frame - crank) - e
+    kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
+    return Condition(np.where(np.abs(margin) <= same, 3, kind), _without_rounding(margin, same))
+
+
+def _without_rounding(margin: Any, same: Any) -> Any:
+    return np.where(np.abs(margin) <= same, 0.0, margin)[()]
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible for links that do not close."""
+    if isinstance(task, FourBar) and turning(task).kind < 0:
+        longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
+        reason = _("the links do not close: {link} is as long as the others together, or longer")
+        raise Infeasible(longest, reason.format(link=longest))
+
+
+def solve(task: Task) -> Outcome:
+    """The answer for one file. Raises Infeasible for what is no mechanism."""
+    refuse(task)
+    if isinstance(task, FourBar):
+        return _four_bar(task)
+    if isinstance(task, CrankSlider):
+        found, kinds, margin = crank_slider(task), SLIDERS, N_("l - (r + e)")
+        source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
+    else:
+        found, kinds, margin = slotted_lever(task), LEVERS, N_("|OC - OA| - e")
+        source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
+    name = list(kinds)[int(found.kind)]
+    values = (Value("", kinds[name], "word", N_("type")), Value("", found.margin, "length", margin))
+    return Outcome(given(task, LINKS), values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
+
+
+def _four_bar(task: FourBar) -> Outcome:
+    found = turning(task)
+    change = int(found.kind) >= CHANGE
+    at_change, fully, rocks = (
+        N_("turns fully or rocks: decided in the change positions"), N_("turns fully"), N_("rocks"),
+    )  # fmt: skip
+    asked = (
+        *given(task, LINKS),
+        Value("frame", f"l{task.frame}", "word", N_("frame")),
+        Value("driver", f"l{task.driver}", "word", N_("driver")),
+    )
+    values = [
+        Value("", FOUR_BARS[TYPES[int(found.kind)]], "word", N_("type")),
+        Value("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
+    ]
+    for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
+        values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
+    source = N_("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
+               "four-bar linkages, Mechanism and Machine Theory 20 (1985)")  # fmt: skip
+    return Outcome(asked, tuple(values), source, _turning(bool(found.turns[0]), change))
+
+
+def _turning(turns: bool, change: bool) -> tuple[Demand, ...]:
+    """Nothing is foretold of a change point."""
+    words = N_("driver turns fully (1: yes, 0: no)")
+    return () if change else (Demand(words, float(turns), "number", crank_turns, asked=False),)
+
+
+# Which links turn fully: keys of the task.
+
+
+Link = Literal["l1", "l2", "l3", "l4"]
+SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record, keys that it needs, keys that it may have
+    (FourBar, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
+    (CrankSlider, ("r", "l"), ("e",)),
+    (SlottedLever, ("OA", "OC"), ("e",)),
+)
+
+
+class Shape(Block):
+    """Crank conditions of a four-bar (l1 to l4), a crank-slider (r, l, e) or a slotted lever (OA, OC, e)."""
+
+    task: Literal["grashof"]
+    l1: FileValue | None = Field(default=None, description="links of a four-bar as they are joined round")
+    l2: FileValue | None = None
+    l3: FileValue | None = None
+    l4: FileValue | None = None
+    frame: Link | None = Field(default=None, description="which of them is the frame; l4")
+    driver: Link | None = Field(default=None, description="which of its two neighbours drives; the next one round")
+    r: FileValue | None = Field(default=None, description="crank of a crank-slider")
+    l: FileValue | None = Field(default=None, description="its rod")  # noqa: E741
+    e: FileValue | None = Field(default=None, description="offset of the guide, or of the slot; 0")
+    OA: FileValue | None = Field(default=None, description="crank of a slotted lever")
+    OC: FileValue | None = Field(default=None, description="distance of its fixed hinges")
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The lengths in m. Raises ProblemError."""
+    found = numbers(shape, values, LINKS)
+    given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
+    fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
+    if not fitting:
+        raise ProblemError(
+            translated(UNDETERMINED), found=", ".join(sorted(given)) or _("none"),
+            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS), key=True,
+        )  # fmt: skip
+    record = fitting[0]
+    if record is FourBar:
+        frame = int((shape.frame or "l4")[1])
+        driver = int(shape.driver[1]) if shape.driver else frame % 4 + 1
+        if (driver - frame) % 2 == 0:
+            allowed = ", ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
+            raise ProblemError(
+                _("the driver is hinged to the frame"), path=("driver",),
+                found=_("'l{driver}' opposite the frame l{frame}").format(driver=driver, frame=frame),
+                allowed=allowed,
+            )  # fmt: skip
+        found |= {"frame": frame, "driver": driver}
+    made: Task = record(**found)
+    return made

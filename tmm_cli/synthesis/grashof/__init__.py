@@ -1,1 +1,0 @@
-"""Which links of a four-bar, a crank-slider or a slotted lever turn fully."""

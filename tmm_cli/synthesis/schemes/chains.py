@@ -1,0 +1,272 @@
+"""When two structures are the same: a canonical form of small graphs with coloured vertices and edges.
+
+Colours are refined by those of the neighbours until nothing changes; where vertices of one colour are left, each in
+turn is given a colour of its own, and the least of all the forms is kept. Two graphs are isomorphic exactly when their
+forms are equal. Source of the method: B. D. McKay, Practical graph isomorphism, Congressus Numerantium 30 (1981).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, pairwise, permutations
+
+from tmm_cli.mechanics.structure.graph import reach
+
+Form = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
+"""Colours of the vertices in canonical order, and the edges (i, j, kind), i < j, in that numbering."""
+
+
+def canonical(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> Form:
+    """The form of a simple graph on the vertices 0 .. len(colours) - 1; an edge joins two of them and has a kind."""
+    beyond = 2 * max(len(colours), *colours) + 2  # all colours that there can be: one number tells kind and colour
+    beside: list[list[tuple[int, int]]] = [[] for _ in colours]
+    for (i, j), kind in edges.items():
+        beside[i].append((kind * beyond, j))
+        beside[j].append((kind * beyond, i))
+    return min(_forms(list(colours), colours, beside, edges))
+
+
+def _forms(
+    refined: list[int],
+    colours: Sequence[int],
+    beside: list[list[tuple[int, int]]],
+    edges: Mapping[tuple[int, int], int],
+) -> list[Form]:
+    refined = _refine(refined, beside)
+    cells: dict[int, list[int]] = {}
+    for vertex, colour in enumerate(refined):
+        cells.setdefault(colour, []).append(vertex)
+    shared = [(len(cell), colour) for colour, cell in cells.items() if len(cell) > 1]
+    if not shared:
+        ordered = tuple(colours[cells[colour][0]] for colour in sorted(cells))
+        renamed = ((*sorted((refined[i], refined[j])), kind) for (i, j), kind in edges.items())
+        return [(ordered, tuple(sorted((i, j, kind) for i, j, kind in renamed)))]
+    cell = cells[min(shared)[1]]
+    found = []
+    for vertex in cell:
+        # half a step below the others of its cell
+        apart = [2 * colour + 1 for colour in refined]
+        apart[vertex] -= 1
+        found += _forms(apart, colours, beside, edges)
+    return [min(found)]
+
+
+def _refine(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
+    """Colours 0, 1, ... that tell apart what the neighbours, their neighbours, ... tell apart."""
+    count = 0
+    while True:
+        keys = [
+            (colour, *sorted([kind + colours[other] for kind, other in near]))
+            for colour, near in zip(colours, beside, strict=True)
+        ]
+        rank = {key: k for k, key in enumerate(sorted(set(keys)))}
+        colours = [rank[key] for key in keys]
+        if len(rank) == count:
+            return colours
+        count = len(rank)
+
+
+# Kinematic chains: all that can be built from n links with turning pairs so that they have the mobility W.
+#
+# Convention of the counts. A chain is a set of n links and simple turning pairs (no compound hinges), two links
+# sharing at most one pair, connected, every link with two pairs or more, 3(n - 1) - 2p = W, and no sub-chain of two
+# links or more rigid: 3(k - 1) - 2p >= 1 for every sub-chain of k links. Chains that fall apart when one link or one
+# pair is taken away (fractionated ones: each part moves by itself) are counted, as the classical tables do, and
+# marked; with W = 1 there are none. n = 4, 6, 8, 10: 1, 2, 16, 230 for W = 1; n = 5, 7, 9: 1, 4, 40 for W = 2, of
+# which 0, 1, 5 are fractionated; n = 6, 8, 10: 1, 7, 98 for W = 3. Source of the counts: T. S. Mruthyunjaya,
+# Kinematic structure of mechanisms revisited, Mechanism and Machine Theory 38 (2003) 279-320.
+#
+# Way: a chain with all its binary links taken out of their edges is a multigraph with L = (n - W - 1)/2 independent
+# contours and no vertex below degree 3; there are few of them, and the binary links are distributed over their edges.
+
+
+MOST_LINKS = 11  # 12 links with W = 1 are 6856 chains, and minutes of work
+
+Bundle = tuple[int, int, int]
+"""Vertices i <= j of a multigraph and the number of edges between them (of loops, when i = j)."""
+
+
+@dataclass(frozen=True)
+class KinematicChain:
+    """A kinematic chain: links 0 .. n - 1 (those with most pairs first) and its turning pairs (i, j), i < j."""
+
+    links: int
+    pairs: tuple[tuple[int, int], ...]
+
+    @property
+    def mobility(self) -> int:
+        """3(n - 1) - 2p: with one of the links held."""
+        return 3 * (self.links - 1) - 2 * len(self.pairs)
+
+    @cached_property
+    def assortment(self) -> tuple[int, ...]:
+        """Numbers of binary, ternary, quaternary, ... links."""
+        degrees = Counter(Counter(link for pair in self.pairs for link in pair).values())
+        return tuple(degrees[d] for d in range(2, max(degrees) + 1))
+
+    @cached_property
+    def fractionated(self) -> bool:
+        """Whether taking away one link separates the rest (a pair whose removal does so has such a link beside it)."""
+        return any(not _connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
+
+    @cached_property
+    def form(self) -> Form:
+        """Canonical form: equal for isomorphic chains and for no others."""
+        return canonical([0] * self.links, dict.fromkeys(self.pairs, 0))
+
+
+def contours(links: int, mobility: int) -> int | None:
+    """Independent contours of a closed chain; None when there is no such chain."""
+    twice = links - mobility - 1
+    return twice // 2 if mobility >= 1 and twice >= 2 and twice % 2 == 0 else None
+
+
+def chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
+    """All chains of so many links, no two isomorphic, by assortment of links; links are at most MOST_LINKS."""
+    if links > MOST_LINKS:
+        raise ValueError(f"chains of at most {MOST_LINKS} links are listed")
+    loops = contours(links, mobility)
+    if loops is None:
+        return ()
+    if loops == 1:
+        return (KinematicChain(links, tuple(sorted(tuple(sorted((k, (k + 1) % links))) for k in range(links)))),)  # type: ignore[misc]
+    found = [
+        _grown(bundles, binaries, links)
+        for vertices, bundles in _multigraphs(loops)
+        for binaries in _distributions(vertices, bundles, links - vertices)
+    ]
+    return tuple(sorted(found, key=lambda chain: (tuple(-k for k in chain.assortment), chain.pairs)))
+
+
+def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
+    """Connected multigraphs with so many independent contours and all degrees 3 and more: vertices, bundles."""
+    seen = set()
+    for extra in _partitions(2 * (loops - 1)):
+        degrees = [2 + k for k in extra]
+        for bundles in _filled(degrees, 0, 0):
+            if not _connected(set(range(len(degrees))), [(i, j) for i, j, _ in bundles]):
+                continue
+            at = {i: count for i, j, count in bundles if i == j}
+            colours = [degree * 10 + at.get(v, 0) for v, degree in enumerate(degrees)]
+            form = canonical(colours, {(i, j): count for i, j, count in bundles if i != j})
+            if form not in seen:
+                seen.add(form)
+                yield len(degrees), tuple(bundles)
+
+
+def _partitions(total: int, most: int | None = None) -> Iterator[list[int]]:
+    if total == 0:
+        yield []
+    for first in range(min(total, most or total), 0, -1):
+        for rest in _partitions(total - first, first):
+            yield [first, *rest]
+
+
+def _filled(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
+    """All ways to use up the degrees that are left, from the bundle (i, j) on."""
+    if i == len(left):
+        yield []
+        return
+    if j == len(left):
+        if left[i] == 0:
+            yield from _filled(left, i + 1, i + 1)
+        return
+    most = left[i] // 2 if i == j else min(left[i], left[j])
+    for count in range(most + 1):
+        after = list(left)
+        after[i] -= count
+        after[j] -= count
+        for rest in _filled(after, i, j + 1):
+            yield [(i, j, count), *rest] if count else rest
+
+
+def _distributions(vertices: int, bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+    """Ways to put binary links on the edges, one of each isomorphism class: their numbers, bundle by bundle.
+
+    A part with the vertices S, all its edges that carry fewer than two binary links (each such edge with m of them
+    takes 2 - m freedoms) and no others has the least mobility of all sub-chains about S.
+    """
+    inside = [
+        (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in part and j in part])
+        for size in range(2, vertices + 1)
+        for part in combinations(range(vertices), size)
+    ]
+    same = _automorphisms(vertices, bundles)
+    seen = set()
+    for binaries in _spread(bundles, binary):
+        taken = [sum(max(0, 2 - m) for m in numbers) for numbers in binaries]
+        if any(free - sum(taken[k] for k in part) < 1 for free, part in inside):
+            continue
+        form = min(tuple(binaries[k] for k in order) for order in same)
+        if form not in seen:
+            seen.add(form)
+            yield binaries
+
+
+def _spread(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+    """Binary links on the edges of each bundle, so that no contour of one bundle is rigid."""
+    if not bundles:
+        if binary == 0:
+            yield ()
+        return
+    (i, j, count), rest = bundles[0], bundles[1:]
+    least = sum(_least(i == j, count) for i, j, count in rest)
+    for numbers in _ascending(count, binary - least, 3 if i == j else 0):
+        # two edges of one bundle close a contour of their binary links and two others
+        if i != j and count > 1 and numbers[0] + numbers[1] < 2:
+            continue
+        for others in _spread(rest, binary - sum(numbers)):
+            yield (numbers, *others)
+
+
+def _least(loop: bool, count: int) -> int:
+    """The fewest binary links that a bundle can do with: a contour has four links."""
+    return 3 * count if loop else max(0, 2 * (count - 1))
+
+
+def _ascending(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
+    """Ascending rows of so many numbers from `least` on, with a sum of at most `most`."""
+    if count == 0:
+        yield ()
+        return
+    for first in range(least, most // count + 1):
+        for rest in _ascending(count - 1, most - first, first):
+            yield (first, *rest)
+
+
+def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
+    """Every renumbering of the vertices that leaves the multigraph as it is: whose place each bundle takes."""
+    counts = {(i, j): count for i, j, count in bundles}
+    number = {(i, j): k for k, (i, j, _) in enumerate(bundles)}
+    found = []
+    for order in permutations(range(vertices)):
+        moved = [(min(order[i], order[j]), max(order[i], order[j])) for i, j, _ in bundles]
+        if all(counts.get(pair) == count for pair, (_, _, count) in zip(moved, bundles, strict=True)):
+            found.append([number[pair] for pair in moved])
+    return found
+
+
+def _grown(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:
+    """The chain with its binary links in their edges, those with most pairs first."""
+    after = 1 + max(j for _, j, _ in bundles)
+    pairs = []
+    for (i, j, _), numbers in zip(bundles, binaries, strict=True):
+        for count in numbers:
+            path = [i, *range(after, after + count), j]
+            after += count
+            pairs += [(min(a, b), max(a, b)) for a, b in pairwise(path)]
+    assert after == links
+    return KinematicChain(links, tuple(sorted(pairs)))
+
+
+def _connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
+    """Whether the links hold together by the pairs between them."""
+    beside: dict[int, list[int]] = {link: [] for link in links}
+    for i, j in pairs:
+        if i in links and j in links:
+            beside[i].append(j)
+            beside[j].append(i)
+    return len(reach(beside, next(iter(links)))) == len(links)

@@ -1,0 +1,197 @@
+"""Structural synthesis: all schemes of mechanisms that come of attaching Assur groups one after another.
+
+A scheme begins with driving cranks hinged to the frame; every group is joined by its outer pairs to the frame and to
+links that are there already (L. V. Assur; I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3). The mobility
+is then the number of cranks, and no part is over-held by count: a group adds no freedom and takes none. Admissible is
+what moves as its scheme says:
+
+- the outer pairs of a group do not all lie on one and the same link, with which the group would be a rigid body;
+- every hinge turns: two links that keep their directions to one another (joined by sliding pairs alone) have no hinge
+  between them, as a contour with a single turning pair has;
+- every crank drives something, and the mechanism does not fall into two when the frame is taken away.
+
+All pairs are simple: a compound hinge is two hinges of a link at one place, a matter of dimensions. Two schemes are
+the same when their links correspond, the frame to the frame, cranks to cranks and every pair to one of its kind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Literal
+
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.structure.assur import structural_formula
+from tmm_cli.mechanics.structure.group import ROMAN
+from tmm_cli.synthesis.schemes.chains import Form, canonical
+
+Kind = Literal["R", "P"]
+Joint = tuple[int, int, Kind]
+"""Two links, the one placed earlier first, and the kind of their pair. Link 0 is the frame."""
+
+MOST_LINKS = 9
+MOST_CRANKS = 3
+MOST_SCHEMES = 2000
+
+
+@dataclass(frozen=True)
+class GroupType:
+    """An Assur group as a building block: inner pairs between its links 0, 1, ...; outer pairs of its links."""
+
+    name: str
+    grade: int
+    links: int
+    inner: tuple[Joint, ...]
+    outer: tuple[tuple[int, Kind], ...]
+
+    @property
+    def title(self) -> str:
+        """II RRP: class and type; the class alone where only one type of it is known here."""
+        return f"{ROMAN[self.grade]} {self.name}" if self.grade == 2 else self.name
+
+
+def _dyad(name: str) -> GroupType:
+    return GroupType(name, 2, 2, ((0, 1, _kind(name[1])),), ((0, _kind(name[0])), (1, _kind(name[2]))))
+
+
+def _kind(letter: str) -> Kind:
+    return "P" if letter == "P" else "R"
+
+
+TYPES: dict[str, GroupType] = {
+    **{name: _dyad(name) for name in ("RRR", "RRP", "RPR", "PRP", "RPP")},
+    # a ternary link and its three leads
+    "III": GroupType("III", 3, 4, ((0, 1, "R"), (0, 2, "R"), (0, 3, "R")), ((1, "R"), (2, "R"), (3, "R"))),
+    # a closed contour of four; leads on adjacent links would split it into two dyads
+    "IV": GroupType("IV", 4, 4, ((0, 1, "R"), (1, 2, "R"), (2, 3, "R"), (0, 3, "R")), ((0, "R"), (2, "R"))),
+}
+CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV": ("IV",)}
+
+
+class TooManySchemes(Exception):  # noqa: N818  what is asked for is too much, not wrong
+    """There are more schemes than are listed."""
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A group of a scheme: its type, its links, and the pairs that hold it, the outer ones in the type's order."""
+
+    type: GroupType
+    links: tuple[int, ...]
+    inner: tuple[Joint, ...]
+    outer: tuple[Joint, ...]
+
+    @property
+    def title(self) -> str:
+        """II(2,3), as the formula of structure writes it."""
+        return f"{ROMAN[self.type.grade]}({','.join(map(str, self.links))})"
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """A scheme: links 0 (the frame), 1 .. cranks, then those of the groups, in the order in which they are attached."""
+
+    cranks: int
+    groups: tuple[Placed, ...] = ()
+
+    @property
+    def mobility(self) -> int:
+        """Chebyshev: 3n - 2 p1."""
+        return 3 * self.links - 2 * len(self.joints)
+
+    @property
+    def links(self) -> int:
+        """Moving links."""
+        return self.cranks + sum(len(group.links) for group in self.groups)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """All pairs: of the cranks with the frame, then group by group."""
+        driving: tuple[Joint, ...] = tuple((0, crank, "R") for crank in range(1, self.cranks + 1))
+        return driving + tuple(joint for group in self.groups for joint in (*group.outer, *group.inner))
+
+    @property
+    def formula(self) -> str:
+        """Structural formula, see structural_formula()."""
+        titles = {crank: f"I({FRAME},{crank})" for crank in range(1, self.cranks + 1)}
+        titles |= {link: group.title for group in self.groups for link in group.links}
+        parts: dict[str, list[str]] = {titles[crank]: [] for crank in range(1, self.cranks + 1)}
+        for group in self.groups:
+            ends = [link for i, j, _kind in group.outer for link in (i, j)]
+            parts[group.title] = [titles[link] for link in ends if link in titles and link not in group.links]
+        return structural_formula(parts)
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """II RRR, II RRP, III: class and type of each group."""
+        return tuple(group.type.title for group in self.groups)
+
+    @property
+    def name(self) -> str:
+        """II-RRR-II-RRP, for the name of a file."""
+        return "-".join(title.replace(" ", "-") for title in self.types)
+
+    @cached_property
+    def form(self) -> Form:
+        """Canonical form: equal for the same scheme, whichever way its links are numbered, and for no other."""
+        colours = [0, *[1] * self.cranks, *[2] * (self.links - self.cranks)]
+        return canonical(colours, {(min(i, j), max(i, j)): "RP".index(kind) for i, j, kind in self.joints})
+
+    @cached_property
+    def directions(self) -> tuple[int, ...]:
+        """For every link the first of those that keep their direction to it: joined by sliding pairs alone."""
+        return _first_joined(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
+
+
+def schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(TYPES)) -> tuple[Scheme, ...]:
+    """All admissible schemes with so many moving links and driving cranks, of the given types of groups.
+
+    No two are the same. They are in the order of the types of their groups. Raises TooManySchemes.
+    """
+    if not (mobility <= links <= MOST_LINKS and 1 <= mobility <= MOST_CRANKS):
+        raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS} moving links")
+    order = {TYPES[name].name: k for k, name in enumerate(types)}
+    levels: dict[int, dict[Form, Scheme]] = {mobility: {(start := Scheme(mobility)).form: start}}
+    for count in range(mobility, links):
+        for scheme in levels.get(count, {}).values():
+            for name in order:
+                kind = TYPES[name]
+                if count + kind.links > links:
+                    continue
+                level = levels.setdefault(count + kind.links, {})
+                for grown in attached(scheme, kind):
+                    level.setdefault(grown.form, grown)
+                    if len(level) > MOST_SCHEMES:
+                        raise TooManySchemes
+    found = [s for s in levels.get(links, {}).values() if s.groups and _in_one_piece(s)]
+    return tuple(sorted(found, key=lambda s: [order[group.type.name] for group in s.groups]))
+
+
+def attached(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
+    """Every way to attach one more group of this type (some of them the same scheme)."""
+    first = scheme.links + 1
+    own = tuple(range(first, first + kind.links))
+    inner = tuple((own[a], own[b], pair) for a, b, pair in kind.inner)
+    for held in product(range(first - 1, -1, -1), repeat=len(kind.outer)):
+        if len(set(held)) == 1:
+            continue
+        outer = tuple((known, own[end], pair) for known, (end, pair) in zip(held, kind.outer, strict=True))
+        grown = Scheme(scheme.cranks, (*scheme.groups, Placed(kind, own, inner, outer)))
+        if all(grown.directions[i] != grown.directions[j] for i, j, pair in (*outer, *inner) if pair == "R"):
+            yield grown
+
+
+def _in_one_piece(scheme: Scheme) -> bool:
+    """Whether the moving links, every crank among them, hold together without the frame."""
+    return len(set(_first_joined(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
+
+
+def _first_joined(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+    """For every link, 0 to `links`, the first of those that these pairs join it to, itself among them."""
+    first = list(range(links + 1))
+    for i, j in pairs:
+        low, high = sorted((first[i], first[j]))
+        first = [low if k == high else k for k in first]
+    return tuple(first)

@@ -1,0 +1,111 @@
+"""A scheme as a problem file to start from: dimensions in whole millimetres that assemble, masses, one load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.language import _
+from tmm_cli.synthesis.schemes.layout import SchemeLayout
+from tmm_cli.synthesis.schemes.schemes import Scheme
+
+
+def problem_text(scheme: Scheme, layout: SchemeLayout, title: str) -> str:
+    """The file, as a student would write it."""
+    return "\n".join([*_head(scheme, title), *_links(layout), *_driven(scheme, layout), ""])
+
+
+def _head(scheme: Scheme, title: str) -> Iterable[str]:
+    yield f"# {scheme.formula}; groups: {', '.join(scheme.types)}."
+    yield "# " + _("A scheme to start from: the dimensions only assemble it. Put your own in their places.")
+    yield "tmm: 1"
+    yield f"title: {title}"
+    yield "units: {length: mm, angle: deg}"
+
+
+def _links(layout: SchemeLayout) -> Iterable[str]:
+    frame = ", ".join(f"{name}: {_vector(place)}" for name, place in layout.points[0].items())
+    yield f"points: {{{frame}}}"
+    guides = [slide for slide in layout.slides if slide.carrier == 0]
+    if guides:
+        yield "guides:"
+    for slide in guides:
+        yield f"  g{slide.runner}: {{through: {_vector(slide.through)}, angle: {slide.angle}}}"
+    yield "links:"
+    for link, points in layout.points.items():
+        if link:
+            yield f"  {link}: {{{', '.join([*_points(link, points, layout), *_slides(link, layout)])}}}"
+
+
+def _points(link: int, points: dict[str, complex], layout: SchemeLayout) -> Iterable[str]:
+    """Names and a length where they say it all; coordinates in the link's axes otherwise."""
+    places = list(points.values())
+    if len(points) == 1:
+        yield f"points: [{next(iter(points))}]"
+    elif len(points) == 2 and places[1].imag == 0 and places[1].real > 0:
+        yield f"points: [{', '.join(points)}]"
+        yield f"length: {_number(places[1].real)}"
+    else:
+        yield f"points: {{{', '.join(f'{name}: {_vector(place)}' for name, place in points.items())}}}"
+
+
+def _slides(link: int, layout: SchemeLayout) -> Iterable[str]:
+    for slide in layout.slides:
+        if slide.runner == link and slide.carrier == 0:
+            yield f"slides: {{on: g{link}, point: {slide.point}}}"
+        elif slide.runner == link:
+            names = [name for name, place in layout.points[slide.carrier].items() if place == slide.through]
+            through = names[0] if names else _vector(slide.through)
+            yield f"slides: {{on: {slide.carrier}, through: {through}, angle: {slide.angle}, point: {slide.point}}}"
+
+
+def _driven(scheme: Scheme, layout: SchemeLayout) -> Iterable[str]:
+    first, *others = layout.cranks
+    driven = ["{link: 1, speed: 60 rpm, turns: ccw}"]
+    driven += [f"{{link: {k}, speed: 60 rpm, turns: ccw, at: {at}}}" for k, at in enumerate(others, 2)]
+    yield f"driver: {driven[0]}" if not others else f"driver: [{', '.join(driven)}]"
+    sketch = [f"at: {first}", *(f"{name}: {_vector(place)}" for name, place in layout.places.items())]
+    sketch += [f"{link}: {angle}" for link, angle in layout.angles.items()]
+    yield f"sketch: {{{', '.join(sketch)}}}"
+    yield "masses:"
+    for link, points in layout.points.items():
+        if link:
+            yield f"  {link}: {{{', '.join(_mass(list(points.values())))}}}"
+    yield "loads:"
+    output, load = _load(scheme, layout)
+    yield f"  {load}"
+    if output:
+        yield f"output: {output}"
+    yield "positions: {count: 12, detail: [1]}"
+
+
+def _mass(points: list[complex]) -> Iterable[str]:
+    """A kilogram for every 100 mm, as of a slender bar."""
+    span = max(abs(p - q) for p in points for q in points) / 1000
+    mass = max(1.0, round(10 * span, 1))
+    yield f"mass: {_number(mass)} kg"
+    yield f"inertia: {_number(max(0.001, round(mass * span * span / 12, 4)))}"
+    if len(points) > 1:
+        middle = sum(points) / len(points)
+        yield f"centre: {_vector(complex(round(middle.real), round(middle.imag)))}"
+
+
+def _load(scheme: Scheme, layout: SchemeLayout) -> tuple[int, str]:
+    """The output, the last link that is joined to the frame (a slider before others), or 0; and the load on it."""
+    guided = {slide.runner: slide.angle for slide in layout.slides if slide.carrier == 0}
+    for group in reversed(scheme.groups):
+        held = [own for known, own, __ in group.outer if known == 0]
+        for link in held:
+            if link in guided:
+                return link, f"F: {{on: {link}, force: {{size: 100 N, angle: {guided[link]}}}}}"
+        if held:
+            return held[-1], f"M: {{on: {held[-1]}, moment: -10 N*m}}"
+    last = scheme.links
+    return 0, f"M: {{on: {last}, moment: -10 N*m}}"
+
+
+def _vector(place: complex) -> str:
+    return f"[{_number(place.real)}, {_number(place.imag)}]"
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.10g}"

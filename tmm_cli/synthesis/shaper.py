@@ -1,0 +1,183 @@
+"""Crank shaper by its stroke and k."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import N_, _
+from tmm_cli.mechanics.numerics.tolerances import DEAD_SWING
+from tmm_cli.problem.schema_parts import Value as FileValue
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.synthesis.blocks import Block, numbers, one_of
+from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
+from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke, theta_of
+from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
+from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, lever_parts
+from tmm_cli.synthesis.slotted_lever import Found as Lever
+
+
+def construction(f: Found) -> Construction:
+    """The lever in its extreme positions, the guide midway in D's arc, the ram at both ends of its stroke; O at 0."""
+    middle, half = np.pi / 2, float(f.theta) / 2
+    lever = Lever(
+        f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
+    )
+    segments, arcs, spots, angles = lever_parts(lever, "D")
+    reach = float(f.rod * np.cos(f.pressure))
+    d1, d2 = (spot.at for spot in spots[-2:])
+    e1, e2 = (complex(d.real + reach, float(f.level)) for d in (d1, d2))
+    stroke = abs(e2 - e1)
+    ends = sorted((e1.real, e2.real))
+    segments += [
+        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed"),
+        Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "axis"),
+    ]  # fmt: skip
+    spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
+    top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
+    sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
+    lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
+    return Construction(
+        N_("Extreme positions of the shaper"), tuple(segments), tuple(arcs), tuple(spots),
+        (N_("guide midway between {D}1{D}2 and the top of the arc"),), angles=tuple(angles), sizes=sizes,
+        chain="shaper", wishes=((top,),),
+        values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
+    )  # fmt: skip
+
+
+# Crank shaper (six-bar: crank, stone, slotted lever CD, rod DE, ram) from its stroke and k.
+#
+# D is equally high in both extreme positions of the lever, so the ram's stroke is the chord of D's arc whatever DE is:
+#     CD = H/(2 sin(theta/2)),  OA = OC sin(theta/2),  theta = pi (k - 1)/(k + 1).
+# D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of it has the least pressure angle:
+#     sin(lambda) = CD sin^2(theta/4)/DE.
+
+
+PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
+QUANTITIES: Final = {  # that a task may give: kind and what they are called
+    "stroke": ("length", N_("stroke H of the ram")), "k": ("number", N_("k")), "OC": ("length", N_("frame OC")),
+    "frame_ratio": ("number", N_("OC/CD")), "OA": ("length", N_("crank OA")), "DE": ("length", N_("rod DE")),
+    "rod_ratio": ("number", N_("DE/CD")), "pressure": ("angle", N_("largest pressure angle of the ram")),
+}  # fmt: skip
+FRAMES: Final = ("OC", "frame_ratio", "OA")
+RODS: Final = ("DE", "rod_ratio", "pressure")
+
+
+@dataclass(frozen=True)
+class Task:
+    """Stroke, k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio or the pressure angle (m, rad)."""
+
+    stroke: Any
+    k: Any
+    OC: Any = None
+    frame_ratio: Any = None
+    OA: Any = None
+    DE: Any = None
+    rod_ratio: Any = None
+    pressure: Any = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths (m), level: of the guide over O (m), theta and the largest pressure angle of the ram (rad)."""
+
+    crank: Any
+    frame: Any
+    lever: Any
+    rod: Any
+    level: Any
+    theta: Any
+    pressure: Any
+
+
+def find(task: Task) -> Found:
+    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    theta = theta_of(task.k)
+    sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
+    lever = np.asarray(task.stroke) / (2 * sine)
+    if task.OA is not None:
+        frame = np.asarray(task.OA) / sine
+    else:
+        frame = lever * task.frame_ratio if task.OC is None else np.asarray(task.OC)
+    rise = lever * half_height
+    if task.pressure is not None:
+        rod = rise / np.sin(task.pressure)
+    else:
+        rod = lever * task.rod_ratio if task.DE is None else np.asarray(task.DE)
+    level = lever * (1 - half_height) - frame
+    return Found(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason."""
+    if not task.k > 1:
+        raise Infeasible("k", QUICK_RETURN)
+    half = float(theta_of(task.k)) / 2
+    if not np.pi - 2 * half > DEAD_SWING:
+        raise Infeasible("k", HALF_A_TURN)
+    f = find(task)
+    if not f.frame < f.lever / (1 + np.sin(half)):
+        raise Infeasible(_given_of(task, FRAMES), _("the stone would pass the hinge D of the rod"))
+    steepest = f.pressure if task.pressure is None else task.pressure
+    if not steepest < np.pi / 2 - half:  # where the lever turns back, half its swing from the middle
+        reason = _("the ram would turn back before the lever does: the rod is too steep")
+        raise Infeasible(_given_of(task, RODS), reason)
+
+
+def _given_of(task: Task, keys: tuple[str, ...]) -> str:
+    return next(key for key in keys if getattr(task, key) is not None)
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    refuse(task)
+    f = find(task)
+    kind, text = QUANTITIES["pressure"]
+    found = (
+        Value("OA", f.crank, "length", N_("crank OA")),
+        Value("OC", f.frame, "length", N_("frame OC, C below O")),
+        Value("CD", f.lever, "length", N_("slotted lever CD")),
+        Value("DE", f.rod, "length", N_("rod DE")),
+        Value("y", f.level, "length", N_("guide of the ram above O, y")),
+        Value("", f.theta, "angle", N_("theta = D1CD2")),
+        *((Value("", f.pressure, kind, text),) if task.pressure is None else ()),
+        Value("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
+    )
+    demands = (
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(N_("stroke H of the ram"), float(task.stroke), "length", stroke),
+        Demand(N_("k"), float(task.k), "number", ratio),
+        Demand(text, float(f.pressure), kind, pressure, task.pressure is not None, of="pressure"),
+    )
+    source = N_("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
+               "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
+    return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")
+
+
+# Crank shaper by its stroke and k: keys of the task.
+
+
+class Shape(Block):
+    """A crank shaper by stroke, k, frame OC (its ratio, or the crank) and rod DE (its ratio, or a pressure angle)."""
+
+    task: Literal["shaper"]
+    stroke: FileValue = Field(description="stroke H of the ram")
+    k: FileValue = Field(description="coefficient of change of mean speed, more than 1")
+    OC: FileValue | None = Field(default=None, description="distance of the fixed hinges")
+    frame_ratio: FileValue | None = Field(default=None, description="or OC/CD")
+    OA: FileValue | None = Field(default=None, description="or the crank")
+    DE: FileValue | None = Field(default=None, description="rod")
+    rod_ratio: FileValue | None = Field(default=None, description="or DE/CD")
+    pressure: FileValue | None = Field(
+        default=None, description="or the largest pressure angle of the ram: the shortest rod that keeps it is found"
+    )
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI. Raises ProblemError."""
+    for ways in (FRAMES, RODS):
+        one_of(shape, [(key,) for key in ways])
+    return Task(**numbers(shape, values, QUANTITIES))

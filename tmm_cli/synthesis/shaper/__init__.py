@@ -1,1 +1,0 @@
-"""Crank shaper by its stroke and k."""

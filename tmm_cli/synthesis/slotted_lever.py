@@ -1,0 +1,309 @@
+"""Slotted lever by k (or its swing) and the extreme positions of its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final, Literal
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import N_, _
+from tmm_cli.mechanics.numerics.tolerances import DEAD_SWING
+from tmm_cli.mechanics.numerics.vectors import settled, unit
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem.schema_parts import Value as FileValue
+from tmm_cli.problem.schema_parts import Vector
+from tmm_cli.problem.values import ValueReader
+from tmm_cli.synthesis.blocks import Block, Range, numbers, one_of
+from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box, circle
+from tmm_cli.synthesis.measures import crank_turns, end_angle, k_of, ratio, stroke, theta_of
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value, given
+
+FAMILY: Final = 61  # lengths of OC within bounds that are listed
+
+
+def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot], list[Angle]]:
+    """The lever in its extreme positions, the bisector, the pin's circle that touches both; end: letter of its end."""
+    c, o = complex(f.c), complex(f.o)
+    lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
+    ways = [complex(np.exp(1j * float(psi))) for psi in (f.psi1, f.psi2)]
+    pins = [c + frame * float(np.cos(f.theta / 2)) * way for way in ways]
+    ends = [c + lever * way for way in ways]
+    first, last = sorted((float(f.psi1), float(f.psi1) + float(np.angle(ways[1] / ways[0]))))
+    axis = (o - c) / abs(o - c)
+    top = c + 1.1 * max(lever, frame + crank) * axis
+    segments = [
+        Segment(c, ends[0], "link", f"C{end}"), Segment(o, pins[0], "link", "OA"),
+        Segment(c, ends[1], "link2"), Segment(o, pins[1], "link2", "OA"),
+        Segment(c, o, "axis", "OC"), Segment(o, top, "axis"),
+    ]  # fmt: skip
+    arcs = [circle(o, crank), Arc(c, lever, first, last, "dashed")]
+    spots = [
+        Spot("C", c, "support"), Spot("O", o, "support"), Spot("A1", pins[0], "stone", ways[0]),
+        Spot("A2", pins[1], "stone", ways[1]), Spot(f"{end}1", ends[0], "hinge"), Spot(f"{end}2", ends[1], "hinge"),
+    ]  # fmt: skip
+    corners = [Angle(pin, o, c, right=True) for pin in pins]
+    return segments, arcs, spots, [Angle(c, ends[0], ends[1], "θ"), *corners]
+
+
+def construction(f: Found) -> Construction:
+    """Both extreme positions, with C by the isosceles triangle on B1B2 and O on the bisector."""
+    segments, arcs, spots, angles = lever_parts(f, "B")
+    b1, b2 = spots[-2].at, spots[-1].at
+    segments.append(Segment(b1, b2, "dashed"))
+    return Construction(
+        N_("Extreme positions of the slotted lever"), tuple(segments), tuple(arcs), tuple(spots),
+        (N_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),), angles=tuple(angles), chain="slotted-lever",
+        wishes=(box(complex(f.o), float(f.crank)),),
+        values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length"),
+                ("θ", float(f.theta), "angle")),
+    )  # fmt: skip
+
+
+def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
+    """OA and the stone's distances from C over the free distance OC within its bounds, drawn and in numbers."""
+    assert task.within is not None
+    low, high = (float(x) for x in task.within)
+    frame = np.linspace(low, high, FAMILY)
+    crank = frame * float(np.sin(f.theta / 2))
+    rows = (
+        ("OA", N_("crank OA"), crank), ("nearest", N_("stone from C, at least"), frame - crank),
+        ("farthest", N_("stone from C, at most"), frame + crank),
+    )  # fmt: skip
+    own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
+    lines = (
+        *(Line(text, frame, values) for __, text, values in rows),
+        Line(N_("lever CB"), frame, np.full(FAMILY, float(f.lever))),
+        Line(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
+    )  # fmt: skip
+    title = N_("Crank OA and distance of the stone from C, over OC within its bounds")
+    drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
+    columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
+    values = np.stack((frame, *(values for *__, values in rows)), axis=-1).tolist()
+    title = N_("Slotted levers for OC within its bounds")
+    return drawn, Listing("family", title, columns, tuple(map(tuple, values)), long=True)
+
+
+# Slotted lever by k and the extreme positions of its end B: the crank's pin touches both from O on their bisector.
+#
+# In an extreme position OA is square to CB, so that the lever swings by theta = pi (k - 1)/(k + 1) = B1CB2, and
+#     CB = B1B2/(2 sin(theta/2)),  OA = OC sin(theta/2);
+# the stone moves between OC - OA and OC + OA from C. OC is free. The force on the stone is the lever's moment over its
+# distance from C, so the longest OC that leaves the stone on CB gives the least force: OC (1 + sin(theta/2)) = CB.
+
+
+PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
+QUANTITIES: Final = {  # that a task may give: kind and what they are called
+    "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
+    "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
+}  # fmt: skip
+QUICK_RETURN: Final = N_(
+    "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+)
+HALF_A_TURN: Final = N_("the lever of a crank that turns fully swings by less than 180 deg")
+
+
+@dataclass(frozen=True)
+class Task:
+    """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
+
+    k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
+    lever clockwise from b1 to b2. OC (m), or the crank OA (m), or bounds of OC and which is chosen: force (the longest
+    with the stone on CB) or shortest.
+    """
+
+    b1: Any = None
+    b2: Any = None
+    CB: Any = None
+    c: Any = 0j
+    axis: Any = 0.0
+    side: int = -1
+    k: Any = None
+    swing: Any = None
+    OC: Any = None
+    OA: Any = None
+    within: tuple[Any, Any] | None = None
+    choose: str = "force"
+
+    @property
+    def theta(self) -> Any:
+        return theta_of(self.k) if self.swing is None else np.asarray(self.swing)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Lengths (m), places O and C (m), angles of CB1 and CB2 (rad); longest: OC that leaves the stone on CB."""
+
+    crank: Any
+    frame: Any
+    lever: Any
+    o: Any
+    c: Any
+    psi1: Any
+    psi2: Any
+    theta: Any
+    longest: Any
+
+
+def find(task: Task) -> Found:
+    """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    theta = task.theta
+    sine = np.sin(theta / 2)
+    if task.CB is None:
+        way = np.asarray(task.b2) - task.b1
+        lever = np.abs(way) / 2 / sine
+        c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * way / 2 / np.tan(theta / 2)
+        along = -task.side * 1j * way / np.abs(way)
+        psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
+    else:
+        lever, c = np.asarray(task.CB), task.c
+        along = unit(task.axis)
+        psi1, psi2 = task.axis - task.side * theta / 2, task.axis + task.side * theta / 2
+    longest = lever / (1 + sine)
+    if task.OA is not None:
+        frame = np.asarray(task.OA) / sine
+    elif task.within is None:
+        frame = np.asarray(task.OC)
+    elif task.choose == "force":
+        frame = np.minimum(task.within[1], longest)
+    else:
+        frame = np.asarray(task.within[0])
+    size = lever + frame + np.abs(c)
+    along, c = settled(along, 1.0), settled(c, size)
+    return Found(frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest)
+
+
+def refuse(task: Task) -> None:
+    """Raises Infeasible with the reason."""
+    if task.k is not None and not task.k > 1:
+        raise Infeasible("k", QUICK_RETURN)
+    if task.swing is not None and not task.swing > 0:
+        raise Infeasible("swing", _("a lever that does not swing has no strokes"))
+    if not np.pi - task.theta > DEAD_SWING:
+        raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
+    if task.CB is None and abs(task.b2 - task.b1) == 0:
+        raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
+    if task.within is not None and not 0 < task.within[0] <= task.within[1]:
+        raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
+    if task.within is not None and task.within[0] > find(task).longest:
+        raise Infeasible(("within", 0), _("within these bounds the stone always passes B"))
+
+
+def solve(task: Task) -> Outcome:
+    """The task of one file. Raises Infeasible."""
+    refuse(task)
+    f = find(task)
+    demands = (
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
+        Demand(N_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
+        Demand(N_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
+        *(Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+          for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))),
+    )  # fmt: skip
+    notes = (N_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
+    free = family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
+    drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
+    source = N_("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
+               "on the bisector, OA = OC sin(theta/2)")  # fmt: skip
+    return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
+
+
+def _given(task: Task) -> tuple[Value, ...]:
+    values: list[Value] = []
+    if task.CB is None:
+        for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
+            values += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
+    values += given(task, QUANTITIES)
+    if task.within is not None:
+        force = N_("least force: the longest that leaves the stone on CB")
+        values += [
+            Value("", task.within[0], "length", N_("frame OC, at least")),
+            Value("", task.within[1], "length", N_("frame OC, at most")),
+            Value("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
+        ]
+    return tuple(values)
+
+
+def _found(task: Task, f: Found) -> tuple[Value, ...]:
+    away = f.o - f.c
+    return (
+        Value("OA", f.crank, *QUANTITIES["OA"]),
+        Value("OC", f.frame, *QUANTITIES["OC"]),
+        Value("CB", f.lever, *QUANTITIES["CB"]),
+        Value("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
+        Value("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
+        Value("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
+        Value("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
+        Value("phi", np.arctan2(np.imag(away), np.real(away)), "angle",
+              N_("direction from C to O, of crank and lever when they are in line")),
+        Value("", f.theta, "angle", N_("theta = B1CB2")),
+        Value("", f.frame - f.crank, "length", N_("stone from C, at least")),
+        Value("", f.frame + f.crank, "length", N_("stone from C, at most")),
+        Value("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
+        # in the slow stroke the crank turns as the lever does
+        Value("", N_("counterclockwise") if task.side > 0 else N_("clockwise"), "word",
+              N_("crank for a slow stroke from B1 to B2")),
+    )  # fmt: skip
+
+
+# Slotted lever by k and its extreme positions: keys of the task.
+
+
+ENDS = (("B1", "B2"), ("CB",))
+SWINGS = (("k",), ("swing",))
+FRAMES = (("OC",), ("OA",), ("within",))
+
+
+class Shape(Block):
+    """A slotted lever by the extreme places of its end B (or its length) and k (or its swing)."""
+
+    task: Literal["slotted-lever"]
+    B1: Vector | None = Field(default=None, description="extreme place of the lever's end B")
+    B2: Vector | None = Field(default=None, description="the other one")
+    C: Literal["left", "right"] | None = Field(
+        default=None, description="on which side of the way from B1 to B2 the lever's hinge lies; right"
+    )
+    CB: FileValue | None = Field(default=None, description="length of the lever, instead of its places")
+    support: Vector | None = Field(default=None, description="with CB, the hinge C; [0, 0]")
+    axis: FileValue | None = Field(default=None, description="with CB, direction from C to O; 90 deg")
+    k: FileValue | None = Field(default=None, description="coefficient of change of mean speed, more than 1")
+    swing: FileValue | None = Field(default=None, description="swing of the lever, instead of k")
+    OC: FileValue | None = Field(default=None, description="distance of the fixed hinges")
+    OA: FileValue | None = Field(default=None, description="or the crank")
+    within: Range | None = Field(default=None, description="or bounds of OC")
+    choose: Literal["least force", "shortest"] | None = Field(
+        default=None,
+        description="OC within its bounds: the longest that leaves the stone on CB (least force), or the shortest",
+    )
+
+
+def read(shape: Shape, values: ValueReader) -> Task:
+    """The task in SI. Raises ProblemError."""
+    ends, *__ = (one_of(shape, sets) for sets in (ENDS, SWINGS, FRAMES))
+    _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
+    found = numbers(shape, values, QUANTITIES)
+    if ends == ("CB",):
+        found["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
+        found["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
+    else:
+        found |= {name.lower(): values.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
+    if shape.within is not None:
+        low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
+        found["within"] = (low, high)
+    choose = "shortest" if shape.choose == "shortest" else "force"
+    return Task(**found, side=1 if shape.C == "left" else -1, choose=choose)
+
+
+def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
+    for key, others in needs.items():
+        lacking = [other for other in others if getattr(shape, other) is None]
+        if getattr(shape, key) is not None and lacking:
+            raise ProblemError(
+                _("{key} goes with {others} only").format(key=key, others=_(" and ").join(others)), path=(key,),
+                found=_("{key} without {lacking}").format(key=key, lacking=_(" and ").join(lacking)),
+                allowed=_("{others}, or no {key}").format(others=_(" and ").join(others), key=key),
+                key=True,
+            )  # fmt: skip
