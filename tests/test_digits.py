@@ -31,6 +31,7 @@ from tmm_cli.mechanics.accuracy.digits import Digits, at, bare, bounds, exact, q
 from tmm_cli.mechanics.accuracy.lengths import changed, lengths
 from tmm_cli.mechanics.accuracy.searches import Wide, searched
 from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.forces.lever import Item, Lever
 from tmm_cli.mechanics.groups.pairs.higher import SHAPES
 from tmm_cli.mechanics.kinematics.driver_range import find_range
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
@@ -441,3 +442,12 @@ def test_a_moment_by_the_swing_of_its_rocker_is_judged():
     moment = next(column for column in accuracy(results).table(name).columns if column.header == "M_b")
     assert 0 < np.max(moment.bound) < 1e-10 * np.max(np.abs(moment.array))
     assert beyond(results) is None
+
+
+def test_a_load_named_as_an_inertia_couple_keeps_its_own_row_of_the_lever():
+    zero, couple, load = np.zeros(3), np.full(3, 0.03), np.full(3, -20.0)
+    rows = tuple(Item("M4", "4", size, zero, size) for size in (couple, load))
+    shown = Lever(rows, zero, zero)
+    assert [row.size[0] for row in shown.with_rows_of(shown).items] == [0.03, -20.0]
+    without = Lever(rows[:1], zero, zero)
+    assert [row.size[0] for row in without.with_rows_of(shown).items] == [0.03, 0.0]

@@ -7,6 +7,7 @@ unit speed of the driver, so it exists at rest too. N. E. Zhukovsky 1909; I. I. 
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,9 +54,22 @@ class Lever:
 
         With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more.
         """
-        own, zero = {item.key: item for item in self.items}, 0 * self.balancing
-        items = [own.get(item.key, Item(item.name, item.link, zero, zero, zero)) for item in other.items]
+        own, zero = dict(zip(_numbered(self.items), self.items, strict=True)), 0 * self.balancing
+        items = [
+            own.get(key, Item(item.name, item.link, zero, zero, zero))
+            for key, item in zip(_numbered(other.items), other.items, strict=True)
+        ]
         return replace(self, items=tuple(items))
+
+
+def _numbered(items: tuple[Item, ...]) -> list[tuple[tuple[str, str, bool], int]]:
+    """Keys of items, each with its number among those of one key: a load may have the name of an inertia couple."""
+    seen: Counter[tuple[str, str, bool]] = Counter()
+    keys = []
+    for item in items:
+        seen[item.key] += 1
+        keys.append((item.key, seen[item.key]))
+    return keys
 
 
 def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
