@@ -22,6 +22,8 @@ from tmm_cli.problem.record import Problem
 from tmm_cli.reports.properties import properties_shown
 from tmm_cli.reports.table import Column, Table, table_of_words, with_unit
 
+ASIDE = 0.4  # steps of the scan: so far beside change points and dead positions, which lie at whole angles
+
 Row = tuple[str, Any, Dimension]
 
 
@@ -107,7 +109,11 @@ def _of_stroke(stroke: Stroke, number: int) -> tuple[str, str, str]:
 def _turned(results: Results, strokes: Strokes) -> float:
     """By how much (rad) an output turns that does not come back."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
-    angle = np.unwrap(curve.place(results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)))
+    q = results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)
+    if results.turns:  # not from a change point on: where two hinges coincide, a link has no angle
+        q = q + ASIDE * (q[1] - q[0])
+    angle = curve.place(q)
+    angle = np.unwrap(angle[np.isfinite(angle)])
     turned = abs(float(angle[-1] - angle[0]))
     whole = 2 * np.pi * round(turned / (2 * np.pi))  # whatever repeats has turned by whole turns
     return whole if abs(turned - whole) < CAME_BACK else turned
