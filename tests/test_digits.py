@@ -412,6 +412,20 @@ def test_result_json_has_a_bound_in_the_place_of_every_number():
     assert digits["bound"]["output"]["travel"] < 1e-15 < digits["lengths"]["output"]["travel"] < 0.01
 
 
+def test_rows_of_the_lever_are_those_in_doubles_and_a_couple_that_is_zero_keeps_its_ratio():
+    """With other numbers the couples of two links are zero and have no items; omega_link/omega_1 stays what it is."""
+    results = solved("crank-rocker")
+    lever, motion = results.lever, results.motion
+    fewer = replace(lever, items=tuple(item for item in lever.items if item.end is not None))
+    couples = [item for item in lever.items if item.end is None]
+    assert couples and len(fewer.items) < len(lever.items)
+    filled = fewer.with_rows_of(lever, motion)
+    assert [item.key for item in filled.items] == [item.key for item in lever.items]
+    for item, shown_item in zip(filled.items, lever.items, strict=True):
+        assert np.array_equal(item.arm, shown_item.arm, equal_nan=True)
+        assert np.all(item.moment == (0 if shown_item.end is None else shown_item.moment))
+
+
 def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_hold():
     problem = load(str(SHAPER))
     results = solve(replace(problem, request=replace(problem.request, count=2900)), "kinematics")
@@ -445,9 +459,10 @@ def test_a_moment_by_the_swing_of_its_rocker_is_judged():
 
 
 def test_a_load_named_as_an_inertia_couple_keeps_its_own_row_of_the_lever():
-    zero, couple, load = np.zeros(3), np.full(3, 0.03), np.full(3, -20.0)
-    rows = tuple(Item("M4", "4", size, zero, size) for size in (couple, load))
+    motion = solved("crank-rocker").motion
+    zero = np.zeros(np.shape(motion.q))
+    rows = tuple(Item("M3", "3", zero + size, zero, zero + size) for size in (0.03, -20.0))
     shown = Lever(rows, zero, zero)
-    assert [row.size[0] for row in shown.with_rows_of(shown).items] == [0.03, -20.0]
+    assert [row.size[0] for row in shown.with_rows_of(shown, motion).items] == [0.03, -20.0]
     without = Lever(rows[:1], zero, zero)
-    assert [row.size[0] for row in without.with_rows_of(shown).items] == [0.03, 0.0]
+    assert [row.size[0] for row in without.with_rows_of(shown, motion).items] == [0.03, 0.0]

@@ -218,6 +218,8 @@ def test_point_masses_make_one_body():
     body = solved("masses: {2: {mass: 3 kg, inertia: 0.015, centre: {on: AB, at: 1/3}}}")
     assert folded.reactions.balance.moment == pytest.approx(body.reactions.balance.moment, rel=1e-12)
     assert folded.linkage.links["2"].inertia == pytest.approx(2 * 0.05**2 + 0.1**2)
+    single = solved("masses: {2: {points: [{mass: 0.7 kg, at: B}]}}").linkage.links["2"]
+    assert (single.mass, single.centre, single.inertia) == (0.7, single.points["B"], 0)
     with_body = solved("masses: {2: {mass: 2 kg, inertia: 0, centre: A, points: [{mass: 1 kg, at: B}]}}")
     assert with_body.linkage.links["2"] == folded.linkage.links["2"]
 

@@ -238,7 +238,7 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
         return found
     found = with_forces(found, cycle=False)
     assert found.lever is not None and results.lever is not None
-    return replace(found, lever=found.lever.with_rows_of(results.lever))
+    return replace(found, lever=found.lever.with_rows_of(results.lever, moved))
 
 
 def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:

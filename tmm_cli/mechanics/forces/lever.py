@@ -49,17 +49,20 @@ class Lever:
     balancing: Real
     difference: Real
 
-    def with_rows_of(self, other: Lever) -> Lever:
-        """The same lever with the items of another one, each in its place; what has no moment here is zero.
+    def with_rows_of(self, other: Lever, motion: Motion) -> Lever:
+        """The same lever, computed from this motion, with the items of another one, each in its place.
 
-        With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more.
+        With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more. A force that is
+        zero here has no arm; a couple has its ratio of speeds all the same.
         """
         own, zero = dict(zip(_numbered(self.items), self.items, strict=True)), 0 * self.balancing
-        items = [
-            own.get(key, Item(item.name, item.link, zero, zero, zero))
-            for key, item in zip(_numbered(other.items), other.items, strict=True)
-        ]
-        return replace(self, items=tuple(items))
+
+        def zero_item(item: Item) -> Item:
+            arm = motion.link(item.link).first if item.end is None else zero
+            return Item(item.name, item.link, zero, arm, zero)
+
+        keys = zip(_numbered(other.items), other.items, strict=True)
+        return replace(self, items=tuple(own.get(key) or zero_item(item) for key, item in keys))
 
 
 def _numbered(items: tuple[Item, ...]) -> list[tuple[tuple[str, str, bool], int]]:

@@ -201,12 +201,14 @@ def _with_mass(link: Link, part: Part, gravity: complex) -> Link:
 
 def _with_points(link: Link, part: Part) -> Link:
     """The same with its point masses: one mass, in one centre, with the inertia about it (Steiner)."""
-    bodies = [(link.mass, link.centre)]
+    bodies = [(link.mass, link.centre)] if link.mass > 0 else []
     for k, given in enumerate(part.given.points):
         own = Part(given, (*part.path, "points", k), part.values)
         bodies.append((own.positive("mass", MASS), own.place("at", link.points, link.name)))
-    if len(bodies) == 1:
+    if not part.given.points:
         return link
+    if len(bodies) == 1:  # exactly there, and with nothing about its centre, in every precision
+        return replace(link, mass=bodies[0][0], centre=bodies[0][1])
     mass = sum(m for m, __ in bodies)
     centre = sum(m * at for m, at in bodies) / mass
     return replace(
