@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import warnings
 from dataclasses import replace
@@ -350,6 +351,51 @@ def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
     results = solved_text(ladder(2))
     assert results.structure.groups[0].title == "III(a,t0,g0,t1,g1,e)"
     assert bool(results.motion.moving.all())
+
+
+def kites(number):
+    """A gear at 1/50 of the driver's speed, then so many kites, each a quarter of a turn on from the rocker before it.
+
+    The hinge A of a kite runs over the pivot of its rocker, which rotates once in two turns of its crank.
+    """
+    crank, at, points, links = cmath.rect(100, math.pi / 3), 0, ["G: [-200, 0]", "O0: [0, 0]"], []
+    places = [f"A0: [{crank.real}, {crank.imag}]"]
+    for k in range(1, number + 1):
+        diagonal = 100 - crank
+        half = math.sqrt(250**2 - abs(diagonal) ** 2 / 4)
+        rocker = diagonal / 2 + diagonal / abs(diagonal) * 1j * half - diagonal
+        crank, at = 1j * 100 * rocker / 250, at + 100
+        points.append(f"O{k}: [{at}, 0]")
+        places += [f"B{k}: [{at + rocker.real}, {rocker.imag}]", f"A{k}: [{at + crank.real}, {crank.imag}]"]
+        links.append(f"  c{k}: {{points: [A{k - 1}, B{k}], length: 250}}")
+        links.append(f"  r{k}: {{points: {{O{k}: [0, 0], B{k}: [250, 0], A{k}: [0, 100]}}}}")
+    return (
+        f"tmm: 1\npoints: {{{', '.join(points)}}}\nlinks:\n  g: {{points: [G]}}\n"
+        "  1: {points: [O0, A0], length: 100}\n" + "\n".join(links)
+        + "\ngears: {a: {between: [g, 1], ratio: 0.02, offset: 60 deg}}\ndriver: {link: g, speed: 1 rad/s}\n"
+        + f"sketch: {{at: 0, {', '.join(places)}}}\n"
+    )  # fmt: skip
+
+
+def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monkeypatch):
+    """50 turns of the driver are one of the first crank, and each kite doubles them."""
+    text = kites(2)
+    assert bool(solved_text(text).motion.moving.all())
+    assert "the change points of group II(" in refusal(kites(10))
+    monkeypatch.setattr("tmm_cli.mechanics.assembly.choose.MOST_TURNS", 299)
+    assert refusal(text) == (
+        f"x.yaml:{place(text, 'links:')}: links: the change points of group II(c2,r2) take too long to find: so many "
+        "groups lie before it\n  found:   3 groups over 100 turns of the driver\n"
+        "  allowed: groups times turns: at most 299"
+    )
+
+
+def test_a_group_that_is_too_large_is_named_before_a_search_that_is_too_long(monkeypatch):
+    monkeypatch.setattr("tmm_cli.mechanics.assembly.choose.MOST_TURNS", 0)
+    text = changed(ladder(47), "points: {", "points: {Q: [-1, 2], ")
+    text = changed(text, "driver:", "  p: {points: [A, P], length: 0.8}\n  q: {points: [Q, P], length: 0.8}\ndriver:")
+    text = changed(text, "sketch: {at: 0, ", "sketch: {at: 0, P: [-0.2, 1.9], ")
+    assert "a group of so many links is not solved: III(a,t0,g0,t1," in refusal(text)
 
 
 def test_a_group_that_moves_by_itself_is_in_a_dead_position():

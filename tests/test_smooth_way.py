@@ -105,6 +105,44 @@ def test_other_linkages_with_change_points_move_without_a_jump(text, turns):
     assert np.max(np.abs(ahead - step * (w[1:] + w[:-1]) / 2)) < 1e-3 * step
 
 
+def chain(number):
+    """So many parallelograms, the rocker of each the crank of the next."""
+    links, points, places = ["  1: {points: [O0, A0], length: 100}"], ["O0: [0, 0]"], []
+    for k in range(1, number + 1):
+        points.append(f"O{k}: [{300 * k}, 0]")
+        places.append(f"A{k}: [{300 * k + 50}, 86.6]")
+        links.append(f"  c{k}: {{points: [A{k - 1}, A{k}], length: 300}}")
+        links.append(f"  r{k}: {{points: [O{k}, A{k}], length: 100}}")
+    return (
+        f"tmm: 1\npoints: {{{', '.join(points)}}}\nlinks:\n" + "\n".join(links)
+        + f"\ndriver: {{link: 1, speed: 60 rpm}}\nsketch: {{at: 60 deg, {', '.join(places)}}}\n"
+    )  # fmt: skip
+
+
+def test_a_chain_of_parallelograms_comes_back_after_one_turn():
+    """All rockers go as the crank does and the couplers translate: what a group leaves of its digits moves no later
+    change point away from it."""
+    results = moved(chain(12))
+    assert (results.driver_range.turns, results.driver_range.repeats) == (1, True)
+    motion = everywhere(results, 101)
+    for k in range(1, 13):
+        assert np.allclose(motion.first[f"r{k}"].w, 1, rtol=0, atol=1e-6)
+        assert np.allclose(motion.poses[f"c{k}"].z, 1, rtol=0, atol=1e-6)
+
+
+def test_a_kite_whose_hinges_meet_has_its_rotation_in_the_table():
+    """The rocker of a Galloway mechanism rotates once in two turns of the crank.
+
+    Where A lies on D, omega_3/omega_1 is (1 + 100/250)/2, half a cycle later (1 - 100/250)/2.
+    """
+    results = moved(at_places(KITE, "[0, 360 deg]"))
+    (quality,) = tables(results)
+    rows = dict(zip(quality.columns[0].values, quality.columns[1].values, strict=True))
+    assert rows["turns of the driver in a cycle"] == 2
+    assert rows["link 3 turns in a cycle by"] == pytest.approx(360, abs=1e-9)  # deg
+    assert results.motion.first["3"].w == pytest.approx([0.7, 0.3], rel=1e-9)
+
+
 def test_a_place_is_found_alone():
     results = moved(PARALLELOGRAM)
     alone = [float(at_positions(results, np.array([q])).first["3"].w[0]) for q in (-20.0, -1.0, 1.0, 4.0, 100.0)]

@@ -67,6 +67,17 @@ class GroupTooLargeError(LinkageError):
         self.group, self.most = group, most
 
 
+class ChangePointSearchError(LinkageError):
+    """The change points of a group depend on too many groups over too many turns of the driver.
+
+    groups: how many groups are computed; turns: over how many turns; most: the budget, groups times turns.
+    """
+
+    def __init__(self, group: Group, groups: int, turns: int, most: int) -> None:
+        super().__init__(group.title)
+        self.group, self.groups, self.turns, self.most = group, groups, turns, most
+
+
 class UnknownPositionError(LinkageError):
     """A position number beyond those of the file."""
 

@@ -12,6 +12,7 @@ from tmm_cli.mechanics.errors import (
     AmbiguousSketchError,
     AssemblyError,
     BySpeedError,
+    ChangePointSearchError,
     GroupTooLargeError,
     LinkageError,
     LongRunError,
@@ -115,6 +116,18 @@ def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
         _("a group of so many links is not solved: {title}").format(title=error.group.title), path=("links",),
         found=str(len(error.group.links)),
         allowed=_("at most {most} in one group; any number of groups").format(most=error.most), key=True,
+    )  # fmt: skip
+
+
+@worded.register
+def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> ProblemError:
+    return ProblemError(
+        _("the change points of group {title} take too long to find: so many groups lie before it").format(
+            title=error.group.title
+        ),
+        path=("links",), key=True,
+        found=_("{groups} groups over {turns} turns of the driver").format(groups=error.groups, turns=error.turns),
+        allowed=_("groups times turns: at most {most}").format(most=error.most),
     )  # fmt: skip
 
 

@@ -67,7 +67,8 @@ class Inputs:
 class Mechanism:
     """A linkage with its structure.
 
-    What needs the assembly raises AssemblyError, AmbiguousSketchError, SketchMismatchError, GroupTooLargeError.
+    What needs the assembly raises AssemblyError, AmbiguousSketchError, SketchMismatchError, GroupTooLargeError,
+    ChangePointSearchError.
     """
 
     inputs: Inputs

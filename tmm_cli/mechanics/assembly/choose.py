@@ -12,8 +12,8 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.search import assembled, check_fit, nearest_to_sketch
-from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError
+from tmm_cli.mechanics.assembly.search import assembled, check_fit, nearest_to_sketch, refuse_large_group
+from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, ChangePointSearchError
 from tmm_cli.mechanics.groups.base import Closed, HingeEnd, Kernel, reach
 from tmm_cli.mechanics.groups.branch import SmoothWay, Winding
 from tmm_cli.mechanics.groups.closed_forms import CLOSED
@@ -27,13 +27,19 @@ from tmm_cli.mechanics.structure.cycle import turns_of_cycle
 from tmm_cli.mechanics.structure.group import Group
 
 SCAN = 360  # places a turn
+MOST_TURNS = 5_000  # groups times turns of the driver that one search covers: a second and a tenth of a gigabyte each
 CLOSER = 129  # places between two of these, where it seems to come to nothing
 BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
+SHARED_POINT = 1e-4  # steps of the scan: a change point this near to one of an earlier group is the same
+VANISHED_BESIDE = 0.1  # of the determinant BESIDE: the rounding of many earlier groups leaves less in a shared point
 SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
 
 
 def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> SmoothWay | None:
-    """The way of a group through its change points; None where it has none, or they are all touched only."""
+    """The way of a group through its change points; None where it has none, or they are all touched only.
+
+    Raises ChangePointSearchError where the groups before it come back only after too many turns of the driver.
+    """
     upto = towards((*before, kernel), kernel.group.links)
     turns = linkage.driver.kind == "turn"
     number = turns_of_cycle(linkage) or 1
@@ -41,6 +47,8 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
         way = other.way if isinstance(other, Closed) else None
         if way is not None and way.cycle is not None and len(way.places) % 2:
             number *= 2
+    if number * len(upto) > MOST_TURNS:
+        raise ChangePointSearchError(kernel.group, len(upto), number, MOST_TURNS)
     half = np.pi * number if turns else reach(linkage)
     start, step = linkage.sketch.at - half, 2 * half / (SCAN * number)
     q = start + step * np.arange(-2, SCAN * number + 3)
@@ -50,7 +58,8 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
     with np.errstate(invalid="ignore"):  # of places where nothing is
         rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
-    found = np.sort(_exact(linkage, upto, q[np.flatnonzero(near) + 1], float(step)))
+    earlier = _change_points_before(upto, float(q[0]), float(q[-1]))
+    found = np.sort(_exact(linkage, upto, q[np.flatnonzero(near) + 1], float(step), earlier))
     if turns:
         found = np.sort(found - 2 * half * np.floor((found - start) / (2 * half)))
     places = found[np.diff(found, prepend=-np.inf) > step]
@@ -59,8 +68,18 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
     return SmoothWay(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
 
 
-def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float) -> Real:
-    """The change points near places (places,), to the last bit, where the group has no room to spare and can pass."""
+def _change_points_before(upto: tuple[Kernel, ...], low: float, high: float) -> Real:
+    """Change points (points,), in growing order, of the groups that the last one depends on."""
+    ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, Closed) and kernel.way is not None]
+    return np.sort(np.concatenate([np.zeros(0), *(way.within(low, high) for way in ways)]))
+
+
+def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float, earlier: Real) -> Real:
+    """The change points near places (places,), to the last bit, where the group has no room to spare and can pass.
+
+    Earlier groups are known to half their digits beside a change point of their own (earlier, in growing order). What
+    is found next to it is that point itself: in a chain of parallelograms the points would drift apart otherwise.
+    """
     if not places.size:
         return places
     to_spare = partial(slack, linkage, upto)
@@ -71,6 +90,11 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float
     if not places.size:
         return places
     best = pinned(linkage, upto, least(to_spare, places - step, places + step)[0], step)
+    shared = np.zeros(best.size, dtype=bool)
+    if earlier.size:
+        nearest = earlier[np.argmin(np.abs(best[:, None] - earlier), axis=1)]
+        shared = np.abs(best - nearest) <= step * SHARED_POINT
+        best = np.where(shared, nearest, best)
     beside = best[:, None] + step * BESIDE * np.array([-2, -1, 0, 1, 2])
     states = link_states(linkage, upto, beside.ravel(), 0, blank=False)
     at = states.placements[-1]
@@ -79,7 +103,8 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float
         for values in (np.abs(at.det), at.dead, states.placed)
     )
     passes = (det[:, 0] <= SIMPLE * det[:, 1]) & (det[:, 4] <= SIMPLE * det[:, 3])
-    exact: Real = best[dead[:, 2] & np.all(placed, axis=1) & passes]
+    vanishes = dead[:, 2] | shared & (det[:, 2] <= VANISHED_BESIDE * np.minimum(det[:, 1], det[:, 3]))
+    exact: Real = best[vanishes & np.all(placed, axis=1) & passes]
     return exact
 
 
@@ -129,15 +154,19 @@ def assemble(
 ) -> tuple[Kernel, ...]:
     """The groups with their assemblies, in solving order; like: those of a linkage whose lengths differ, which helps.
 
-    Raises AssemblyError, AmbiguousSketchError, SketchMismatchError.
+    Raises GroupTooLargeError, ChangePointSearchError, AssemblyError, AmbiguousSketchError, SketchMismatchError.
     """
+    groups = structure.solved if groups is None else groups
+    for group in groups:
+        if not any(kind.fits(group) for kind in CLOSED):
+            refuse_large_group(group)
     q = np.array([linkage.sketch.at])
     drives = drives_at(linkage, q)
     poses = {FRAME: frame_state(q)[0]}
     for driver in linkage.cranks:
         poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
     chosen: list[Kernel] = []
-    for group in structure.solved if groups is None else groups:
+    for group in groups:
         other = like[len(chosen)] if like else None
         try:
             kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)

@@ -120,16 +120,20 @@ STRIDE = 0.5  # rad, or of the group's size: the longest step then
 CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
 
 
+def refuse_large_group(group: Group) -> None:
+    """Raise GroupTooLargeError for a group of more links than iteration is tried on."""
+    if len(group.links) > MOST_LINKS:
+        raise GroupTooLargeError(group, MOST_LINKS)
+
+
 def assembled(
     group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
     like: Kernel | None = None,
 ) -> tuple[Newton, Placement]:  # fmt: skip
     """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
 
-    Raises GroupTooLargeError, AssemblyError, AmbiguousSketchError.
+    Raises AssemblyError, AmbiguousSketchError.
     """
-    if len(group.links) > MOST_LINKS:
-        raise GroupTooLargeError(group, MOST_LINKS)
     kernel = Newton.of(group, linkage)
     q = np.array([linkage.sketch.at])
     state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
