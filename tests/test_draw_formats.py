@@ -1,6 +1,7 @@
 """A drawing is a record of primitives in millimetres; every format is written from it."""
 
 import io
+import multiprocessing
 import os
 import re
 import subprocess
@@ -14,7 +15,7 @@ from pypdf import PdfReader
 
 from tmm_cli.drawing.formats import FORMATS
 from tmm_cli.drawing.formats.pdf import cut, pdf
-from tmm_cli.drawing.paper.fonts import corners, font, lacking, width
+from tmm_cli.drawing.paper.fonts import corners, font, font_file, lacking, width
 from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
 
 LINE = Line((20 + 30j, 120 + 30j), "#b3261e", 0.5, layer="links")
@@ -71,8 +72,8 @@ def test_letters_that_look_alike_are_found_in_a_pdf_as_what_they_are():
 
 def test_letters_of_a_font_that_is_cut_down_keep_their_outlines_also_those_made_of_parts():
     face, letters = font(), "Aй\u00c9\u1eaf"
-    whole = ttLib.TTFont(face.fname)
-    data = cut(face.fname, [0, *(face.get_char_index(ord(letter)) for letter in letters)])
+    whole = ttLib.TTFont(font_file())
+    data = cut(str(font_file()), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     small = ttLib.TTFont(io.BytesIO(data), checkChecksums=2)
     for number, letter in enumerate(letters, 1):
         before, after = whole.getBestCmap()[ord(letter)], small.getGlyphOrder()[number]
@@ -134,3 +135,21 @@ def test_thin_upright_letters_are_as_dark_wherever_they_fall_between_pixels():
 
     found = [ink(10 + 10j + 0.03 * k) for k in range(8)]
     assert min(found) > 0.9 * max(found) > 0
+
+
+RUSSIAN = [chr(k) for k in (*range(0x21, 0x7F), *range(0x410, 0x450), *range(0x391, 0x3A2), *range(0x3B1, 0x3CA))]
+
+
+def advances(slant):
+    return [font(*slant).load_char(ord(letter)).linearHoriAdvance for letter in RUSSIAN]
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="there are no forked processes here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_forked_processes_read_letters_at_one_time_as_one_process_does():
+    """The fonts are open before the processes begin, as when a second file is drawn."""
+    slants = [(bold, italic) for bold in (False, True) for italic in (False, True)]
+    alone = [advances(slant) for slant in slants]
+    with multiprocessing.get_context("fork").Pool(4) as pool:
+        found = pool.map(advances, slants * 8, chunksize=1)
+    assert found == alone * 8

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from tmm_cli.drawing.paper.fonts import advance, drawable, font, foot
+from tmm_cli.drawing.paper.fonts import advance, drawable, font, font_file, foot
 from tmm_cli.drawing.paper.record import POINT, Area, Circle, Drawing, Line, Mark, Text
 
 AS_THEY_ARE = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
@@ -154,7 +154,7 @@ class _Fonts:
 def _font(file: _File, slant: Slant, codes: Iterable[str]) -> int:
     """A font of these letters, which have the codes from one on: outlines, widths, and which characters they are."""
     face, letters = font(*slant), list(codes)
-    outlines = cut(str(face.fname), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
+    outlines = cut(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
     name = "".join(chr(ord("A") + tag // 26**k % 26) for k in range(6)) + f"+{face.postscript_name}"
     box = " ".join(f"{per * side:.0f}" for side in face.bbox)

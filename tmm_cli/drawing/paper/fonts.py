@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from functools import cache, lru_cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +23,16 @@ BOX = "\u25a1"  # stands for what the font lacks
 UNITS = 1000  # the size at which advances are read
 
 
+def font_file(bold: bool = False, italic: bool = False) -> Path:
+    """The file of the font of a weight and slant."""
+    ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
+    return Path(mpl.get_data_path(), "fonts", "ttf", f"DejaVuSans-{ending}.ttf" if ending else "DejaVuSans.ttf")
+
+
 @cache
 def font(bold: bool = False, italic: bool = False) -> FT2Font:
-    """The font of a weight and slant."""
-    ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
-    name = "DejaVuSans" + (f"-{ending}" if ending else "")
-    found = FT2Font(str(Path(mpl.get_data_path(), "fonts", "ttf", f"{name}.ttf")))
+    """The font of a weight and slant, read whole: forked processes would share the place in an open file."""
+    found = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
     found.set_size(UNITS, 72)
     return found
 
