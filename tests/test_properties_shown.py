@@ -44,6 +44,14 @@ def test_in_a_position_and_over_the_way(tmp_path):
     assert value(tmp_path, "{of: v of A, at: 2, per: v of 3 on 0}", "sine") == pytest.approx(1 / math.sin(math.pi / 3))
 
 
+@pytest.mark.parametrize("name", ["gear-straight-line", "hanger", "settings/guide-setting", "tilter"])
+def test_a_length_or_an_angle_that_is_rounding_is_told_as_none(name):
+    values = {one.name: (one.value, one.expected) for one in properties_shown(solve(load(f"{PROBLEMS}/{name}.yaml")))}
+    nothing = [value for value, expected in values.values() if expected == 0]
+    assert nothing and not any(nothing)
+    assert all(value == 0 or abs(value) > 1e-9 for value, __ in values.values())
+
+
 def test_the_output_that_is_found_has_a_stroke_too(tmp_path):
     text = SLIDER.replace("output: 3\n", "")
     assert "output:" not in text

@@ -14,9 +14,10 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import pipeline
 from tmm_cli.mechanics.analysis.named_quantities import STAGES, Quantity, of_wheels, quantities, relative_angles
 from tmm_cli.mechanics.analysis.pipeline import Results, at_places
+from tmm_cli.mechanics.groups.base import spread
 from tmm_cli.mechanics.numerics.roots import greatest, roots
 from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
 from tmm_cli.mechanics.structure.assur import analyse
 from tmm_cli.mechanics.structure.spatial import ChainResults
 from tmm_cli.problem.build import build
@@ -28,6 +29,7 @@ from tmm_cli.problem.schema import Shown
 
 STEPS = 720  # in a turn, or over the driver's way
 PARTS = 60  # of the way between two positions, through which an angle is followed
+ROUNDING = 1e-13  # of a radian, or of the longest link: a smaller angle or length is rounding, and is told as none
 MET = 1e-9  # of the value, or of one in SI: rounding of what is found by search
 
 
@@ -111,6 +113,8 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
             return None
     value = _one(quantity, task, results, by if ratio else None)
     dimension = quantity.dimension
+    if not ratio and abs(value) <= ROUNDING * _scale(dimension, results):
+        value = 0.0
     if task.within is not None:
         dimension = place_dimension(results.linkage.driver.kind)
     if task.per is not None:
@@ -123,6 +127,13 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
     compared = task.expected is not None and (quantity.stage == "structure" or not _of_own_numbers(task, problem))
     expected = values.number(task.expected, dimension, ("expected",)) if compared else None
     return Property(name, value, dimension, expected)
+
+
+def _scale(dimension: Dimension, results: Results) -> float:
+    """What an angle or a length is small against, SI; of other kinds nothing is called small."""
+    if dimension == LENGTH:
+        return max(float(spread(results.linkage, link)) for link in results.linkage.links)
+    return 1.0 if dimension == ANGLE else 0.0
 
 
 def _of_own_numbers(task: Shown, problem: Problem) -> bool:
