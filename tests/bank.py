@@ -22,17 +22,29 @@ IN_FOLDERS = [  # by chapters of the sources: folder/name
 ]
 EVERY = [*AT_THE_TOP, *IN_FOLDERS]
 REPEATED = {  # each with the one whose groups by their pairs, toothed pairs, drivers and blocks it has: test_structure
-    "course-1": "shaper", "course-3": "shaper", "course-4": "shaper", "whitworth": "shaper",
-    "crank-slider-offset": "crank-slider", "inclined-slider": "crank-slider",
+    "course-1": "shaper",
+    "course-3": "shaper",
+    "course-4": "shaper",
+    "whitworth": "shaper",
+    "crank-slider-offset": "crank-slider",
+    "inclined-slider": "crank-slider",
     "slotted/angle-doubling": "slotted-lever-synthesis",
-    "four-bars/swing-doubler": "crank-rocker", "slotted-lever": "slotted-lever-synthesis",
-    "toggle-press": "six-bar", "two-strokes": "six-bar", "cranks/double-stroke-press": "six-bar",
-    "settings/adjustable-lever": "six-bar", "triad-six-assemblies": "shaking-screen",
+    "four-bars/swing-doubler": "crank-rocker",
+    "slotted-lever": "slotted-lever-synthesis",
+    "toggle-press": "six-bar",
+    "two-strokes": "six-bar",
+    "cranks/double-stroke-press": "six-bar",
+    "settings/adjustable-lever": "six-bar",
+    "triad-six-assemblies": "shaking-screen",
     "four-bars/transfer": "parallel-couplers",
-    "four-bars/swing-crank-rocker": "crank-rocker", "four-bars/claw": "crank-rocker",
-    "settings/rod-length": "crank-slider", "settings/guide-setting": "crank-slider",
-    "settings/shaper-settings": "shaper", "settings/leading-arm": "six-bar", "settings/rocker-angle": "six-bar",
-}  # fmt: skip
+    "four-bars/swing-crank-rocker": "crank-rocker",
+    "four-bars/claw": "crank-rocker",
+    "settings/rod-length": "crank-slider",
+    "settings/guide-setting": "crank-slider",
+    "settings/shaper-settings": "shaper",
+    "settings/leading-arm": "six-bar",
+    "settings/rocker-angle": "six-bar",
+}
 NAMES = [  # what each whole-bank test goes through: of the small ones in folders a third, and each kind once
     name for name in (*AT_THE_TOP, *IN_FOLDERS[::3]) if name not in REPEATED
 ]

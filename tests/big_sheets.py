@@ -45,6 +45,8 @@ def boxes(sheet):
 def apart(one, other):
     (low, high), (other_low, other_high) = one, other
     return (
-        low.real >= other_high.real or other_low.real >= high.real
-        or low.imag >= other_high.imag or other_low.imag >= high.imag
-    )  # fmt: skip
+        low.real >= other_high.real
+        or other_low.real >= high.real
+        or low.imag >= other_high.imag
+        or other_low.imag >= high.imag
+    )

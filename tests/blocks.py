@@ -132,6 +132,12 @@ gears:
 driver: {link: 1, speed: 1 rad/s}
 """
 EVERYTHING = {
-    "triad": TRIAD, "geared": GEARED, "planet": PLANET, "rack": RACK, "cam": CAM, "cylinder": CYLINDER, "two": TWO,
+    "triad": TRIAD,
+    "geared": GEARED,
+    "planet": PLANET,
+    "rack": RACK,
+    "cam": CAM,
+    "cylinder": CYLINDER,
+    "two": TWO,
     "slider": SLIDER,
-}  # fmt: skip
+}

@@ -9,8 +9,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 NAMED = {
-    "cos": math.cos, "sin": math.sin, "tan": math.tan, "arccos": math.acos, "arcsin": math.asin, "arctan": math.atan,
-}  # fmt: skip
+    "cos": math.cos,
+    "sin": math.sin,
+    "tan": math.tan,
+    "arccos": math.acos,
+    "arcsin": math.asin,
+    "arctan": math.atan,
+}
 LETTERS = ("mi", "msub", "msubsup", "mover", "munder")  # what begins a quantity by its letter
 
 

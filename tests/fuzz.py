@@ -68,11 +68,42 @@ MEMORY = 3 << 30  # bytes of addresses: a gigabyte, and what Python and its libr
 JUDGED = 3  # one of so many solutions is compared with double-doubles
 POSITIONS = 24  # of what is solved: more of them show no more
 NUMBERS = [
-    "0", "1", "-1", "0.5", "2", "3", "-0.0", "100", "250.5", "1e-9", "1e-17", "1e-300", "1e9", "1e19", "1e299", "1e999",
-    "38.925549624985472123456789", "3.14159265358979", "180", "360", "1,5", "nan", "inf", "12:30", "010", "0x1F",
-    "1e200*1e200", "(1e200*1e200 - 1e200*1e200)", "1e306 km", "1e160 rpm",
-    "1 900", "1.9·10³", "10^3 kgf", "8 с-1", "12 500,5",
-]  # fmt: skip
+    "0",
+    "1",
+    "-1",
+    "0.5",
+    "2",
+    "3",
+    "-0.0",
+    "100",
+    "250.5",
+    "1e-9",
+    "1e-17",
+    "1e-300",
+    "1e9",
+    "1e19",
+    "1e299",
+    "1e999",
+    "38.925549624985472123456789",
+    "3.14159265358979",
+    "180",
+    "360",
+    "1,5",
+    "nan",
+    "inf",
+    "12:30",
+    "010",
+    "0x1F",
+    "1e200*1e200",
+    "(1e200*1e200 - 1e200*1e200)",
+    "1e306 km",
+    "1e160 rpm",
+    "1 900",
+    "1.9·10³",
+    "10^3 kgf",
+    "8 с-1",
+    "12 500,5",
+]
 FACTORS = [0, -1, 1e-9, 1e3, 1e18, 2, 0.5, *[1 + 1e-12, 1.1, 0.9, 1.01, 0.99] * 4]
 CALLS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "hypot", "min", "max", "sqrt", "abs", "sinh"]
 ODD = [
@@ -163,10 +194,15 @@ class Grammar:
             return self.name()
         if kind is bool:
             return self.random.random() < 0.5
-        return self.random.choice([
-            self.expression(), self.expression(), self.name(), [self.expression(), self.expression()],
-            {"on": self.name() + self.name(), "at": self.expression()},
-        ])  # fmt: skip
+        return self.random.choice(
+            [
+                self.expression(),
+                self.expression(),
+                self.name(),
+                [self.expression(), self.expression()],
+                {"on": self.name() + self.name(), "at": self.expression()},
+            ]
+        )
 
     def changed(self, data: dict[str, Any], gently: bool) -> dict[str, Any]:
         """The file with one to three changes; gently: of sizes alone, so that most of them are solved."""
@@ -442,8 +478,11 @@ def _graded(case: Case) -> tuple[str, str]:
 
 
 DONE: dict[str, Callable[[Case], tuple[str, str]]] = {
-    "load": _loaded, "solve": _solved, "run": _run, "grade": _graded,
-}  # fmt: skip
+    "load": _loaded,
+    "solve": _solved,
+    "run": _run,
+    "grade": _graded,
+}
 
 
 def _command(*words: str) -> int:
@@ -489,13 +528,20 @@ def _further(data: dict[str, Any], random: Random) -> tuple[str, ...]:
     parameters = data.get("parameters")
     swept = random.choice(list(parameters)) if isinstance(parameters, dict) and parameters else "a"
     out = ("-o", "further")
-    return random.choice([
-        ("kinematics", "fuzz.yaml", "--extremes", "--centres", *out), ("kinematics", "fuzz.yaml", "--assemblies", *out),
-        ("forces", "fuzz.yaml", "--hodographs", "--extremes", *out), ("forces", "fuzz.yaml", "--digits", *out),
-        ("structure", "fuzz.yaml", "--drawings", *out), ("dynamics", "fuzz.yaml", *out), ("explain", "fuzz.yaml"),
-        ("animate", "fuzz.yaml", "-o", "further.html"), ("note", "fuzz.yaml", "--as", "docx", *out),
-        ("sweep", "fuzz.yaml", "--over", f"{swept}=20..200:5", "--show", "H,k,M_b", "--jobs", "1"),
-    ])  # fmt: skip
+    return random.choice(
+        [
+            ("kinematics", "fuzz.yaml", "--extremes", "--centres", *out),
+            ("kinematics", "fuzz.yaml", "--assemblies", *out),
+            ("forces", "fuzz.yaml", "--hodographs", "--extremes", *out),
+            ("forces", "fuzz.yaml", "--digits", *out),
+            ("structure", "fuzz.yaml", "--drawings", *out),
+            ("dynamics", "fuzz.yaml", *out),
+            ("explain", "fuzz.yaml"),
+            ("animate", "fuzz.yaml", "-o", "further.html"),
+            ("note", "fuzz.yaml", "--as", "docx", *out),
+            ("sweep", "fuzz.yaml", "--over", f"{swept}=20..200:5", "--show", "H,k,M_b", "--jobs", "1"),
+        ]
+    )
 
 
 def _groups(grammar: Grammar) -> Iterator[Case]:
@@ -524,9 +570,11 @@ def _groups(grammar: Grammar) -> Iterator[Case]:
 
 
 def fuzz(
-    seed: int, counts: Mapping[str, int] | None = None, until: float | None = None,
+    seed: int,
+    counts: Mapping[str, int] | None = None,
+    until: float | None = None,
     found: Callable[[str, Case], None] = lambda wrong, case: None,
-) -> tuple[Counter[str], dict[str, Case]]:  # fmt: skip
+) -> tuple[Counter[str], dict[str, Case]]:
     """How cases ended, and faults with the first case that shows each.
 
     counts: so many of each kind; without them shares of the time. until: the time (monotonic) at which it ends anyhow.

@@ -65,10 +65,15 @@ class Parts:
         return found | ({"between": self.random.choice(TABLES)} if self.random.random() < 0.4 else {})
 
     def when(self) -> dict[str, Any]:
-        return self.random.choice([
-            {}, {}, {"when": "working stroke"}, {"when": [self.size(0, 180), self.size(180, 360)]},
-            {"when": f"working stroke of {self.link()}"},
-        ])  # fmt: skip
+        return self.random.choice(
+            [
+                {},
+                {},
+                {"when": "working stroke"},
+                {"when": [self.size(0, 180), self.size(180, 360)]},
+                {"when": f"working stroke of {self.link()}"},
+            ]
+        )
 
 
 def _friction(parts: Parts) -> dict[str, Any]:
@@ -80,35 +85,64 @@ def _friction(parts: Parts) -> dict[str, Any]:
 
 def _spring(parts: Parts) -> dict[str, Any]:
     one, other = parts.link(), parts.random.choice(["0", parts.link()])
-    kind = parts.random.choice([
-        {"rate": "5 N/mm", "free": parts.size(0, 400)}, {"rate": 0, "preload": parts.size(-500, 500)},
-        {"torsion": parts.size(0, 50), "free": parts.size(-180, 180)}, {"damping": parts.size(0, 100)},
-    ])  # fmt: skip
+    kind = parts.random.choice(
+        [
+            {"rate": "5 N/mm", "free": parts.size(0, 400)},
+            {"rate": 0, "preload": parts.size(-500, 500)},
+            {"torsion": parts.size(0, 50), "free": parts.size(-180, 180)},
+            {"damping": parts.size(0, 100)},
+        ]
+    )
     ends = {} if "torsion" in kind else {"at": [parts.point(one), [parts.size(-100, 100), parts.size(-100, 100)]]}
     return {"springs": {"s1": {"between": [one, other], **ends, **kind}}}
 
 
 def _dynamics(parts: Parts) -> dict[str, Any]:
-    motor = parts.random.choice([
-        {"kind": "linear", "stall": parts.size(10, 200), "free": "1500 rpm", "ratio": parts.size(1, 30)},
-        {"kind": "asynchronous", "synchronous": "1500 rpm", "speed": "1430 rpm", "moment": parts.size(1, 50),
-         "ratio": parts.size(1, 30)},
-    ])  # fmt: skip
+    motor = parts.random.choice(
+        [
+            {"kind": "linear", "stall": parts.size(10, 200), "free": "1500 rpm", "ratio": parts.size(1, 30)},
+            {
+                "kind": "asynchronous",
+                "synchronous": "1500 rpm",
+                "speed": "1430 rpm",
+                "moment": parts.size(1, 50),
+                "ratio": parts.size(1, 30),
+            },
+        ]
+    )
     wheel = {"inertia": parts.size(0, 50), "shape": parts.random.choice(["disk", "rim"])}
     run = {"from": parts.size(-90, 90), "to": parts.size(90, 400), "speed": "10 rpm", "drive": parts.size(0, 300)}
-    return {"dynamics": parts.random.choice([
-        {"delta": parts.size(0.005, 0.3)}, {"delta": "1/30", "mean speed": "60 rpm"}, {"motor": motor},
-        {"motor": motor, "delta": "1/25"}, {"flywheel": wheel}, {"run": run}, {"run": run | {"brake": 5}},
-    ])}  # fmt: skip
+    return {
+        "dynamics": parts.random.choice(
+            [
+                {"delta": parts.size(0.005, 0.3)},
+                {"delta": "1/30", "mean speed": "60 rpm"},
+                {"motor": motor},
+                {"motor": motor, "delta": "1/25"},
+                {"flywheel": wheel},
+                {"run": run},
+                {"run": run | {"brake": 5}},
+            ]
+        )
+    }
 
 
 def _balancing(parts: Parts) -> dict[str, Any]:
     weights = {str(parts.link()): parts.random.choice([{}, {"radius": parts.size(10, 100)}])}
-    rotor = {"masses": [{"mass": parts.size(0, 9), "radius": 50, "angle": parts.size(0, 360), "at": parts.size(0, 99)}],
-             "planes": parts.random.choice([[0], [0, {"at": 200, "radius": 60}]])}  # fmt: skip
-    return {"balancing": parts.random.choice([
-        {}, {"counterweights": weights}, {"counterweights": weights, "share": "2/3"}, {"rotor": rotor},
-    ])}  # fmt: skip
+    rotor = {
+        "masses": [{"mass": parts.size(0, 9), "radius": 50, "angle": parts.size(0, 360), "at": parts.size(0, 99)}],
+        "planes": parts.random.choice([[0], [0, {"at": 200, "radius": 60}]]),
+    }
+    return {
+        "balancing": parts.random.choice(
+            [
+                {},
+                {"counterweights": weights},
+                {"counterweights": weights, "share": "2/3"},
+                {"rotor": rotor},
+            ]
+        )
+    }
 
 
 def _load(parts: Parts) -> dict[str, Any]:
@@ -132,39 +166,63 @@ def _load(parts: Parts) -> dict[str, Any]:
 
 def _masses(parts: Parts) -> dict[str, Any]:
     link, masses = parts.link(), parts.data.get("masses") if isinstance(parts.data.get("masses"), dict) else {}
-    own = parts.random.choice([
-        {"mass": parts.size(0, 20), "inertia": parts.size(0, 1), "centre": [parts.size(-99, 200), parts.size(-50, 50)]},
-        {"points": [{"mass": parts.size(0, 5), "at": parts.point(link)}]},
-        {"weight": "100 N", "centre": parts.point(link)},
-    ])  # fmt: skip
+    own = parts.random.choice(
+        [
+            {
+                "mass": parts.size(0, 20),
+                "inertia": parts.size(0, 1),
+                "centre": [parts.size(-99, 200), parts.size(-50, 50)],
+            },
+            {"points": [{"mass": parts.size(0, 5), "at": parts.point(link)}]},
+            {"weight": "100 N", "centre": parts.point(link)},
+        ]
+    )
     return {"masses": {**masses, str(link): own}}
 
 
 def _positions(parts: Parts) -> dict[str, Any]:
     number = parts.random.randint(1, 9)
-    return {"positions": parts.random.choice([
-        {"count": 1}, {"count": number, "detail": [0, number - 1][: parts.random.randint(0, 2)], "centres": True},
-        {"at": [parts.size(-360, 360) for _ in range(parts.random.choice([1, 2, 5]))]}, {"at": [30, 30]},
-        {"count": number, "from": parts.random.choice(["working stroke", parts.size(-360, 360)])},
-    ])}  # fmt: skip
+    return {
+        "positions": parts.random.choice(
+            [
+                {"count": 1},
+                {"count": number, "detail": [0, number - 1][: parts.random.randint(0, 2)], "centres": True},
+                {"at": [parts.size(-360, 360) for _ in range(parts.random.choice([1, 2, 5]))]},
+                {"at": [30, 30]},
+                {"count": number, "from": parts.random.choice(["working stroke", parts.size(-360, 360)])},
+            ]
+        )
+    }
 
 
 def _driver(parts: Parts) -> dict[str, Any]:
     table = [[angle, f"{parts.size(1, 99)} rpm"] for angle in (0, 90, parts.size(91, 300))]
     table.append([360, table[0][1]])
     speeds = {"against": "crank angle", "table": table, "between": parts.random.choice(["smooth", "linear"])}
-    change = parts.random.choice([
-        {"speed": speeds}, {"acceleration": parts.size(-5, 5)}, {"turns": "cw"}, {"balance": "force"},
-        {"balance": "force", "end": parts.point(parts.crank)}, {"speed": 0},
-    ])  # fmt: skip
+    change = parts.random.choice(
+        [
+            {"speed": speeds},
+            {"acceleration": parts.size(-5, 5)},
+            {"turns": "cw"},
+            {"balance": "force"},
+            {"balance": "force", "end": parts.point(parts.crank)},
+            {"speed": 0},
+        ]
+    )
     return {"driver": {**parts.driver, **change}}
 
 
 def _output(parts: Parts) -> dict[str, Any]:
     one = parts.random.choice([parts.link(), parts.any_point()])
-    return {"output": parts.random.choice([
-        one, [one, parts.link()], {"link": parts.link(), "working": parts.random.choice(["forward", "backward"])},
-    ])}  # fmt: skip
+    return {
+        "output": parts.random.choice(
+            [
+                one,
+                [one, parts.link()],
+                {"link": parts.link(), "working": parts.random.choice(["forward", "backward"])},
+            ]
+        )
+    }
 
 
 def _shows(parts: Parts) -> dict[str, Any]:
@@ -181,21 +239,46 @@ def _rest(parts: Parts) -> dict[str, Any]:
         "block": parts.random.choice(["plain", "gost"]),
     }
     wheel = {"moves_with": parts.link(), "when": parts.random.choice(["forward", "backward", "working stroke"])}
-    return parts.random.choice([
-        {"gravity": 0}, {"gravity": [parts.size(-10, 10), -9.81]}, {"change points": "keep side"},
-        {"cycle": "2 turns"}, {"lang": parts.random.choice(["en", "ru", "sr"])}, {"sheet": sheet},
-        {"checks": {"lever": "1 %", "pressure_sliding": parts.size(1, 60), "pressure_turning": parts.size(1, 60)}},
-        {"intermittent": {"w": wheel}}, {"hinges": {str(parts.any_point()): {"attached to": parts.link()}}},
-        {"racks": {"r": {"wheel": parts.crank, "rack": parts.link(), "radius": 30}}},
-        {"gears": {"g": {"between": [parts.crank, parts.link()], "teeth": [20, 40], "module": 5}}},
-        {"cams": {"c": {"cam": parts.crank, "follower": parts.link(), "law": [
-            {"over": 120, "rise": 30}, {"over": 60}, {"over": 180, "rise": -30, "law": "3-4-5"}]}}},
-    ])  # fmt: skip
+    return parts.random.choice(
+        [
+            {"gravity": 0},
+            {"gravity": [parts.size(-10, 10), -9.81]},
+            {"change points": "keep side"},
+            {"cycle": "2 turns"},
+            {"lang": parts.random.choice(["en", "ru", "sr"])},
+            {"sheet": sheet},
+            {"checks": {"lever": "1 %", "pressure_sliding": parts.size(1, 60), "pressure_turning": parts.size(1, 60)}},
+            {"intermittent": {"w": wheel}},
+            {"hinges": {str(parts.any_point()): {"attached to": parts.link()}}},
+            {"racks": {"r": {"wheel": parts.crank, "rack": parts.link(), "radius": 30}}},
+            {"gears": {"g": {"between": [parts.crank, parts.link()], "teeth": [20, 40], "module": 5}}},
+            {
+                "cams": {
+                    "c": {
+                        "cam": parts.crank,
+                        "follower": parts.link(),
+                        "law": [{"over": 120, "rise": 30}, {"over": 60}, {"over": 180, "rise": -30, "law": "3-4-5"}],
+                    }
+                }
+            },
+        ]
+    )
 
 
 BLOCKS: tuple[Callable[[Parts], dict[str, Any]], ...] = (
-    _friction, _spring, _dynamics, _balancing, _load, _load, _masses, _positions, _driver, _output, _shows, _rest,
-)  # fmt: skip
+    _friction,
+    _spring,
+    _dynamics,
+    _balancing,
+    _load,
+    _load,
+    _masses,
+    _positions,
+    _driver,
+    _output,
+    _shows,
+    _rest,
+)
 
 
 def with_blocks(data: dict[str, Any], random: Random) -> dict[str, Any]:

@@ -90,10 +90,15 @@ def lines() -> Iterator[str]:
         found = run["properties"]
         counted = all(one["of"] in COUNTED for one in data["shows"].values())
         cells = (
-            data["reference"], f"[{data['title']}]({path})", link, formula, run["structure"]["class"] if planar else "",
-            "<br>".join(one["property"] for one in found), "<br>".join(map(value, found)),
+            data["reference"],
+            f"[{data['title']}]({path})",
+            link,
+            formula,
+            run["structure"]["class"] if planar else "",
+            "<br>".join(one["property"] for one in found),
+            "<br>".join(map(value, found)),
             f"`tmm {'structure' if counted else 'kinematics' if moved(run) else 'forces'} problems/{path}`",
-        )  # fmt: skip
+        )
         yield f"| {' | '.join(cells)} |\n"
     yield "\n"
     for row, why in LACKING.items():

@@ -103,8 +103,13 @@ def updated(language: str) -> Catalog:
     for context, text, file in messages():
         before = old.get(text, context or None)
         comments = before.user_comments if before else []
-        new.add(text, before.string if before else "", locations=[(file, 0)], context=context or None,
-                user_comments=comments)  # fmt: skip
+        new.add(
+            text,
+            before.string if before else "",
+            locations=[(file, 0)],
+            context=context or None,
+            user_comments=comments,
+        )
     return new
 
 

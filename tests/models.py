@@ -79,11 +79,18 @@ def reference_problem(data: dict[str, Any]) -> dict[str, Any]:
         sense = "ccw" if driver["omega"] > 0 else "cw"
         drive, at = {"link": driver["body"], "speed": abs(driver["omega"]), "turns": sense}, driver["theta0"]
     problem: dict[str, Any] = {
-        "tmm": 1, "units": SI, "points": model["ground"], "guides": {}, "links": {}, "masses": {}, "loads": {},
-        "gravity": model["gravity"], "driver": drive,
+        "tmm": 1,
+        "units": SI,
+        "points": model["ground"],
+        "guides": {},
+        "links": {},
+        "masses": {},
+        "loads": {},
+        "gravity": model["gravity"],
+        "driver": drive,
         "sketch": {"at": at, **sketched_points(model), **{n: guess[2] for n, guess in model["guess"].items()}},
         "positions": {"at": [float(row["input"]) for row in data["reference"]]},
-    }  # fmt: skip
+    }
     for name, body in model["bodies"].items():
         problem["links"][name] = {"points": body["points"]}
         problem["masses"][name] = {"mass": body["m"], "inertia": body["J"], "centre": body["S"]}
@@ -138,12 +145,16 @@ def published_problem(case: dict[str, Any], samples: list[dict[str, Any]], gravi
     for point, data in tracers.items():
         links[data["link"]]["points"][point] = data["at"]
     problem: dict[str, Any] = {
-        "tmm": 1, "units": SI, "links": links, "gravity": [0, -gravity], "guides": {},
+        "tmm": 1,
+        "units": SI,
+        "links": links,
+        "gravity": [0, -gravity],
+        "guides": {},
         "points": {j: d["at"] for j, d in joints.items() if "ground" in d["links"] and d["kind"] == "R"},
         "driver": {k: case["input"][k] for k in ("link", "speed")} | {"turns": "ccw" if sense > 0 else "cw"},
         "sketch": {"at": 0, **{j: d["at"] for j, d in joints.items() if "ground" not in d["links"]}},
         "positions": {"at": [s["turn"] for s in samples]},
-    }  # fmt: skip
+    }
     for joint, data in joints.items():
         if data["kind"] == "P":
             problem["guides"]["x"] = {"through": data["at"], "angle": 0}

@@ -170,8 +170,13 @@ class Multibody:
         for number, d in enumerate(self.it.drivers):
             start = n.real(d.at if number else self.began)
             rate, acceleration = n.real(d.rate), n.real(d.acceleration)
-            q.append((start + d.sense * time * (rate + acceleration * time / 2),
-                      d.sense * (rate + acceleration * time), d.sense * acceleration))  # fmt: skip
+            q.append(
+                (
+                    start + d.sense * time * (rate + acceleration * time / 2),
+                    d.sense * (rate + acceleration * time),
+                    d.sense * acceleration,
+                )
+            )
         return q
 
     def time(self, place, n):
@@ -208,8 +213,9 @@ class Multibody:
         for name, i in self.at_row.items():
             x, z = motion.poses[name].x[0], motion.poses[name].z[0]
             X[i : i + 3] = x.real, x.imag, np.angle(z)
-        places = dict(zip((d.link for d in self.it.drivers), (self.it.sketch.at, *(d.at for d in self.it.others)),
-                          strict=True))  # fmt: skip
+        places = dict(
+            zip((d.link for d in self.it.drivers), (self.it.sketch.at, *(d.at for d in self.it.others)), strict=True)
+        )
         for driver in self.it.cranks:  # a driver's own angle is not brought within half a turn
             if driver.kind == "turn":
                 X[self.at_row[driver.link] + 2] = places[driver.link]
@@ -238,8 +244,9 @@ class Multibody:
     def jacobian(self, X):
         """Of the rows of each pair and driver by the coordinates of the links that it joins."""
         J, n, row = mp.matrix(self.size, self.size), Digits(), 0
-        parts = [({pair.i, pair.j, *((pair.mesh.carrier,) if pair.mesh else ())}, self.closing, pair)
-                 for pair in self.pairs]  # fmt: skip
+        parts = [
+            ({pair.i, pair.j, *((pair.mesh.carrier,) if pair.mesh else ())}, self.closing, pair) for pair in self.pairs
+        ]
         parts += [({d.base, d.link}, lambda *given: [self.driven(*given)], d) for d in self.it.drivers]
         for links, rows_of, part in parts:
             for j in (self.at_row[name] + k for name in links - {FRAME} for k in range(3)):

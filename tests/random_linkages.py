@@ -65,10 +65,16 @@ class Maker:
         self.points[runner][f"Z{name}"] = self.local(runner, where)
         self.slides.append(
             Slide(
-                name, carrier, runner, self.local(carrier, through), along - cmath.phase(zc), self.local(runner, where),
-                cmath.phase(zr / zc), f"Z{name}",
+                name,
+                carrier,
+                runner,
+                self.local(carrier, through),
+                along - cmath.phase(zc),
+                self.local(runner, where),
+                cmath.phase(zr / zc),
+                f"Z{name}",
             )
-        )  # fmt: skip
+        )
 
     def group(self, kind: str, number: int) -> None:
         a, b = f"{2 * number}", f"{2 * number + 1}"
@@ -108,13 +114,18 @@ def linkage(seed: int, kinds: tuple[str, ...]) -> Linkage:
             name, points, *(random.uniform(0.1, 2, 2) if name != FRAME else (0, 0)), complex(*random.uniform(-1, 1, 2))
         )
         for name, points in maker.points.items()
-    }  # fmt: skip
+    }
     sketch = Sketch(
         cmath.phase(maker.poses["1"][1]),
-        {p: o + q * z for n, (o, z) in maker.poses.items() if n != FRAME for p, q in maker.points[n].items()
-         if p not in maker.points[FRAME]},
+        {
+            p: o + q * z
+            for n, (o, z) in maker.poses.items()
+            if n != FRAME
+            for p, q in maker.points[n].items()
+            if p not in maker.points[FRAME]
+        },
         {n: cmath.phase(z) for n, (_, z) in maker.poses.items() if n != FRAME},
-    )  # fmt: skip
+    )
     last = str(2 * len(kinds) + 1)
     loads = (
         Load("F", last, complex(*random.uniform(-1, 1, 2)), complex(*random.uniform(-50, 50, 2))),
@@ -171,10 +182,16 @@ class Anything(Maker):
         at = self.run(self.slides[-1]) if kind == "slide" else self.turn(link) - self.turn(base)
         self.drivers.append(
             Driver(
-                link, kind, joint, float(random.uniform(0.5, 5)), float(random.uniform(-1, 1)),
-                self.choose((1, -1)), base=base, at=at,
+                link,
+                kind,
+                joint,
+                float(random.uniform(0.5, 5)),
+                float(random.uniform(-1, 1)),
+                self.choose((1, -1)),
+                base=base,
+                at=at,
             )
-        )  # fmt: skip
+        )
 
     def driver(self, kind: str) -> None:
         if kind == "crank":
@@ -209,13 +226,15 @@ class Anything(Maker):
             leads = [b, c, d] if self.grade == "III" else [a, c]
         else:
             a, b, c, d, e, f = names
-            inner, leads = self.choose((
-                ([(a, b), (a, c), (a, d), (b, e), (b, f)], [c, d, e, f]),
-                ([(a, b), (b, c), (c, a), (a, d), (b, e), (c, f)], [d, e, f]),
-                ([(a, b), (b, c), (c, d), (d, a), (a, e), (c, f)], [e, f, b]),
-                ([(a, b), (b, c), (c, d), (d, e), (e, a), (a, f), (c, f)], [e, d]),
-                ([(a, b), (b, c), (c, d), (d, e), (e, f), (f, a)], [a, c, e]),
-            ))  # fmt: skip
+            inner, leads = self.choose(
+                (
+                    ([(a, b), (a, c), (a, d), (b, e), (b, f)], [c, d, e, f]),
+                    ([(a, b), (b, c), (c, a), (a, d), (b, e), (c, f)], [d, e, f]),
+                    ([(a, b), (b, c), (c, d), (d, a), (a, e), (c, f)], [e, f, b]),
+                    ([(a, b), (b, c), (c, d), (d, e), (e, a), (a, f), (c, f)], [e, d]),
+                    ([(a, b), (b, c), (c, d), (d, e), (e, f), (f, a)], [a, c, e]),
+                )
+            )
         joined = {name: name for name in names} | dict.fromkeys(known, FRAME)
         for one, other in [*inner, *((lead, self.choose(known)) for lead in leads)]:
             kind = "P" if self.random.random() < 0.25 and joined[one] != joined[other] else "R"
@@ -232,10 +251,17 @@ class Anything(Maker):
         other = self.run(more["on"]) if "on" in more else self.turn(j) - self.turn(carrier)
         self.meshes.append(
             Mesh(
-                f"m{len(self.meshes)}", kind, i, j, carrier, ratio, other - ratio * wheels,
-                more["on"].name if "on" in more else "", pressure=self.choose((0.0, math.radians(20))),
+                f"m{len(self.meshes)}",
+                kind,
+                i,
+                j,
+                carrier,
+                ratio,
+                other - ratio * wheels,
+                more["on"].name if "on" in more else "",
+                pressure=self.choose((0.0, math.radians(20))),
             )
-        )  # fmt: skip
+        )
 
     def wheels(self, kind: str) -> None:
         known = list(self.poses)
@@ -343,10 +369,15 @@ class Anything(Maker):
         hinges = tuple(Hinge(name, tuple(joined)) for name, joined in self.hinges.items())
         sketch = Sketch(
             first.at,
-            {p: o + q * z for n, (o, z) in self.poses.items() if n != FRAME for p, q in self.points[n].items()
-             if p not in self.points[FRAME]},
+            {
+                p: o + q * z
+                for n, (o, z) in self.poses.items()
+                if n != FRAME
+                for p, q in self.points[n].items()
+                if p not in self.points[FRAME]
+            },
             {n: cmath.phase(z) for n, (_, z) in self.poses.items() if n != FRAME},
-        )  # fmt: skip
+        )
         return Linkage(
             links, hinges, tuple(self.slides), first, sketch, others=tuple(others), meshes=tuple(self.meshes)
         )
@@ -389,7 +420,7 @@ def loaded(it: Linkage, random: np.random.Generator) -> Linkage:
             name, x.points, *((0, 0) if name == FRAME or random.random() < 0.2 else random.uniform(0.1, 2, 2)), place()
         )
         for name, x in it.links.items()
-    }  # fmt: skip
+    }
     loads = tuple(
         Load(f"F{k}", str(random.choice(it.moving)), place(), 50 * place(), float(random.uniform(-20, 20)), k == 2)
         for k in range(3)

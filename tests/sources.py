@@ -24,9 +24,13 @@ from tmm_cli.cli.app import application
 ROOT = Path(__file__).parents[1]
 DATA, PAGE = ROOT / "tests" / "data" / "sources.txt", ROOT / "problems" / "SOURCES.md"
 PLACES = (
-    (51, "B, chapters 2.1 to 2.3"), (91, "A, chapter 6; B, 2.3 and 2.4"), (123, "A, force guidelines"),
-    (163, "B, figures"), (168, "A, combined mechanisms"), (170, "B, figures of chapters 1 and 2"),
-)  # fmt: skip
+    (51, "B, chapters 2.1 to 2.3"),
+    (91, "A, chapter 6; B, 2.3 and 2.4"),
+    (123, "A, force guidelines"),
+    (163, "B, figures"),
+    (168, "A, combined mechanisms"),
+    (170, "B, figures of chapters 1 and 2"),
+)
 ZERO = re.compile(r"-?\d(\.\d+)?e-1\d\b")  # rounding: another processor has another one
 HEAD = """# The items of the two sources
 

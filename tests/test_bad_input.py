@@ -46,83 +46,115 @@ def place(text, part, after=0):
 
 CASES = {
     "unknown key": (
-        "length: OA}", "lenght: OA}", "lenght",
+        "length: OA}",
+        "lenght: OA}",
+        "lenght",
         "links.1.lenght: unknown key\n  found:   'lenght'\n  allowed: name, points, length, also, slides\n"
         "  did you mean 'length'?",
     ),
     "unknown key for one that must be there": (
-        "1: {name: crank, points", "1: {name: crank, pionts", "pionts",
+        "1: {name: crank, points",
+        "1: {name: crank, pionts",
+        "pionts",
         "links.1.pionts: unknown key\n  found:   'pionts'\n  allowed: name, points, length, also, slides\n"
         "  did you mean 'points'?",
     ),
     "length where an angle is wanted": (
-        "{at: 30 deg", "{at: 30 mm", "30 mm",
+        "{at: 30 deg",
+        "{at: 30 mm",
+        "30 mm",
         "sketch.at: an angle is wanted here\n  found:   '30 mm', a length (30 mm)\n"
         "  allowed: an angle, e.g. 30 deg or 0.5 rad",
     ),
     "missing length": (
-        "points: [D, E], length: DE", "points: [D, E]", "4: {name: rod",
+        "points: [D, E], length: DE",
+        "points: [D, E]",
+        "4: {name: rod",
         "links.4.length: the length of this link is missing\n  allowed: length: the distance from D to E",
     ),
     "point named nowhere else": (
-        "points: [D, E], length: DE", "points: [D, EE], length: DE", "EE]",
+        "points: [D, E], length: DE",
+        "points: [D, EE], length: DE",
+        "EE]",
         "links.4.points[1]: this point is named nowhere else\n  found:   'EE'\n"
         "  allowed: a point of another link or the frame; one that is only watched has coordinates (see also:)\n"
         "  did you mean 'E'?",
     ),
     "guide that does not exist": (
-        "slides: {on: x}", "slides: {on: xx}", "xx}",
+        "slides: {on: x}",
+        "slides: {on: xx}",
+        "xx}",
         "links.5.slides.on: there is no such guide or link\n  found:   'xx'\n"
         "  allowed: guides: x; links: 0, 1, 2, 3, 4, 5\n  did you mean 'x'?",
     ),
     "negative mass": (
-        "mass: 22 kg", "mass: -22 kg", "-22 kg",
+        "mass: 22 kg",
+        "mass: -22 kg",
+        "-22 kg",
         "masses.3.mass: a mass cannot be negative\n  found:   '-22 kg'\n  allowed: zero or more",
     ),
     "decimal comma": (
-        "DE: 210", "DE: 21,5", "21,5",
+        "DE: 210",
+        "DE: 21,5",
+        "21,5",
         "parameters.DE: decimal comma: write 21.5\n  found:   '21,5'\n"
         "  allowed: a decimal point; a list is written [21, 5]",
     ),
     "not a number": (
-        "DE: 210", "DE: .nan", ".nan",
+        "DE: 210",
+        "DE: .nan",
+        ".nan",
         "parameters.DE: not a finite number\n  found:   '.nan'\n  allowed: a finite number",
     ),
     "infinity": (
-        "DE: 210", "DE: .inf", ".inf",
+        "DE: 210",
+        "DE: .inf",
+        ".inf",
         "parameters.DE: not a finite number\n  found:   '.inf'\n  allowed: a finite number",
     ),
     "YAML 1.1: yes is a word": (
-        "turns: ccw", "turns: yes", "yes}",
+        "turns: ccw",
+        "turns: yes",
+        "yes}",
         "driver.turns: this word is not known here\n  found:   'yes'\n  allowed: ccw, cw",
     ),
     "sketch that fits no assembly": (
-        "E: [0.23*CD + DE, 270]", "E: [900, 270]", "[900",
+        "E: [0.23*CD + DE, 270]",
+        "E: [900, 270]",
+        "[900",
         "sketch.E: the sketch fits no assembly\n  found:   [900, 270]\n"
         "  allowed: about [358.443, 270] with the driver at 30 deg",
     ),
     "sketch that does not decide": (
-        ", E: [0.23*CD + DE, 270]", "", "sketch:",
+        ", E: [0.23*CD + DE, 270]",
+        "",
+        "sketch:",
         "sketch: the sketch does not say how group II(4,5) is assembled; see tmm kinematics "
         "x.yaml --assemblies\n"
         "  allowed: with the driver at 30 deg, E: [358.443, 270] or [-60.7845, 270]; 4: -3.47591 deg or "
         "-176.524 deg",
     ),
     "lengths that do not reach": (
-        "DE: 210", "DE: 2", "30 deg",
+        "DE: 210",
+        "DE: 2",
+        "30 deg",
         "sketch.at: group II(4,5) cannot be assembled with the driver at 30 deg\n"
         "  found:   10.7321 mm short of closing\n"
         "  allowed: lengths that reach, or another place of the driver",
     ),
     "driver on the frame": (
-        "driver: {link: 1", "driver: {link: 0", "0, speed",
+        "driver: {link: 1",
+        "driver: {link: 0",
+        "0, speed",
         "driver.link: there is no link of that name\n  found:   '0'\n  allowed: 1, 2, 3, 4, 5",
     ),
     "position beyond the last": (
-        "detail: [3]", "detail: [37]", "37]",
+        "detail: [3]",
+        "detail: [37]",
+        "37]",
         "positions.detail[0]: there is no such position\n  found:   37\n  allowed: 0 to 11",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", CASES)

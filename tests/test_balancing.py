@@ -170,8 +170,9 @@ def test_masses_in_two_planes_as_a_textbook_measures_them():
 
 MASSES = st.lists(
     st.tuples(st.floats(0.1, 50), st.floats(0, 6.2), st.floats(-1, 1)).map(lambda m: (m[0] * np.exp(1j * m[1]), m[2])),
-    min_size=1, max_size=6,
-)  # fmt: skip
+    min_size=1,
+    max_size=6,
+)
 
 
 @given(MASSES, st.floats(-1, -0.2), st.floats(0.2, 1))

@@ -24,8 +24,10 @@ def test_the_verdict():
     slow, rare = Figure("time", 10, 61.0, 60.0), Figure("named, %", 100, 92.0, 95.0, "least")
     whole = Grades((slow, rare, Figure("rate", 10, 6000.0, 10_000.0, "least"), Figure("memory", 10, float("nan"), 1.0)))
     assert whole.failures == (
-        "time, of 10: 61, target 60", "named, %, of 100: 92, target 95", "rate, of 10: 6000, target 10000"
-    )  # fmt: skip
+        "time, of 10: 61, target 60",
+        "named, %, of 100: 92, target 95",
+        "rate, of 10: 6000, target 10000",
+    )
     assert replace(whole, reduced=True).failures == ()  # twice as wide
     none = Figure("accused, %", 10, 0.1, 0.0), Figure("chains, %", 10, 99.0, 100.0, "least")
     assert len(Grades(none, reduced=True).failures) == 2  # what must never be has no width

@@ -111,8 +111,9 @@ def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
     assert {r["mechanism"] for r in found["races"]} == {m.name for m in MECHANISMS}
     assert all(r["ours"] > 0 and r["by_hand"] > 0 for r in found["races"])
     assert [(r["mechanism"], r["positions"], r["rest"]) for r in found["iterated"]] == [
-        ("press-class-iii", 360, 0), ("press-class-iii", 36_000, 0),
-    ]  # fmt: skip
+        ("press-class-iii", 360, 0),
+        ("press-class-iii", 36_000, 0),
+    ]
     assert [(r["mechanism"], r["positions"]) for r in found["sweeps"]] == [("six-bar", 12)]
     assert all(r["a_minute"] > 0 for r in found["sweeps"])
     assert [g["what"] for g in found["growths"]] == ["links", "positions", "variants"]

@@ -52,9 +52,16 @@ def same(stated, value):
 
 @pytest.mark.parametrize(
     "family, seed, k",
-    [("dead-position", 1, 14), ("change-point", 2, 8), ("outer-tangent", 3, 13), ("stone-over-pivot", 4, 11),
-     ("short-rod", 0, 10), ("size", 1, 9), ("three-in-line", 2, 6)],
-)  # fmt: skip
+    [
+        ("dead-position", 1, 14),
+        ("change-point", 2, 8),
+        ("outer-tangent", 3, 13),
+        ("stone-over-pivot", 4, 11),
+        ("short-rod", 0, 10),
+        ("size", 1, 9),
+        ("three-in-line", 2, 6),
+    ],
+)
 def test_answers_are_what_the_textbook_says_in_a_hundred_digits(family, seed, k):
     stored = seeds(family)[seed]
     scene = BY_NAME[family].scene(stored.numbers, BY_NAME[family].distances[k])

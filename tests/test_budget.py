@@ -66,13 +66,18 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
         "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
         ("sheets",): "positions.detail: these are too many drawings",
         ("sheets", "--positions", "all"): "positions.detail: these are too many drawings",
-        ("kinematics", "--centres", *(word for k in range(6) for word in ("-p", str(k)))):
-        "--centres: these are too many instantaneous centres for so many links and positions "
+        (
+            "kinematics",
+            "--centres",
+            *(word for k in range(6) for word in ("-p", str(k))),
+        ): "--centres: these are too many instantaneous centres for so many links and positions "
         "found: 6 positions in detail; 5 links, 508 points, 1 loads allowed: at most 3 in detail, or without centres",
-        **{(name, "--digits"): "--digits: too many positions and too large a linkage for all digits to be judged "
-           "found: 12 positions; 5 links, 508 points, 1 loads allowed: at most 2 positions, or without --digits"
-           for name in ("run", "kinematics", "forces")},
-    }.items():  # fmt: skip
+        **{
+            (name, "--digits"): "--digits: too many positions and too large a linkage for all digits to be judged "
+            "found: 12 positions; 5 links, 508 points, 1 loads allowed: at most 2 positions, or without --digits"
+            for name in ("run", "kinematics", "forces")
+        },
+    }.items():
         done = tmm(command[0], file, *command[1:], "-o", tmp_path / "refused", cwd=tmp_path)
         assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr
     assert not (tmp_path / "refused").exists()

@@ -64,12 +64,16 @@ class Plate:
             "3": {"points": {"C": [0, 0], "D": written(self.KL), "B": written(self.CB)}},
             "4": {"points": ["C", "K"], "length": float(self.leg)},
             "5": {"points": ["D", "L"], "length": float(self.leg) + longer},
-        }  # fmt: skip
+        }
         return {
-            "tmm": 1, "units": SI, "links": links, "driver": {"link": "1", "speed": 1},
+            "tmm": 1,
+            "units": SI,
+            "links": links,
+            "driver": {"link": "1", "speed": 1},
             "points": {"O": [0, 0], "K": written(self.K), "L": written(self.K + self.KL)},
-            "sketch": {"at": self.at, "B": written(C + self.CB), "C": written(C), "D": written(C + self.KL)}, **more,
-        }  # fmt: skip
+            "sketch": {"at": self.at, "B": written(C + self.CB), "C": written(C), "D": written(C + self.KL)},
+            **more,
+        }
 
 
 DRAG_LINK = (("0.4", "0.35", "0.3"), ("0.05", "-0.1"), ("0.6", "0.15"), ("0.05", "0.15"))
@@ -181,17 +185,21 @@ def test_a_symmetric_linkage_stays_symmetric_where_it_could_tilt():
 
     A, y = (float(r * mp.cos(at) - a), float(r * mp.sin(at))), float(height(at))
     problem = {
-        "tmm": 1, "units": SI, "points": {"O": [-0.3, 0], "Q": [0.3, 0]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [-0.3, 0], "Q": [0.3, 0]},
         "guides": {"y": {"through": [0, 0], "angle": float(mp.pi / 2)}},
         "links": {
-            "1": {"points": ["O", "A"], "length": 0.15}, "2": {"points": ["Q", "E"], "length": 0.15},
-            "3": {"points": ["A", "C"], "length": 0.5}, "4": {"points": ["E", "D"], "length": 0.5},
+            "1": {"points": ["O", "A"], "length": 0.15},
+            "2": {"points": ["Q", "E"], "length": 0.15},
+            "3": {"points": ["A", "C"], "length": 0.5},
+            "4": {"points": ["E", "D"], "length": 0.5},
             "5": {"points": {"C": [-0.1, 0], "D": [0.1, 0], "B": [0, 0.6]}},
             "6": {"points": ["B"], "slides": {"on": "y"}},
         },
         "driver": [{"link": "1", "speed": 1}, {"link": "2", "speed": 1, "turns": "cw", "at": float(mp.pi - at)}],
         "sketch": {"at": 1, "A": A, "E": [-A[0], A[1]], "C": [-0.1, y], "D": [0.1, y], "B": [0, y + 0.6]},
-    }  # fmt: skip
+    }
     results = results_of(problem, "kinematics")
     assert results.driver_range.full
     exact = mp.findroot(meets_above, mp.mpf("0.66"))

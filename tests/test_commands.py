@@ -44,10 +44,14 @@ def tmm(*arguments, cwd=None):
         err.write(warnings.formatwarning(message, category, filename, lineno, line))
 
     with (
-        mock.patch.dict(os.environ, {"NO_COLOR": "1"}), mock.patch.object(sys, "argv", call),
-        contextlib.chdir(cwd or ROOT), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err),
-        warnings.catch_warnings(), pytest.raises(SystemExit) as ended,
-    ):  # fmt: skip
+        mock.patch.dict(os.environ, {"NO_COLOR": "1"}),
+        mock.patch.object(sys, "argv", call),
+        contextlib.chdir(cwd or ROOT),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        warnings.catch_warnings(),
+        pytest.raises(SystemExit) as ended,
+    ):
         warnings.showwarning = show
         main()
     gc.set_threshold(*often)
@@ -62,9 +66,11 @@ def process(*arguments, cwd=None):
     """Run `tmm` in a process of its own."""
     return subprocess.run(
         [sys.executable, "-m", "tmm_cli", *map(str, arguments)],
-        capture_output=True, encoding="utf-8", cwd=cwd or ROOT,
+        capture_output=True,
+        encoding="utf-8",
+        cwd=cwd or ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1", "PYTHONIOENCODING": "utf-8"},
-    )  # fmt: skip
+    )
 
 
 def after_the_echo(stderr):
@@ -95,10 +101,22 @@ def test_run_writes_tables_drawings_and_results(shaper):
     names = {path.name for path in folder.iterdir()}
     assert {"result.json", "structure.csv", "points.csv", "reactions.csv", "lever.csv", "cycle.csv"} <= names
     drawings = (
-        "structure", "groups", "mechanism", "position-03", "velocity-03", "acceleration-03", "forces-03-links-4-5",
-        "forces-03-links-2-3", "forces-03-link-1", "lever-03", "diagrams", "reactions", "group-loads-03-links-4-5",
-        "group-loads-03-links-2-3", "group-loads-03-link-1",
-    )  # fmt: skip
+        "structure",
+        "groups",
+        "mechanism",
+        "position-03",
+        "velocity-03",
+        "acceleration-03",
+        "forces-03-links-4-5",
+        "forces-03-links-2-3",
+        "forces-03-link-1",
+        "lever-03",
+        "diagrams",
+        "reactions",
+        "group-loads-03-links-4-5",
+        "group-loads-03-links-2-3",
+        "group-loads-03-link-1",
+    )
     for name in drawings:
         assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert (folder / f"{name}.svg").read_text(encoding="utf-8").rstrip().endswith("</svg>")

@@ -88,9 +88,15 @@ def test_explain_prints_the_frame_by_its_number_in_every_formula(tmp_path):
     assert re.findall(r"I\(\w,1\)", told) == ["I(6,1)", "I(6,1)"], "in the formula and in the order of work"
 
 
-@pytest.mark.parametrize(("tongue", "more", "letter"), [
-    ("ru", "", "Φ5"), ("ru", "note: {inertia: U}", "U5"), ("en", "", "U5"), ("en", "note: {inertia: Φ}", "Φ5"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("tongue", "more", "letter"),
+    [
+        ("ru", "", "Φ5"),
+        ("ru", "note: {inertia: U}", "U5"),
+        ("en", "", "U5"),
+        ("en", "note: {inertia: Φ}", "Φ5"),
+    ],
+)
 def test_forces_of_inertia_have_the_letter_of_the_course(tmp_path, tongue, more, letter):
     forces = tmm("forces", written(tmp_path, more), "--position", "3", "--lang", tongue).stdout
     names = set(re.findall(r" ([UΦ]\d) ", forces))
@@ -154,10 +160,15 @@ def test_the_note_tells_arms_in_millimetres_of_its_drawings(tmp_path):
 def test_the_note_follows_the_steps_of_the_guidelines_where_the_file_asks(tmp_path):
     text = note_text(tmp_path, "frame: 6\nnote: {sections: MATI}")
     steps = (
-        "4.1 Plan of the mechanism", "4.2 Weights and useful loads", "4.3 Plan of accelerations and inertia forces",
-        "4.4 Reactions in the kinematic pairs", "4.4.1 Group of links 4, 5", "4.4.2 Group of links 2, 3",
-        "4.4.3 Driving link 1", "4.5 Zhukovsky lever",
-    )  # fmt: skip
+        "4.1 Plan of the mechanism",
+        "4.2 Weights and useful loads",
+        "4.3 Plan of accelerations and inertia forces",
+        "4.4 Reactions in the kinematic pairs",
+        "4.4.1 Group of links 4, 5",
+        "4.4.2 Group of links 2, 3",
+        "4.4.3 Driving link 1",
+        "4.5 Zhukovsky lever",
+    )
     body = text[text.rindex("4 Force analysis") :]
     places = [body.index(step) for step in steps]
     assert places == sorted(places)

@@ -67,9 +67,15 @@ sketch: {at: 1, B: [1.05, 0.6]}
 """
 NOTHING = 1e-22  # of a value: less is what 60 digits and their differences leave
 CLASSES = [
-    (3, ("RRR",)), (36, ("RRP",)), (41, ("RPR",)), (24, ("RPP", "PRP")), (53, ("RRP", "RPR", "RRR")), (0, ("III",)),
-    (3, ("IV",)), (4, ("III", "RRR")),
-]  # fmt: skip
+    (3, ("RRR",)),
+    (36, ("RRP",)),
+    (41, ("RPR",)),
+    (24, ("RPP", "PRP")),
+    (53, ("RRP", "RPR", "RRR")),
+    (0, ("III",)),
+    (3, ("IV",)),
+    (4, ("III", "RRR")),
+]
 
 
 @pytest.fixture
@@ -221,9 +227,16 @@ def test_bounds_are_narrow_near_dead_positions(many_digits):
 
 
 DIMENSIONS = {
-    "x": LENGTH, "v": SPEED, "a": ACCELERATION, "angle": ANGLE, "omega": ANGULAR_SPEED, "epsilon": ANGULAR_ACCELERATION,
-    "force": FORCE, "couple": MOMENT, "balancing": MOMENT,
-}  # fmt: skip
+    "x": LENGTH,
+    "v": SPEED,
+    "a": ACCELERATION,
+    "angle": ANGLE,
+    "omega": ANGULAR_SPEED,
+    "epsilon": ANGULAR_ACCELERATION,
+    "force": FORCE,
+    "couple": MOMENT,
+    "balancing": MOMENT,
+}
 
 
 @pytest.mark.parametrize("kinds", [kinds for _, kinds in CLASSES])

@@ -43,15 +43,23 @@ def scene(points, links, slides=(), driver="O", turn=0.4):
     hinges = [Hinge(p, tuple(n for n, body in bodies.items() if p in body.points)) for p in points]
     guided = [
         Slide(
-            name, one, other, local(one, at), math.radians(angle) - cmath.phase(poses[one][1]), local(other, at),
+            name,
+            one,
+            other,
+            local(one, at),
+            math.radians(angle) - cmath.phase(poses[one][1]),
+            local(other, at),
             cmath.phase(poses[other][1] / poses[one][1]),
         )
         for name, one, other, at, angle in slides
-    ]  # fmt: skip
+    ]
     linkage = Linkage(
-        bodies, tuple(h for h in hinges if len(h.links) > 1), tuple(guided), Driver("1", "turn", driver, 1.0),
+        bodies,
+        tuple(h for h in hinges if len(h.links) > 1),
+        tuple(guided),
+        Driver("1", "turn", driver, 1.0),
         Sketch(0.0),
-    )  # fmt: skip
+    )
     moved = {name: Pose(np.array([origin]), np.array([z])) for name, (origin, z) in poses.items()}
     return Scene(linkage, analyse(linkage), moved)
 
@@ -85,9 +93,13 @@ CROSS = scene(
     [("a", "2", "1", -20 + 40j, 80), ("b", "2", "3", 90 + 20j, -10)],
 )
 HAND_MADE = {
-    "triad": TRIAD, "sliding triad": SLIDING_TRIAD, "class IV": CONTOUR, "offset guide": OFFSET,
-    "guide on the link": GUIDE_ON_THE_LINK, "two guides on one link": CROSS,
-}  # fmt: skip
+    "triad": TRIAD,
+    "sliding triad": SLIDING_TRIAD,
+    "class IV": CONTOUR,
+    "offset guide": OFFSET,
+    "guide on the link": GUIDE_ON_THE_LINK,
+    "two guides on one link": CROSS,
+}
 
 
 def chain(number):
@@ -298,8 +310,18 @@ def test_a_run_draws_them_too_and_the_same_each_time():
     assert texts(scheme("", *here).finish()) == texts(scheme("", *here).finish())
 
 
-@pytest.mark.parametrize("name", ["gear-doubling", "gear-lever/ratchet-feed", "planetary-dwell-press", "cam-lever",
-                                  "cam-coupler", "rack-doubling", "summing-lever"])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "gear-doubling",
+        "gear-lever/ratchet-feed",
+        "planetary-dwell-press",
+        "cam-lever",
+        "cam-coupler",
+        "rack-doubling",
+        "summing-lever",
+    ],
+)
 def test_the_link_in_place_of_a_higher_pair_leaves_the_velocities_as_they_are(name):
     """Its ends, on both links, have one velocity along it, as the ends of any rigid link."""
     results = solved(name)

@@ -42,24 +42,46 @@ def slider(k, ratio):
 
 
 CASES = {
-    **{f"rocker {k} {low} {high}": (rocker, (k, low, high))
-       for k, (low, high) in product((1.02, 1.2, 2.0), ((80, 100), (130, 40)))},
-    **{f"slider {k} {ratio}": (slider, (k, ratio))
-       for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.2, 3.0), (1.8, 1.5))},
-    **{f"shaper {k}": (lambda k: drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=0.4), (k,))
-       for k in (1.1, 1.5, 2.0)},
-    **{f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, OC=0.2), (k,))
-       for k in (1.1, 1.5, 2.0)},
-    "pivots": (lambda: drawn(
-        coupler_positions, places=(0j, 0.06 + 0.06j, 0.09 + 0.14j), angles=tuple(np.radians([0.0, 20, 60])),
-        sides={"AB": Side(pivot=-0.06j), "DC": Side(pivot=0.12 - 0.04j)}), ()),
-    "four positions": (lambda: drawn(
-        coupler_positions, places=(0j, 0.05 + 0.01j, 0.1 + 0.05j, 0.12 + 0.12j),
-        angles=tuple(np.radians([0.0, 20, 50, 90]))), ()),
-    "angles": (lambda: drawn(
-        four_bar_by_angles, phi=tuple(np.radians([30.0, 60, 90])), psi=tuple(np.radians([60.0, 72, 90])),
-        lengths={"l4": 0.1}), ()),
-}  # fmt: skip
+    **{
+        f"rocker {k} {low} {high}": (rocker, (k, low, high))
+        for k, (low, high) in product((1.02, 1.2, 2.0), ((80, 100), (130, 40)))
+    },
+    **{f"slider {k} {ratio}": (slider, (k, ratio)) for k, ratio in ((1.0, 3.0), (1.02, 4.0), (1.2, 3.0), (1.8, 1.5))},
+    **{
+        f"shaper {k}": (lambda k: drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=0.4), (k,))
+        for k in (1.1, 1.5, 2.0)
+    },
+    **{
+        f"lever {k}": (lambda k: drawn(slotted_lever, b1=-0.2 + 0.1j, b2=0.2 + 0.2j, k=k, OC=0.2), (k,))
+        for k in (1.1, 1.5, 2.0)
+    },
+    "pivots": (
+        lambda: drawn(
+            coupler_positions,
+            places=(0j, 0.06 + 0.06j, 0.09 + 0.14j),
+            angles=tuple(np.radians([0.0, 20, 60])),
+            sides={"AB": Side(pivot=-0.06j), "DC": Side(pivot=0.12 - 0.04j)},
+        ),
+        (),
+    ),
+    "four positions": (
+        lambda: drawn(
+            coupler_positions,
+            places=(0j, 0.05 + 0.01j, 0.1 + 0.05j, 0.12 + 0.12j),
+            angles=tuple(np.radians([0.0, 20, 50, 90])),
+        ),
+        (),
+    ),
+    "angles": (
+        lambda: drawn(
+            four_bar_by_angles,
+            phi=tuple(np.radians([30.0, 60, 90])),
+            psi=tuple(np.radians([60.0, 72, 90])),
+            lengths={"l4": 0.1},
+        ),
+        (),
+    ),
+}
 
 
 def boxes(drawing):
@@ -85,9 +107,10 @@ def test_points_and_labels_are_on_the_sheet_and_no_two_labels_overlap(case):
         for name, left, right, bottom, top in texts[2:]:  # below the title strip
             assert low.real <= left and right <= high.real and low.imag <= bottom and top <= high.imag, name
         overlaps = [
-            (p[0], q[0]) for p, q in combinations(texts, 2)
+            (p[0], q[0])
+            for p, q in combinations(texts, 2)
             if min(p[2], q[2]) - max(p[1], q[1]) > 0.3 and min(p[4], q[4]) - max(p[3], q[3]) > 0.6
-        ]  # fmt: skip
+        ]
         assert not overlaps
 
 
@@ -161,8 +184,9 @@ def test_the_history_is_never_empty():
 
     shown = drawn(2.7)
     assert [line.text for line in shown.lines] == [
-        "leading candidate (a new population where it rises)", "after the polish"
-    ]  # fmt: skip
+        "leading candidate (a new population where it rises)",
+        "after the polish",
+    ]
     assert list(shown.lower[0].y) == [0.4, 0.1, 1e-3, 1e-5]
     rows[2:, 1] = 0
     shown = drawn(2.4)
@@ -190,10 +214,18 @@ def test_neither_label_nor_rod_stands_on_the_hatching_of_a_guide(k):
             assert not any(0 < share < 1 and off < 0.5 for share, off in zip(shares, aside, strict=True)), rod
 
 
-@pytest.mark.parametrize("rows", [
-    ((0, 0, 0), (50, 10, 20), (100, 50, 50), (120, 120, 90)),
-    ((-7, -21, 29), (45, -11, 31), (100, 20, 34), (169, -27, 63)),  # all round the curve within few degrees of a turn
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ((0, 0, 0), (50, 10, 20), (100, 50, 50), (120, 120, 90)),
+        (
+            (-7, -21, 29),
+            (45, -11, 31),
+            (100, 20, 34),
+            (169, -27, 63),
+        ),  # all round the curve within few degrees of a turn
+    ],
+)
 def test_curves_of_four_positions_have_neither_gaps_nor_corners_and_pass_through_the_joints(rows):
     places, angles = tuple((x + 1j * y) / 1000 for x, y, _ in rows), tuple(np.radians([r[2] for r in rows]))
     for one in drawn(coupler_positions, places=places, angles=angles):

@@ -23,11 +23,17 @@ from tmm_cli.mechanics.linkage import FRAME, Friction, Load, Output, Request, Sk
 BY, ASIDE = 0.7, 0.3 - 0.2j  # rad, m
 CLOSE = 1e-9  # of the largest there is
 CHAINS = [
-    (1, ("III", "gear"), "crank"), (1, ("IV",), "cylinder"), (1, ("VI", "cam"), "crank"),
-    (1, ("III", "swinging follower"), "swinging cylinder"), (1, ("rack", "RPP"), "cylinder"),
-    (3, ("cylinder", "RRP"), "crank"), (1, ("arm", "RPR"), "cylinder"), (2, ("RRR", "PRP", "RPR"), "crank"),
-    (3, ("cylinder", "arm", "III"), "crank"), (4, ("RRP", "RPP", "RRR"), "crank"),
-]  # fmt: skip
+    (1, ("III", "gear"), "crank"),
+    (1, ("IV",), "cylinder"),
+    (1, ("VI", "cam"), "crank"),
+    (1, ("III", "swinging follower"), "swinging cylinder"),
+    (1, ("rack", "RPP"), "cylinder"),
+    (3, ("cylinder", "RRP"), "crank"),
+    (1, ("arm", "RPR"), "cylinder"),
+    (2, ("RRR", "PRP", "RPR"), "crank"),
+    (3, ("cylinder", "arm", "III"), "crank"),
+    (4, ("RRP", "RPP", "RRR"), "crank"),
+]
 
 
 def solved(linkage, request):
@@ -140,9 +146,14 @@ def test_a_problem_of_the_bank_drawn_otherwise(name):
         places = sense * places + (by if on_frame else 0.0) + turns[linkage.driver.link] - turns[linkage.driver.base]
     two = solved(other, Request(places=tuple(places)))
     alike(
-        one, two, names, points, sense=sense, shift=ASIDE,
+        one,
+        two,
+        names,
+        points,
+        sense=sense,
+        shift=ASIDE,
         spin=lambda v: (v if sense > 0 else np.conj(v)) * np.exp(1j * by),
-    )  # fmt: skip
+    )
 
 
 def resisted(seed, kinds, driver):
@@ -153,9 +164,14 @@ def resisted(seed, kinds, driver):
     def load(k):
         link, base = (str(name) for name in random.choice(it.moving, 2, replace=False))
         return Load(
-            f"R{k}", link, complex(*random.uniform(-1, 1, 2)), complex(random.uniform(1, 9)),
-            float(random.uniform(1, 9)), resists=True, base=base if k % 2 else FRAME,
-        )  # fmt: skip
+            f"R{k}",
+            link,
+            complex(*random.uniform(-1, 1, 2)),
+            complex(random.uniform(1, 9)),
+            float(random.uniform(1, 9)),
+            resists=True,
+            base=base if k % 2 else FRAME,
+        )
 
     it = replace(it, loads=(*it.loads, *(load(k) for k in range(4))))
     return it, it.sketch.at + np.array([0.0, 0.004, -0.004])
@@ -177,9 +193,7 @@ def test_a_random_chain_drawn_otherwise(chain):
         on_frame = linkage.driver.base == FRAME
         places = -places + BY * on_frame + turns[linkage.driver.link] - turns[linkage.driver.base]
     two = solved(other, Request(places=tuple(places)))
-    alike(
-        one, two, names, points, sense=-1, shift=ASIDE, spin=lambda v: np.conj(v) * np.exp(1j * BY)
-    )  # fmt: skip
+    alike(one, two, names, points, sense=-1, shift=ASIDE, spin=lambda v: np.conj(v) * np.exp(1j * BY))
 
 
 def test_reactions_of_loads_are_the_sum_of_those_of_each(chain):

@@ -35,29 +35,47 @@ def refused(dynamics):
 @pytest.mark.parametrize(
     ("dynamics", "told"),
     [
-        ("{mean speed: -60 rpm}", "x.yaml:11:24: dynamics.mean speed: an angular speed cannot be negative\n"
-         "  found:   '-60 rpm'\n  allowed: more than zero"),
-        ("yes", "x.yaml:11:11: dynamics: keys with values are wanted\n  found:   'yes'\n"
-         "  allowed: mean speed, delta, motor, flywheel, run"),
-        ("{motor: {stall: 6}}", "x.yaml:11:12: dynamics.motor.kind: the key `kind` is missing\n"
-         "  allowed: linear, asynchronous"),
-        (f"{{motor: {{{INDUCTION}, speed: 1430}}}}",
-         "x.yaml:11:82: dynamics.motor.speed: the rated speed is below the synchronous one\n"
-         "  found:   1430 = 1430 rad/s = 13655.5 rpm\n  allowed: less than 157.08 rad/s = 1500 rpm"),
-        (f"{{motor: {{{INDUCTION}, speed: 1430 rpm, overload: 0.5}}}}",
-         "x.yaml:11:102: dynamics.motor.overload: the breakdown moment is not below the rated one\n"
-         "  found:   0.5\n  allowed: 1 or more"),
-        ("{motor: {kind: linear, stall: 60, free: 1500 rpm, moment: 20}}",
-         "x.yaml:11:61: dynamics.motor.moment: this motor is told by other numbers\n"
-         "  found:   'moment'\n  allowed: stall, free"),
-        ("{flywheel: {shape: rim, height: 1.2}}",
-         "x.yaml:11:43: dynamics.flywheel.height: a rim as high as that has no hole\n"
-         "  found:   1.2\n  allowed: less than 1, the mean diameter"),
-        ("{run: {to: 90, drive: {against: time, table: [[0, 5], [1, 6]], area: 5 cm^2}}}",
-         "x.yaml:11:74: dynamics.run.drive.area: a pressure is on a piston, and this driver is a crank\n"
-         "  found:   '5 cm^2'\n  allowed: a table of moments, or a driver that slides"),
+        (
+            "{mean speed: -60 rpm}",
+            "x.yaml:11:24: dynamics.mean speed: an angular speed cannot be negative\n"
+            "  found:   '-60 rpm'\n  allowed: more than zero",
+        ),
+        (
+            "yes",
+            "x.yaml:11:11: dynamics: keys with values are wanted\n  found:   'yes'\n"
+            "  allowed: mean speed, delta, motor, flywheel, run",
+        ),
+        (
+            "{motor: {stall: 6}}",
+            "x.yaml:11:12: dynamics.motor.kind: the key `kind` is missing\n  allowed: linear, asynchronous",
+        ),
+        (
+            f"{{motor: {{{INDUCTION}, speed: 1430}}}}",
+            "x.yaml:11:82: dynamics.motor.speed: the rated speed is below the synchronous one\n"
+            "  found:   1430 = 1430 rad/s = 13655.5 rpm\n  allowed: less than 157.08 rad/s = 1500 rpm",
+        ),
+        (
+            f"{{motor: {{{INDUCTION}, speed: 1430 rpm, overload: 0.5}}}}",
+            "x.yaml:11:102: dynamics.motor.overload: the breakdown moment is not below the rated one\n"
+            "  found:   0.5\n  allowed: 1 or more",
+        ),
+        (
+            "{motor: {kind: linear, stall: 60, free: 1500 rpm, moment: 20}}",
+            "x.yaml:11:61: dynamics.motor.moment: this motor is told by other numbers\n"
+            "  found:   'moment'\n  allowed: stall, free",
+        ),
+        (
+            "{flywheel: {shape: rim, height: 1.2}}",
+            "x.yaml:11:43: dynamics.flywheel.height: a rim as high as that has no hole\n"
+            "  found:   1.2\n  allowed: less than 1, the mean diameter",
+        ),
+        (
+            "{run: {to: 90, drive: {against: time, table: [[0, 5], [1, 6]], area: 5 cm^2}}}",
+            "x.yaml:11:74: dynamics.run.drive.area: a pressure is on a piston, and this driver is a crank\n"
+            "  found:   '5 cm^2'\n  allowed: a table of moments, or a driver that slides",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_is_told_with_what_to_write_instead(dynamics, told):
     assert refused(dynamics) == told
 

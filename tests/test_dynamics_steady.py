@@ -47,9 +47,7 @@ def machine(load=-100.0, swing=20.0, ripple=0.5, until=np.pi):
     return reduced(sample, [0, until, TURN])
 
 
-MACHINES = st.builds(
-    machine, st.floats(-500, -10), st.floats(-50, 50), st.floats(0.01, 1.5), st.floats(0.3, 6.0)
-)  # fmt: skip
+MACHINES = st.builds(machine, st.floats(-500, -10), st.floats(-50, 50), st.floats(0.01, 1.5), st.floats(0.3, 6.0))
 
 
 def test_rounding_errors_are_not_followed_by_panels_without_end():

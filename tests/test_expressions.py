@@ -44,42 +44,80 @@ GIVEN = {
 @pytest.mark.parametrize(
     ("source", "want", "value"),
     [
-        (110, LENGTH, 0.11), ("110", LENGTH, 0.11), ("OA", LENGTH, 0.11), ("2*OA/4", LENGTH, 0.055),
+        (110, LENGTH, 0.11),
+        ("110", LENGTH, 0.11),
+        ("OA", LENGTH, 0.11),
+        ("2*OA/4", LENGTH, 0.055),
         (5, ANGLE, math.radians(5)),
-        ("OA + CD", LENGTH, 0.76), ("CD - 50", LENGTH, 0.6), ("OA + 5 мм", LENGTH, 0.115),
+        ("OA + CD", LENGTH, 0.76),
+        ("CD - 50", LENGTH, 0.6),
+        ("OA + 5 мм", LENGTH, 0.115),
         ("длина/2", LENGTH, 0.2),
-        ("82 rpm", ANGULAR_SPEED, 82 * math.pi / 30), ("82 об/мин", ANGULAR_SPEED, 82 * math.pi / 30),
-        ("82 1/min", ANGULAR_SPEED, 82 * math.pi / 30), ("5 с⁻¹", ANGULAR_SPEED, 5),
+        ("82 rpm", ANGULAR_SPEED, 82 * math.pi / 30),
+        ("82 об/мин", ANGULAR_SPEED, 82 * math.pi / 30),
+        ("82 1/min", ANGULAR_SPEED, 82 * math.pi / 30),
+        ("5 с⁻¹", ANGULAR_SPEED, 5),
         ("30°", ANGLE, math.pi / 6),
-        ("1.5 kN", FORCE, 1500), ("5 N*m", MOMENT, 5), ("5 kN mm", MOMENT, 5), ("50 %", NUMBER, 0.5),
+        ("1.5 kN", FORCE, 1500),
+        ("5 N*m", MOMENT, 5),
+        ("5 kN mm", MOMENT, 5),
+        ("50 %", NUMBER, 0.5),
         ("50 % * CD", LENGTH, 0.325),
-        ("CD*n1", SPEED, 5.2), ("m * 9.81 m/s^2", FORCE, 215.82), ("sqrt(CD^2)", LENGTH, 0.65),
+        ("CD*n1", SPEED, 5.2),
+        ("m * 9.81 m/s^2", FORCE, 215.82),
+        ("sqrt(CD^2)", LENGTH, 0.65),
         ("abs(-CD)", LENGTH, 0.65),
-        ("sin(phi)*CD", LENGTH, 0.325), ("cos(60)", NUMBER, 0.5), ("sin(pi/6)", NUMBER, 0.5),
+        ("sin(phi)*CD", LENGTH, 0.325),
+        ("cos(60)", NUMBER, 0.5),
+        ("sin(pi/6)", NUMBER, 0.5),
         ("asin(OA/220)", ANGLE, math.pi / 6),
-        ("atan2(CD, CD)", ANGLE, math.pi / 4), ("hypot(3, 4)", LENGTH, 0.005),
-        ("pi/2", ANGLE, math.pi / 2), ("pi", NUMBER, math.pi),
-        ("pi*OA", LENGTH, 0.11 * math.pi), ("pi*CD + 5 mm", LENGTH, 0.65 * math.pi + 0.005),
+        ("atan2(CD, CD)", ANGLE, math.pi / 4),
+        ("hypot(3, 4)", LENGTH, 0.005),
+        ("pi/2", ANGLE, math.pi / 2),
+        ("pi", NUMBER, math.pi),
+        ("pi*OA", LENGTH, 0.11 * math.pi),
+        ("pi*CD + 5 mm", LENGTH, 0.65 * math.pi + 0.005),
         ("2*pi*82/60", ANGULAR_SPEED, 82 * math.pi / 30),
-        ("-2^2", NUMBER, -4), ("2^3^2", NUMBER, 512), ("2**-1", NUMBER, 0.5), ("--3", NUMBER, 3),
-        ("1 - 2 - 3", NUMBER, -4), ("8/4/2", NUMBER, 1),
-        ("−5 mm", LENGTH, -0.005), ("3×4 mm", LENGTH, 0.012), (" ( 1 + 2 ) * 3 ", NUMBER, 9),
-        ("1.5e3 mm", LENGTH, 1.5), (".5", NUMBER, 0.5),
-        ("100 mm -50", LENGTH, 0.05), ("max(1,5)", NUMBER, 5), ("max(OA, CD, 5 mm)", LENGTH, 0.65),
-        ("min(1, CD, 3)", LENGTH, 0.001), ("min(CD, 1, 3)", LENGTH, 0.001),
+        ("-2^2", NUMBER, -4),
+        ("2^3^2", NUMBER, 512),
+        ("2**-1", NUMBER, 0.5),
+        ("--3", NUMBER, 3),
+        ("1 - 2 - 3", NUMBER, -4),
+        ("8/4/2", NUMBER, 1),
+        ("−5 mm", LENGTH, -0.005),
+        ("3×4 mm", LENGTH, 0.012),
+        (" ( 1 + 2 ) * 3 ", NUMBER, 9),
+        ("1.5e3 mm", LENGTH, 1.5),
+        (".5", NUMBER, 0.5),
+        ("100 mm -50", LENGTH, 0.05),
+        ("max(1,5)", NUMBER, 5),
+        ("max(OA, CD, 5 mm)", LENGTH, 0.65),
+        ("min(1, CD, 3)", LENGTH, 0.001),
+        ("min(CD, 1, 3)", LENGTH, 0.001),
         ("max(1, 2, 3 mm)", LENGTH, 0.003),
         ("5 m*s", Dimension(length=1, time=1), 5),  # written together it is a unit,
         ("5 m * s", Dimension(length=1, time=1), 10),  # set apart a parameter
-        ("1.9·10³ Н", FORCE, 1900), ("1.9*10^3", NUMBER, 1900), ("2.1×10⁵ МПа", PRESSURE, 2.1e11),
+        ("1.9·10³ Н", FORCE, 1900),
+        ("1.9*10^3", NUMBER, 1900),
+        ("2.1×10⁵ МПа", PRESSURE, 2.1e11),
         ("5/2·10^3 N", FORCE, 2500),  # the unit is that of the power, and what stands before divides and multiplies it
-        ("8·10⁻³ кг·м²", INERTIA, 0.008), ("2·OA", LENGTH, 0.22), ("-10^3 N", FORCE, -1000),
-        ("1 900 N", FORCE, 1900), ("12\u2009500.5 мм", LENGTH, 12.5005), ("1\u202f234\xa0567", NUMBER, 1234567),
-        ("8 с-1", ANGULAR_SPEED, 8), ("82 мин-1", ANGULAR_SPEED, 82 * math.pi / 30), ("2 m·s-2", ACCELERATION, 2),
+        ("8·10⁻³ кг·м²", INERTIA, 0.008),
+        ("2·OA", LENGTH, 0.22),
+        ("-10^3 N", FORCE, -1000),
+        ("1 900 N", FORCE, 1900),
+        ("12\u2009500.5 мм", LENGTH, 12.5005),
+        ("1\u202f234\xa0567", NUMBER, 1234567),
+        ("8 с-1", ANGULAR_SPEED, 8),
+        ("82 мин-1", ANGULAR_SPEED, 82 * math.pi / 30),
+        ("2 m·s-2", ACCELERATION, 2),
         ("10 mm-1", LENGTH, 0.009),  # of other units it is a difference
-        ("5 кгс", FORCE, 5 * 9.80665), ("2 тс", FORCE, 2 * 9806.65), ("6 кгс/см²", PRESSURE, 6 * 98066.5),
-        ("1.5 кгс·м", MOMENT, 1.5 * 9.80665), ("0.2 кгс·м·с²", INERTIA, 0.2 * 9.80665),
+        ("5 кгс", FORCE, 5 * 9.80665),
+        ("2 тс", FORCE, 2 * 9806.65),
+        ("6 кгс/см²", PRESSURE, 6 * 98066.5),
+        ("1.5 кгс·м", MOMENT, 1.5 * 9.80665),
+        ("0.2 кгс·м·с²", INERTIA, 0.2 * 9.80665),
     ],
-)  # fmt: skip
+)
 def test_values(source: str | float, want: Dimension, value: float) -> None:
     assert evaluate(source, GIVEN, UNITS, want) == pytest.approx(value, rel=1e-14)
 
@@ -97,16 +135,23 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
     [
         ("110 mm", ANGLE, "an angle is wanted here\n  found:   '110 mm', a length (110 mm)" + ANGLES),
         ("CD/длина", ANGLE, "an angle is wanted here\n  found:   'CD/длина', a number (1.625)" + ANGLES),
-        ("1/2 mm", LENGTH, "a length is wanted here"
-         "\n  found:   '1/2 mm', a quantity in m^-1 (0.5 mm^-1)" + LENGTHS),
-        ("pi*m", LENGTH, "a length is wanted here"
-         "\n  found:   'pi*m', a quantity in kg*rad (3960 kg*deg)" + LENGTHS),
-        ("CD + n1", LENGTH, "a length and an angular speed cannot be added or compared"
-         "\n  found:   'CD + n1'" + ARITHMETIC),
-        ("CD/CD + 5 mm", LENGTH, "a number and a length cannot be added or compared"
-         "\n  found:   'CD/CD + 5 mm'" + ARITHMETIC),
-        ("min(CD, n1)", LENGTH, "a length and an angular speed cannot be added or compared"
-         "\n  found:   'min(CD, n1)'" + ARITHMETIC),
+        ("1/2 mm", LENGTH, "a length is wanted here\n  found:   '1/2 mm', a quantity in m^-1 (0.5 mm^-1)" + LENGTHS),
+        ("pi*m", LENGTH, "a length is wanted here\n  found:   'pi*m', a quantity in kg*rad (3960 kg*deg)" + LENGTHS),
+        (
+            "CD + n1",
+            LENGTH,
+            "a length and an angular speed cannot be added or compared\n  found:   'CD + n1'" + ARITHMETIC,
+        ),
+        (
+            "CD/CD + 5 mm",
+            LENGTH,
+            "a number and a length cannot be added or compared\n  found:   'CD/CD + 5 mm'" + ARITHMETIC,
+        ),
+        (
+            "min(CD, n1)",
+            LENGTH,
+            "a length and an angular speed cannot be added or compared\n  found:   'min(CD, n1)'" + ARITHMETIC,
+        ),
         ("sin(CD)", NUMBER, "sin wants an angle, not a length\n  found:   'sin(CD)'" + ARITHMETIC),
         ("asin(CD)", ANGLE, "asin wants a number, not a length\n  found:   'asin(CD)'" + ARITHMETIC),
         ("asin(1.2)", ANGLE, "asin of 1.2 has no value\n  found:   'asin(1.2)'" + ARITHMETIC),
@@ -119,31 +164,60 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("0^-1", NUMBER, "this power has no value\n  found:   '0^-1'" + ARITHMETIC),
         ("9^9^9", NUMBER, "an exponent is a small bare number\n  found:   '9^9^9'" + ARITHMETIC),
         ("1e300*1e300", NUMBER, "this number is too large\n  found:   '1e300*1e300'"),
-        ("1e999", NUMBER, "the number is too large or too small\n  found:   '1e999'"
-         "\n  allowed: sizes from 1e-300 to 1e300"),
+        (
+            "1e999",
+            NUMBER,
+            "the number is too large or too small\n  found:   '1e999'\n  allowed: sizes from 1e-300 to 1e300",
+        ),
         ("1,5", LENGTH, "decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
-        ("OA + 1,5 mm", LENGTH, "decimal comma: write 1.5 mm\n  found:   '1,5 mm'"
-         "\n  allowed: a decimal point; a list is written [1, 5 mm]"),
+        (
+            "OA + 1,5 mm",
+            LENGTH,
+            "decimal comma: write 1.5 mm\n  found:   '1,5 mm'\n  allowed: a decimal point; a list is written [1, 5 mm]",
+        ),
         ("(1,5 + 2)", LENGTH, "decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
         ("OAA", LENGTH, "there is no such parameter\n  found:   'OAA'" + NAMES + "\n  did you mean 'OA'?"),
-        ("ОА", LENGTH, "there is no such parameter\n  found:   'ОА'" + NAMES + ""
-         "\n  did you mean 'OA' in Latin letters?"),
+        (
+            "ОА",
+            LENGTH,
+            "there is no such parameter\n  found:   'ОА'" + NAMES + "\n  did you mean 'OA' in Latin letters?",
+        ),
         ("5 rmp", ANGULAR_SPEED, "unknown unit\n  found:   'rmp'" + UNIT_NAMES + "\n  did you mean 'rpm'?"),
-        ("mm", LENGTH, "there is no parameter mm, and a unit follows a number: 1 mm\n  found:   'mm'" + NAMES
-         + "\n  did you mean 'm'?"),
+        (
+            "mm",
+            LENGTH,
+            "there is no parameter mm, and a unit follows a number: 1 mm\n  found:   'mm'"
+            + NAMES
+            + "\n  did you mean 'm'?",
+        ),
         ("0.05*H", LENGTH, "there is no parameter H, and a unit follows a number: 1 H\n  found:   'H'" + NAMES),
-        ("1 900,5 mm", LENGTH, "decimal comma: write 1 900.5 mm\n  found:   '1 900,5 mm'"
-         "\n  allowed: a decimal point; a list is written [1 900, 5 mm]"),
+        (
+            "1 900,5 mm",
+            LENGTH,
+            "decimal comma: write 1 900.5 mm\n  found:   '1 900,5 mm'"
+            "\n  allowed: a decimal point; a list is written [1 900, 5 mm]",
+        ),
         ("1 90", LENGTH, "this is not arithmetic\n  found:   '1 90', at '90'" + ARITHMETIC),
         ("CD/OA", NUMBER, "parameter OA has no unit: write OA: 110 mm\n  found:   'CD/OA'"),
         ("asin(OA/CD)", ANGLE, "parameter OA has no unit: write OA: 110 mm\n  found:   'asin(OA/CD)'"),
         ("CD*phi", SPEED, "parameter phi has no unit: write phi: 30 rpm or 30 rad/s\n  found:   'CD*phi'"),
-        ("500 кг", FORCE, "a force is wanted here\n  found:   '500 кг', a mass (500 kg)"
-         "\n  allowed: a force, e.g. 1500 N or 1.5 kN; a kilogram of force is written kgf"),
-        ("6 кг/см²", PRESSURE, "a pressure is wanted here\n  found:   '6 кг/см²', a quantity in m^-2*kg (0.06 mm^-2*kg)"
-         "\n  allowed: a pressure, e.g. 1.2 MPa or 12 bar; a kilogram of force is written kgf"),
-        ("CD/phi", MASS, "a mass is wanted here\n  found:   'CD/phi', a length (21.6667 mm)"
-         "\n  allowed: a mass, e.g. 22 kg"),
+        (
+            "500 кг",
+            FORCE,
+            "a force is wanted here\n  found:   '500 кг', a mass (500 kg)"
+            "\n  allowed: a force, e.g. 1500 N or 1.5 kN; a kilogram of force is written kgf",
+        ),
+        (
+            "6 кг/см²",
+            PRESSURE,
+            "a pressure is wanted here\n  found:   '6 кг/см²', a quantity in m^-2*kg (0.06 mm^-2*kg)"
+            "\n  allowed: a pressure, e.g. 1.2 MPa or 12 bar; a kilogram of force is written kgf",
+        ),
+        (
+            "CD/phi",
+            MASS,
+            "a mass is wanted here\n  found:   'CD/phi', a length (21.6667 mm)\n  allowed: a mass, e.g. 22 kg",
+        ),
         ("2 OA", LENGTH, "a * is missing before OA\n  found:   '2 OA', at 'OA'" + ARITHMETIC),
         ("2m2", MASS, "a * is missing before m2\n  found:   '2m2', at 'm2'" + ARITHMETIC),
         ("1 +", LENGTH, "a number is missing\n  found:   '1 +'" + ARITHMETIC),
@@ -154,13 +228,11 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         ("atan2(1)", ANGLE, "atan2 wants another number of arguments\n  found:   'atan2(1)'" + ARITHMETIC),
         ("__import__('os')", LENGTH, "there is no such parameter\n  found:   '__import__'" + NAMES),
         (True, LENGTH, "a number is wanted here\n  found:   true\n  allowed: a number, a unit, arithmetic"),
-        (None, LENGTH, "a number is wanted here\n  found:   nothing (null)"
-         "\n  allowed: a number, a unit, arithmetic"),
-        ([1, 5], LENGTH, "a number is wanted here\n  found:   [1, 5]"
-         "\n  allowed: a number, a unit, arithmetic"),
+        (None, LENGTH, "a number is wanted here\n  found:   nothing (null)\n  allowed: a number, a unit, arithmetic"),
+        ([1, 5], LENGTH, "a number is wanted here\n  found:   [1, 5]\n  allowed: a number, a unit, arithmetic"),
         (math.nan, LENGTH, "not a number from -1e300 to 1e300\n  found:   nan"),
     ],
-)  # fmt: skip
+)
 def test_refusals(source: object, want: Dimension, message: str) -> None:
     with pytest.raises(ProblemError) as caught:
         evaluate(source, GIVEN, UNITS, want)
@@ -169,11 +241,16 @@ def test_refusals(source: object, want: Dimension, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("source", "words"),
-    [("(" * 200, "nested too deeply"), ("2" + "^2" * 99, "nested too deeply"),
-    ("sqrt(" * 40, "nested too deeply"),
-     ("1" * 201, "too long"), ("1" + " mm" * 60, "not a unit"), ("1" + "*m" * 99, "wanted here"),
-     (10**400, "1e300")],
-)  # fmt: skip
+    [
+        ("(" * 200, "nested too deeply"),
+        ("2" + "^2" * 99, "nested too deeply"),
+        ("sqrt(" * 40, "nested too deeply"),
+        ("1" * 201, "too long"),
+        ("1" + " mm" * 60, "not a unit"),
+        ("1" + "*m" * 99, "wanted here"),
+        (10**400, "1e300"),
+    ],
+)
 def test_nothing_runs_away(source: object, words: str) -> None:
     with pytest.raises(ProblemError, match=words):
         evaluate(source, GIVEN, UNITS, LENGTH)
@@ -222,20 +299,23 @@ def test_long_chains_of_parameters() -> None:
 @pytest.mark.parametrize(
     ("raw", "message"),
     [
-        ({"x": 1, "a": "b", "b": "c*2", "c": "a"}, "a: parameters go round in a circle"
-         "\n  found:   a -> b -> c -> a"),
+        ({"x": 1, "a": "b", "b": "c*2", "c": "a"}, "a: parameters go round in a circle\n  found:   a -> b -> c -> a"),
         ({"a": "a + 1"}, "a: parameters go round in a circle\n  found:   a -> a"),
         ({"OA": 1, "b": "2*0A"}, "b: unknown unit\n  found:   'A'" + UNIT_NAMES),
         ({"b": "1/0"}, "b: division by zero\n  found:   '1/0'" + ARITHMETIC),
         ({"sin": 1}, "sin: this name is taken by arithmetic\n  found:   'sin'"),
-        ({"1a": 1}, "1a: this cannot be the name of a parameter\n  found:   '1a'"
-         "\n  allowed: letters, figures and _, a letter first"),
-        ({"BC": 220, "OA": "110 mm", "a": "asin(OA/BC)"}, "a: parameter BC has no unit: write BC: 220 mm"
-         "\n  found:   'asin(OA/BC)'"),
-        ({"a": False}, "a: a number is wanted here\n  found:   false"
-         "\n  allowed: a number, a unit, arithmetic"),
+        (
+            {"1a": 1},
+            "1a: this cannot be the name of a parameter\n  found:   '1a'"
+            "\n  allowed: letters, figures and _, a letter first",
+        ),
+        (
+            {"BC": 220, "OA": "110 mm", "a": "asin(OA/BC)"},
+            "a: parameter BC has no unit: write BC: 220 mm\n  found:   'asin(OA/BC)'",
+        ),
+        ({"a": False}, "a: a number is wanted here\n  found:   false\n  allowed: a number, a unit, arithmetic"),
     ],
-)  # fmt: skip
+)
 def test_parameters_refused(raw: dict[str, object], message: str) -> None:
     with pytest.raises(ProblemError) as caught:
         resolve_parameters(raw, UNITS)

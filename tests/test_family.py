@@ -42,8 +42,14 @@ def maker(name, given):
     return make, [known[key].value for key in given]
 
 
-BANK = {"crank-rocker": ["l1", "l2", "l3", "l4"], "shaper": 3, "six-bar": 4, "crank-slider-offset": 3,
-        "slotted-lever": 2, "course-2": 3}  # fmt: skip
+BANK = {
+    "crank-rocker": ["l1", "l2", "l3", "l4"],
+    "shaper": 3,
+    "six-bar": 4,
+    "crank-slider-offset": 3,
+    "slotted-lever": 2,
+    "course-2": 3,
+}
 
 
 @pytest.mark.parametrize("name", BANK)
@@ -65,9 +71,16 @@ def test_a_family_is_what_the_file_builds_for_the_same_numbers(name):
 
 
 ARITHMETIC = (
-    "asin(a/b) + acos(a/b) + atan(a/b)", "sqrt(a^2 + b^2) - hypot(a, b)/2", "min(a, b, 2*a) + max(b, 3*a)",
-    "a*tan(0.3)", "a^3/b^2", "atan2(a, b) - 30 deg", "abs(a - b)", "b*sin(60 deg) - a*cos(atan(a/b))", "(a/b)^-1",
-)  # fmt: skip
+    "asin(a/b) + acos(a/b) + atan(a/b)",
+    "sqrt(a^2 + b^2) - hypot(a, b)/2",
+    "min(a, b, 2*a) + max(b, 3*a)",
+    "a*tan(0.3)",
+    "a^3/b^2",
+    "atan2(a, b) - 30 deg",
+    "abs(a - b)",
+    "b*sin(60 deg) - a*cos(atan(a/b))",
+    "(a/b)^-1",
+)
 
 
 @pytest.mark.parametrize("text", ARITHMETIC)

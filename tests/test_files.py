@@ -235,11 +235,20 @@ def test_a_run_that_is_killed_while_it_writes_leaves_the_old_results_and_the_nex
 @pytest.mark.parametrize(
     ("name", "safe"),
     [
-        ("CON", "_CON"), ("aux", "_aux"), ("nul.v2", "_nul.v2"), ("com1", "_com1"), ("LPT9", "_LPT9"),
-        ("task...", "task"), ("task ", "task_"), ("..", "problem"), ("a/b\\c:d", "a_b_c_d"), ("console", "console"),
-        ("кривошип", "кривошип"), ("x" * 400, "x" * 150),
+        ("CON", "_CON"),
+        ("aux", "_aux"),
+        ("nul.v2", "_nul.v2"),
+        ("com1", "_com1"),
+        ("LPT9", "_LPT9"),
+        ("task...", "task"),
+        ("task ", "task_"),
+        ("..", "problem"),
+        ("a/b\\c:d", "a_b_c_d"),
+        ("console", "console"),
+        ("кривошип", "кривошип"),
+        ("x" * 400, "x" * 150),
     ],
-)  # fmt: skip
+)
 def test_a_folder_has_a_name_that_every_system_takes(name, safe):
     assert folder_name(name) == safe
 
@@ -254,10 +263,14 @@ def test_only_names_of_files_are_taken_from_a_record(tmp_path):
 @pytest.mark.parametrize(
     "command",
     [
-        ("sweep", SHAPER, "--over", "OA=80..120:3"), ("synthesis", SHAPER), ("run", SHAPER), ("gallery", SHAPER),
-        ("animate", SHAPER), ("variants", ROOT / "problems" / "grading" / "shaper" / "task.yaml"),
+        ("sweep", SHAPER, "--over", "OA=80..120:3"),
+        ("synthesis", SHAPER),
+        ("run", SHAPER),
+        ("gallery", SHAPER),
+        ("animate", SHAPER),
+        ("variants", ROOT / "problems" / "grading" / "shaper" / "task.yaml"),
     ],
-)  # fmt: skip
+)
 def test_a_place_that_cannot_be_written_is_refused_before_the_work(command, tmp_path):
     (tmp_path / "taken").write_text("mine", encoding="utf-8")
     done = tmm(*command, "-o", tmp_path / "taken" / "x.html")

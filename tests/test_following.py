@@ -18,10 +18,13 @@ from tmm_cli.mechanics.structure.assur import analyse
 # a cylinder that is looked at as far as it is for the largest group
 CASES = [
     *((seed, kinds, "crank") for seed in range(1, 2) for kinds in (("III",), ("IV",), ("VI",), ("III", "IV"))),
-    (54, ("III",), "crank"), (1092, ("III", "III"), "crank"), (3184, ("rack", "RRP"), "crank"),
-    (3139, ("pinion", "rack"), "cylinder"), (7, ("gear", "geared five-bar"), "crank"),
+    (54, ("III",), "crank"),
+    (1092, ("III", "III"), "crank"),
+    (3184, ("rack", "RRP"), "crank"),
+    (3139, ("pinion", "rack"), "cylinder"),
+    (7, ("gear", "geared five-bar"), "crank"),
     (5, ("III",), "swinging cylinder"),
-]  # fmt: skip
+]
 
 
 @cache

@@ -99,11 +99,16 @@ def link(joints, links, forces=(), *, clockwise=False, gravity=True, rpm=30, len
 
 TURNING, INPUT, GROUND, SLIDING = 0, 2, 4, 1
 SLIDER = link(
-    [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 3, 4, 0), (TURNING, "C", 15, -1, 0),
-     (SLIDING | GROUND, "D", 15, -1, math.pi / 4)],
+    [
+        (INPUT | GROUND, "A", 0, 0, 0),
+        (TURNING, "B", 3, 4, 0),
+        (TURNING, "C", 15, -1, 0),
+        (SLIDING | GROUND, "D", 15, -1, math.pi / 4),
+    ],
     [("R", "AB", "AB", 2, 1.5, 2), ("R", "BC", "BC", 3, 9, 1.5), ("P", "CD", "CD", 1, 0, 0)],
-    [("F1", "BC", 9, 1.5, 9, 3.5, 40)], clockwise=True,
-)  # fmt: skip
+    [("F1", "BC", 9, 1.5, 9, 3.5, 40)],
+    clockwise=True,
+)
 
 
 @pytest.mark.parametrize("text", [SLIDER, f"https://app.pmksplus.com/?{SLIDER}\n"])
@@ -305,19 +310,42 @@ def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_load
 def file_of_pylinkage(**changed):
     """A four-bar of pylinkage; changed: joints that are added, or other keys."""
     places = {"A": [0, 0], "B": [10, 0], "C": [30, 20], "D": [40, 0]}
-    joints = [{"id": name, "type": "ground" if name in "AD" else "revolute", "position": place}
-              for name, place in places.items()]  # fmt: skip
-    links = [{"id": "ground", "type": "ground", "joints": ["A", "D"]},
-             {"id": "crank", "type": "driver", "joints": ["A", "B"], "motor_joint": "A", "angular_velocity": 1},
-             {"id": "rod", "type": "link", "joints": ["B", "C"]},
-             {"id": "bar", "type": "link", "joints": ["C", "D"]}]  # fmt: skip
+    joints = [
+        {"id": name, "type": "ground" if name in "AD" else "revolute", "position": place}
+        for name, place in places.items()
+    ]
+    links = [
+        {"id": "ground", "type": "ground", "joints": ["A", "D"]},
+        {"id": "crank", "type": "driver", "joints": ["A", "B"], "motor_joint": "A", "angular_velocity": 1},
+        {"id": "rod", "type": "link", "joints": ["B", "C"]},
+        {"id": "bar", "type": "link", "joints": ["C", "D"]},
+    ]
     return {"name": "four-bar", "joints": [*joints, *changed.pop("more", ())], "links": links} | changed
 
 
 NAMES = [
-    "null", "true", "nan", "5", "0", "at", "g1", "_", "", " ", "]}, x: {y: [1", "B # c", "a\"b'c\\", "Шарнир",
-    "&a *b !!python/object", "a: b", "x" * 90, "~", "2020-01-01", "<<", "²",
-]  # fmt: skip
+    "null",
+    "true",
+    "nan",
+    "5",
+    "0",
+    "at",
+    "g1",
+    "_",
+    "",
+    " ",
+    "]}, x: {y: [1",
+    "B # c",
+    "a\"b'c\\",
+    "Шарнир",
+    "&a *b !!python/object",
+    "a: b",
+    "x" * 90,
+    "~",
+    "2020-01-01",
+    "<<",
+    "²",
+]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -333,62 +361,80 @@ def test_whatever_a_name_is_what_is_written_is_the_same_mechanism(name, old):
 
 
 def test_joints_on_no_moving_link_are_left_out_and_said():
-    more = [{"id": "X", "position": [5, 5]}, {"id": "Y", "type": "ground", "position": [7, 5]},
-            {"id": "T", "type": "tracker", "position": [2, 2], "ref_joint1_id": "T", "ref_joint2_id": "T"}]  # fmt: skip
+    more = [
+        {"id": "X", "position": [5, 5]},
+        {"id": "Y", "type": "ground", "position": [7, 5]},
+        {"id": "T", "type": "tracker", "position": [2, 2], "ref_joint1_id": "T", "ref_joint2_id": "T"},
+    ]
     foreign, results = imported(json.dumps(file_of_pylinkage(more=more)))
     assert set(results.linkage.links["0"].points) == {"A", "D"} and set(foreign.places) == set("ABCD")
     assert set(foreign.left) == {
-        "Joint X is on no moving link.", "Joint Y is on no moving link.",
+        "Joint X is on no moving link.",
+        "Joint Y is on no moving link.",
         "Point T follows two joints that are not on one link.",
-    }  # fmt: skip
+    }
 
 
 REFUSED = {
-    "nothing of it\n":
-        "file: this file is of no format that is known here\n"
-        "  allowed: pylinkage; PMKS+, CSV; PMKS+, a saved link; linkage/v2",
-    SLIDER[:-1] + ("0" if SLIDER[-1] != "0" else "1"):
-        "file: this link is not whole: its last character does not fit its length",
-    '{"joints": [{"id": "A", "position": [0, 0]}], "links": [{"id": "1", "type": "lnk", "joints": []}]}':
-        "file:1:77: links[0].type: this word is not known here\n  found:   'lnk'\n"
-        "  allowed: ground, driver, arc_driver, link\n  did you mean 'link'?",
-    "joints\nid,x,y,links,type,ground,angle,input\nA,0,zero,AB,R,true,Null,true\n":
-        "file:3:1: y: a number is wanted\n  found:   'zero'",
-    json.dumps(file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])):
-        "file:1:252: joints[4].id: a name is given twice\n  found:   'B'",
-    json.dumps(file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])):
-        "file:1:270: joints[4].position[0]: this is too large for a mechanism\n  found:   1e+308",
-    json.dumps(file_of_pylinkage(joints=[{}] * 501)):
-        "file:1:32: joints: this is too long: at most 500",
-    link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []):
-        "file: joints.B: this is no number to the base 64\n  found:   'SijRs6CXv000000000000000'",
-    link([*FOUR_BAR[:3], (*FOUR_BAR[3], *"XAB")], BARS):
-        "file: joints.D: a slot needs a joint that slides, a link and two joints of that link\n  found:   'X,A,B'",
-    link([*FOUR_BAR[:3], (SLIDING, *FOUR_BAR[3][1:], "XY", "A", "B")], BARS):
-        "file: joints.D: there is no link of that name\n  found:   'XY'",
-    link([*FOUR_BAR[:3], (*FOUR_BAR[3], "", "", "", "", "", "", "", "new")], BARS):
-        "file: joints.D: a field of a joint that is not known here\n  found:   ',,new'",
-    link(FOUR_BAR, [*BARS[:2], ("QR", *BARS[2][1:])]):
-        "file: links.CD: a link of a kind that is not known here\n  found:   'Q'",
-    link(FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"):
-        "file: gears of PMKS+ are not read\n  found:   'G1~eyJnZWFycyI6W119'",
-    link(FOUR_BAR, BARS, tail=".XJB"):
-        "file: an entry that is not known here\n  found:   'XJB'",
-    link([(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS):
-        "file: joints.B: a motor between two moving links is not taken over\n  found:   AB, BC",
-    (GALLERY / "Saw.pmks").read_text(encoding="utf-8").replace("E,1E8", "E,1E9"):
-        "file: this link is damaged: its digest does not fit its text\n  found:   '3FX8op'",
-    "https://app.pmksplus.com/?pmks2:0123abcd.eyJib2RpZXMiOltdfQ":
-        "file: a document of the newer editor of PMKS+ is not read\n  found:   pmks2:...",
-    link([(INPUT | GROUND, "A", 0, 0, 0)], [("R", "AB", "A", 2, 1, 2)], [("F", "BA", 0, 0, 1, 0, 9)]):
-        "file: forces.F: there is no link of that name\n  found:   'BA'",
-    "\n" * 900_000:
-        "file: this file is of no format that is known here",
-    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}}\nbodies: {}\njoints: [{type: revolute, endpoints: []}]\n":
-        "file:4:38: joints[0].endpoints: a hinge joins two links",
-    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}, construct: [{type: point_on_ray, point: B, from: C}]}\n":
-        "file:2:82: geometry.construct[0].from: this word is not known here\n  found:   'C'\n  allowed: A",
-}  # fmt: skip
+    "nothing of it\n": "file: this file is of no format that is known here\n"
+    "  allowed: pylinkage; PMKS+, CSV; PMKS+, a saved link; linkage/v2",
+    SLIDER[:-1]
+    + ("0" if SLIDER[-1] != "0" else "1"): "file: this link is not whole: its last character does not fit its length",
+    '{"joints": [{"id": "A", "position": [0, 0]}], "links": [{"id": "1", "type": "lnk", "joints": []}]}': (
+        "file:1:77: links[0].type: this word is not known here\n"
+        "  found:   'lnk'\n"
+        "  allowed: ground, driver, arc_driver, link\n"
+        "  did you mean 'link'?"
+    ),
+    "joints\nid,x,y,links,type,ground,angle,input\nA,0,zero,AB,R,true,Null,true\n": (
+        "file:3:1: y: a number is wanted\n  found:   'zero'"
+    ),
+    json.dumps(
+        file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])
+    ): "file:1:252: joints[4].id: a name is given twice\n  found:   'B'",
+    json.dumps(
+        file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])
+    ): "file:1:270: joints[4].position[0]: this is too large for a mechanism\n  found:   1e+308",
+    json.dumps(file_of_pylinkage(joints=[{}] * 501)): "file:1:32: joints: this is too long: at most 500",
+    link(
+        [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []
+    ): "file: joints.B: this is no number to the base 64\n  found:   'SijRs6CXv000000000000000'",
+    link(
+        [*FOUR_BAR[:3], (*FOUR_BAR[3], *"XAB")], BARS
+    ): "file: joints.D: a slot needs a joint that slides, a link and two joints of that link\n  found:   'X,A,B'",
+    link(
+        [*FOUR_BAR[:3], (SLIDING, *FOUR_BAR[3][1:], "XY", "A", "B")], BARS
+    ): "file: joints.D: there is no link of that name\n  found:   'XY'",
+    link(
+        [*FOUR_BAR[:3], (*FOUR_BAR[3], "", "", "", "", "", "", "", "new")], BARS
+    ): "file: joints.D: a field of a joint that is not known here\n  found:   ',,new'",
+    link(
+        FOUR_BAR, [*BARS[:2], ("QR", *BARS[2][1:])]
+    ): "file: links.CD: a link of a kind that is not known here\n  found:   'Q'",
+    link(
+        FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"
+    ): "file: gears of PMKS+ are not read\n  found:   'G1~eyJnZWFycyI6W119'",
+    link(FOUR_BAR, BARS, tail=".XJB"): "file: an entry that is not known here\n  found:   'XJB'",
+    link(
+        [(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS
+    ): "file: joints.B: a motor between two moving links is not taken over\n  found:   AB, BC",
+    (GALLERY / "Saw.pmks")
+    .read_text(encoding="utf-8")
+    .replace("E,1E8", "E,1E9"): "file: this link is damaged: its digest does not fit its text\n  found:   '3FX8op'",
+    "https://app.pmksplus.com/?pmks2:0123abcd.eyJib2RpZXMiOltdfQ": (
+        "file: a document of the newer editor of PMKS+ is not read\n  found:   pmks2:..."
+    ),
+    link(
+        [(INPUT | GROUND, "A", 0, 0, 0)], [("R", "AB", "A", 2, 1, 2)], [("F", "BA", 0, 0, 1, 0, 9)]
+    ): "file: forces.F: there is no link of that name\n  found:   'BA'",
+    "\n" * 900_000: "file: this file is of no format that is known here",
+    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}}\nbodies: {}\njoints: [{type: revolute, endpoints: []}]\n": (
+        "file:4:38: joints[0].endpoints: a hinge joins two links"
+    ),
+    "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}, construct: [{type: point_on_ray, point: B, from: C}]}\n": (
+        "file:2:82: geometry.construct[0].from: this word is not known here\n  found:   'C'\n  allowed: A"
+    ),
+}
 
 
 @pytest.mark.parametrize("text", REFUSED)

@@ -38,8 +38,12 @@ class Part:
 def test_a_map_over_records_meets_every_leaf_at_its_path():
     record = Part((1.0, Part((2.0,))), {"a": 3.0}, 4.0)
     assert dict(leaves(record)) == {
-        "sizes[0]": 1.0, "sizes[1].sizes[0]": 2.0, "sizes[1].kept": 0.0, "named.a": 3.0, "kept": 4.0,
-    }  # fmt: skip
+        "sizes[0]": 1.0,
+        "sizes[1].sizes[0]": 2.0,
+        "sizes[1].kept": 0.0,
+        "named.a": 3.0,
+        "kept": 4.0,
+    }
     assert mapped(lambda path, value: value + 1, record, skip=("kept",)) == Part((2.0, Part((3.0,))), {"a": 4.0}, 4.0)
     sums = mapped(lambda path, one, other: one + other, record, record)
     assert dict(leaves(sums)) == {path: 2 * value for path, value in leaves(record)}

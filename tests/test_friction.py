@@ -18,26 +18,37 @@ from tmm_cli.reports.digits import accuracy, computed_tables
 
 G = 9.81
 SLIDER = {
-    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "guides": {"x": {"through": [0, 0], "angle": 0}},
+    "tmm": 1,
+    "units": {"length": "m", "angle": "rad"},
+    "guides": {"x": {"through": [0, 0], "angle": 0}},
     "links": {"1": {"points": ["A"], "slides": {"on": "x"}}},
-    "driver": {"link": 1, "speed": 0.2}, "masses": {"1": {"mass": 3}}, "positions": {"at": [0, 0.1, 0.2]},
-}  # fmt: skip
+    "driver": {"link": 1, "speed": 0.2},
+    "masses": {"1": {"mass": 3}},
+    "positions": {"at": [0, 0.1, 0.2]},
+}
 CRANK = {
-    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+    "tmm": 1,
+    "units": {"length": "m", "angle": "rad"},
+    "points": {"O": [0, 0]},
     "links": {"1": {"points": {"O": [0, 0], "A": [0.3, 0]}}},
-    "driver": {"link": 1, "speed": 2}, "masses": {"1": {"mass": 5, "centre": "O"}},
-}  # fmt: skip
+    "driver": {"link": 1, "speed": 2},
+    "masses": {"1": {"mass": 5, "centre": "O"}},
+}
 # a wedge 1 driven along x lifts follower 2 in a vertical guide; the slope is between them
 WEDGE = {
-    "tmm": 1, "units": {"length": "m", "angle": "rad"},
+    "tmm": 1,
+    "units": {"length": "m", "angle": "rad"},
     "guides": {"x": {"through": [0, 0], "angle": 0}, "y": {"through": [0, 0], "angle": "90 deg"}},
     "links": {
         "1": {"points": {"A": [0, 0]}, "slides": {"on": "x"}},
         "2": {"points": {"B": [0, 0]}, "slides": [{"on": "y"}, {"on": 1, "through": [0, 0], "angle": "-20 deg"}]},
     },
-    "driver": {"link": 1, "speed": 0.1}, "sketch": {"at": 0.05, "B": [0, 0.018]},
-    "loads": {"F": {"on": 2, "force": [0, -100]}}, "gravity": 0, "positions": {"at": [0.0, 0.05]},
-}  # fmt: skip
+    "driver": {"link": 1, "speed": 0.1},
+    "sketch": {"at": 0.05, "B": [0, 0.018]},
+    "loads": {"F": {"on": 2, "force": [0, -100]}},
+    "gravity": 0,
+    "positions": {"at": [0.0, 0.05]},
+}
 
 
 def test_without_the_block_nothing_of_it_is_computed():
@@ -76,9 +87,13 @@ def test_a_wedge_needs_the_force_of_its_friction_angles(mu):
 
 def test_a_steep_wedge_locks_and_says_where():
     """cos(a + phi) = mu sin(a + phi), that is a + 2 phi = 90 deg: beyond it no force moves the follower."""
-    steep = WEDGE | {"links": {**WEDGE["links"], "2": {
-        "points": {"B": [0, 0]}, "slides": [{"on": "y"}, {"on": 1, "through": [0, 0], "angle": "-60 deg"}]}},
-        "sketch": {"at": 0.05, "B": [0, 0.087]}}  # fmt: skip
+    steep = WEDGE | {
+        "links": {
+            **WEDGE["links"],
+            "2": {"points": {"B": [0, 0]}, "slides": [{"on": "y"}, {"on": 1, "through": [0, 0], "angle": "-60 deg"}]},
+        },
+        "sketch": {"at": 0.05, "B": [0, 0.087]},
+    }
     free = results_of(steep | {"friction": {"coefficient": 0.25}})  # a + 2 phi = 88 deg
     locked = results_of(steep | {"friction": {"coefficient": 0.28}})  # a + 2 phi = 91 deg
     assert not np.any(free.friction.locked)
@@ -94,15 +109,22 @@ def test_power_balances_with_friction_and_the_lever_bears_it_too():
 
 def test_the_efficiency_of_a_crank_slider_is_the_work_that_arrives_at_the_slider():
     problem = {
-        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "tmm": 1,
+        "units": {"length": "m", "angle": "rad"},
+        "points": {"O": [0, 0]},
         "guides": {"x": {"through": [0, 0], "angle": 0}},
-        "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.3},
-                  "3": {"points": ["B"], "slides": {"on": "x"}}},
-        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.35, 0]}, "gravity": 0,
+        "links": {
+            "1": {"points": ["O", "A"], "length": 0.1},
+            "2": {"points": ["A", "B"], "length": 0.3},
+            "3": {"points": ["B"], "slides": {"on": "x"}},
+        },
+        "driver": {"link": 1, "speed": 10},
+        "sketch": {"at": 1, "B": [0.35, 0]},
+        "gravity": 0,
         "loads": {"F": {"on": 3, "force": [-1000, 0], "when": "working stroke"}},
         "output": {"link": 3, "working": "forward"},
         "friction": {"coefficient": 0.1, "radius": 0.015},
-    }  # fmt: skip
+    }
     results = results_of(problem)
     useful = 1000 * 0.2  # the load goes against the stroke H = 2 r
     assert results.losses.efficiency == pytest.approx(useful / results.losses.drivers, rel=1e-4)
@@ -134,13 +156,19 @@ def test_pairs_of_links_that_do_not_move_against_each_other_have_no_friction_how
 def test_a_machine_without_a_useful_load_has_an_efficiency_of_zero_and_without_friction_none():
     """Weights and inertia give back over a turn what they took, but for rounding."""
     idle = {
-        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "tmm": 1,
+        "units": {"length": "m", "angle": "rad"},
+        "points": {"O": [0, 0]},
         "guides": {"x": {"through": [0, 0], "angle": 0}},
-        "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
-                  "3": {"points": ["B"], "slides": {"on": "x"}}},
-        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.45, 0]},
+        "links": {
+            "1": {"points": ["O", "A"], "length": 0.1},
+            "2": {"points": ["A", "B"], "length": 0.4},
+            "3": {"points": ["B"], "slides": {"on": "x"}},
+        },
+        "driver": {"link": 1, "speed": 10},
+        "sketch": {"at": 1, "B": [0.45, 0]},
         "masses": {"2": {"mass": 2, "inertia": 0.04, "centre": {"on": "AB", "at": 0.5}}},
-    }  # fmt: skip
+    }
     assert results_of(idle | {"friction": {"coefficient": 0.1, "radius": 0.02}}).losses.efficiency == 0
     assert results_of(idle | {"friction": {"coefficient": 1e-20, "radius": 0.02}}).losses.efficiency is None
 

@@ -78,9 +78,11 @@ def test_a_balancing_force_in_the_pivot_of_the_crank_is_refused(tmp_path):
 
 def test_a_sweep_of_links_that_hold_one_another_is_refused_in_the_words_of_the_file(tmp_path):
     file = changed_bank_file(
-        tmp_path, "crank-slider", ("points: {O: [0, 0]}", "points: {O: [0, 0], C: [300, 90]}"),
+        tmp_path,
+        "crank-slider",
+        ("points: {O: [0, 0]}", "points: {O: [0, 0], C: [300, 90]}"),
         ("driver:", "  4: {points: [C, B], length: 100}\ndriver:"),
-    )  # fmt: skip
+    )
     done = tmm("sweep", file, "--over", "l=200..240:3")
     assert done.returncode == 2
     assert "driver.link: link 1 cannot be driven: pairs or other drivers hold it already" in done.stderr

@@ -146,9 +146,11 @@ def test_a_broken_file_is_said_and_left_out(tmp_path):
     assert done.returncode == 1
     index = tmp_path / "out/index.html"
     assert done.stderr.splitlines() == [
-        f"error: {tmp_path / 'broken.yaml'}:3:1: a value is missing", "  allowed: a value", f"written: {index}",
+        f"error: {tmp_path / 'broken.yaml'}:3:1: a value is missing",
+        "  allowed: a value",
+        f"written: {index}",
         "left out: 1",
-    ]  # fmt: skip
+    ]
     assert len(data_of(index.read_text(encoding="utf-8"))["cards"]) == 1
     (tmp_path / "deep/sine.yaml").unlink()
     assert tmm("gallery", str(tmp_path / "deep"), "-o", str(tmp_path / "none")).returncode == 2

@@ -122,10 +122,12 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
             "error: --formats: there is no such format of the gradebook\n  found:   'moodel'\n"
             "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n  did you mean 'moodle'?\n",
         ),
-        (["--template", "sheet.odt"], "error: an answer sheet has another ending\n  found:   '.odt'\n"
-                                      "  allowed: .xlsx, .csv, .yaml\n"),
+        (
+            ["--template", "sheet.odt"],
+            "error: an answer sheet has another ending\n  found:   '.odt'\n  allowed: .xlsx, .csv, .yaml\n",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused(options, told, course):
     done = tmm("grade", "task.yaml", *options, cwd=course)
     assert (done.returncode, done.stderr) == (2, told)

@@ -10,8 +10,10 @@ from write_graded_examples import MISTAKES, NAMES
 
 from tmm_cli.grading.mistakes import MISTAKES as KINDS
 
-GRADED = {file.parent.name: json.loads(file.read_text(encoding="utf-8"))["result"]["students"]
-          for file in (ROOT / "problems" / "grading").glob("*/expected.json")}  # fmt: skip
+GRADED = {
+    file.parent.name: json.loads(file.read_text(encoding="utf-8"))["result"]["students"]
+    for file in (ROOT / "problems" / "grading").glob("*/expected.json")
+}
 CALLED = {kind.__name__: kind.name for kind in KINDS}
 
 
@@ -48,8 +50,10 @@ def test_a_broken_sheet_has_its_line_and_stops_nothing():
 
 def test_a_copied_sheet_is_named_where_the_variants_differ_enough():
     assert {name: students["Kovac"]["copied"] for name, students in GRADED.items()} == {
-        "shaper": "Borisov", "crank-slider": "Borisov", "six-bar": "",
-    }  # fmt: skip
+        "shaper": "Borisov",
+        "crank-slider": "Borisov",
+        "six-bar": "",
+    }
 
 
 def test_examples_are_checked_from_their_own_folder_and_from_that_of_all():

@@ -33,9 +33,21 @@ grading:
   answers: [{of: H}, {of: class}, {of: v of E, at: 3}, {of: a of E, at: 7}, {of: M_b, at: 3, points: 0.1}]
 """
 HOSTILE = (
-    "=cmd|' /C calc'!A0", "<script>alert(1)</script>", "../../x", "a\0b\tc\r\nd", "\u202eabc\u2066", "x" * 10_000, "",
-    "@SUM(1)", '"><img src=x onerror=alert(1)>', "| a |`b`[c](javascript:d)", "]]>&amp;", "\udcff", "CON", "con",
-)  # fmt: skip
+    "=cmd|' /C calc'!A0",
+    "<script>alert(1)</script>",
+    "../../x",
+    "a\0b\tc\r\nd",
+    "\u202eabc\u2066",
+    "x" * 10_000,
+    "",
+    "@SUM(1)",
+    '"><img src=x onerror=alert(1)>',
+    "| a |`b`[c](javascript:d)",
+    "]]>&amp;",
+    "\udcff",
+    "CON",
+    "con",
+)
 TEXTS = tuple(name for name in EXPORTS if name != "drawing")  # quick ones
 LOST = "The Coriolis acceleration of link 2 on link 3 was left out, or points the other way."
 OWN = "It is right given your own v of E at 3."
@@ -63,7 +75,7 @@ def marks(student, text="0,41", **others):
             Mark(("M_b", 3), "right", 0.1, 0.1, 200, 200, scale=250, error=0.0, allowed=0.05, text=text),
         ),
         **others,
-    )  # fmt: skip
+    )
 
 
 def absent(student, *problems):
@@ -82,25 +94,58 @@ def read_csv(data, between=","):
 def test_a_gradebook_has_all_its_files(own, tmp_path):
     files = written(tmp_path / "marks", Gradebook(own, [marks("Ann"), marks("Боб")]))
     each = [f"feedback/{name}.{kind}" for name in ("Ann", "Боб") for kind in ("html", "md")]
-    assert sorted(files) == sorted([
-        "marks.csv", "answers.csv", "marks.xlsx", "moodle.csv", "junit.xml", "group.png", "group.svg", *each,
-        "gradescope/Ann.json", "gradescope/Боб.json",
-    ])  # fmt: skip
+    assert sorted(files) == sorted(
+        [
+            "marks.csv",
+            "answers.csv",
+            "marks.xlsx",
+            "moodle.csv",
+            "junit.xml",
+            "group.png",
+            "group.svg",
+            *each,
+            "gradescope/Ann.json",
+            "gradescope/Боб.json",
+        ]
+    )
 
 
 def test_tables_have_a_row_a_student_and_a_row_an_answer(own, tmp_path):
     files = written(tmp_path, Gradebook(own, [marks("Ann", copied="Bob"), absent("Bob", "no variant")]), "csv")
     ann, bob = read_csv(files["marks.csv"])
     assert list(ann.values()) == [
-        "Ann", "2.1", "4.1", "51.2", "1 right", "0 missing", "0 wrong", "1 follows", "0.1 right",
+        "Ann",
+        "2.1",
+        "4.1",
+        "51.2",
+        "1 right",
+        "0 missing",
+        "0 wrong",
+        "1 follows",
+        "0.1 right",
         "the answers fit the variant of Bob",
-    ]  # fmt: skip
+    ]
     assert (bob["points"], bob["notes"]) == ("0", "no variant")
     rows = read_csv(files["answers.csv"])
     assert list(rows[0]) == list(ANSWERS_HEADER)
     assert list(rows[0].values()) == [
-        "Ann", "H", "", "0,41", "410", "", "420", "", "mm", "2.4", "3", "right", "1", "1", "m", "",
-    ]  # fmt: skip
+        "Ann",
+        "H",
+        "",
+        "0,41",
+        "410",
+        "",
+        "420",
+        "",
+        "mm",
+        "2.4",
+        "3",
+        "right",
+        "1",
+        "1",
+        "m",
+        "",
+    ]
     v, a = rows[2], rows[3]
     assert (v["value"], v["direction, deg"], v["right value"], v["right direction, deg"]) == ("1.5", "", "1.2", "180")
     assert (a["value"], a["direction, deg"], a["reasons"]) == ("5", "53.13", OWN)
@@ -128,9 +173,11 @@ def test_a_workbook_has_marks_answers_and_the_group(own, tmp_path):
     assert answers[1] == ["=1+1", "H", "0.41 m †", "420 mm", 2.4, 1.0, ""]
     assert answers[4] == ["=1+1", "a of E at 7", "5 m/s² at 53.13°", "4 m/s² at 90°", 33.3, 1.0, OWN]
     assert ["Coriolis", 2.0, 2.0] in [row[:3] for row in book.get_sheet_by_name("Group").to_python()]
-    assert b"<f>" not in data and data == written(tmp_path, Gradebook(own, [
-        marks("=1+1", text="=2+2"), marks("https://x.org")
-    ]), "xlsx")["marks.xlsx"]  # fmt: skip
+    assert (
+        b"<f>" not in data
+        and data
+        == written(tmp_path, Gradebook(own, [marks("=1+1", text="=2+2"), marks("https://x.org")]), "xlsx")["marks.xlsx"]
+    )
 
 
 def test_where_nothing_writes_workbooks_the_rest_is_written_and_it_is_said(own, tmp_path, monkeypatch):
@@ -194,11 +241,16 @@ def test_gradescope_takes_a_record_a_student(own, tmp_path):
     assert (found["score"], found["output"]) == (2.1, "row 9: no such quantity")
     assert [test["status"] for test in found["tests"]] == ["passed", "failed", "failed", "passed", "passed"]
     assert found["tests"][3] == {
-        "name": "a of E at 7", "score": 1.0, "max_score": 1.0, "status": "passed", "output_format": "text",
-        "visibility": "visible", "output": "result: right given yours\nyour answer: 5 m/s² at 53.13°"
+        "name": "a of E at 7",
+        "score": 1.0,
+        "max_score": 1.0,
+        "status": "passed",
+        "output_format": "text",
+        "visibility": "visible",
+        "output": "result: right given yours\nyour answer: 5 m/s² at 53.13°"
         "\nright value: 4 m/s² at 90°\noff by 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
         + OWN,
-    }  # fmt: skip
+    }
 
 
 def test_junit_has_a_case_an_answer_with_the_text_in_the_element(own, tmp_path):
@@ -223,9 +275,10 @@ class Tags(HTMLParser):
 
 
 def test_nothing_of_hostile_names_and_answers_becomes_more_than_text(own, tmp_path):
-    books = [Gradebook(own, [marks("Ann")]), Gradebook(own, [
-        marks(name, text=name, problems=(name,), copied=name) for name in HOSTILE
-    ])]  # fmt: skip
+    books = [
+        Gradebook(own, [marks("Ann")]),
+        Gradebook(own, [marks(name, text=name, problems=(name,), copied=name) for name in HOSTILE]),
+    ]
     plain, files = (written(tmp_path / str(n), book, *TEXTS) for n, book in enumerate(books))
     assert sorted(os.listdir(tmp_path)) == ["0", "1"] and len(files) == 5 + 3 * len(HOSTILE)
     names = {name.rpartition("/")[2].casefold() for name in files}

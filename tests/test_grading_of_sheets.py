@@ -59,11 +59,14 @@ def test_right_answers_earn_all_points():
     assert not any(mark.reasons for marks in found for mark in marks.marks)
 
 
-@pytest.mark.parametrize("wrong, follow", [
-    ("a of E at 7", ["U of 5 at 7", "R_34 at 7", "R_03 at 7"]),
-    ("U of 5 at 7", ["R_34 at 7", "R_03 at 7"]),
-    ("R_34 at 7", ["R_03 at 7"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "wrong, follow",
+    [
+        ("a of E at 7", ["U of 5 at 7", "R_34 at 7", "R_03 at 7"]),
+        ("U of 5 at 7", ["R_34 at 7", "R_03 at 7"]),
+        ("R_34 at 7", ["R_03 at 7"]),
+    ],
+)
 def test_an_early_mistake_costs_its_own_points_only(wrong, follow):
     family, known = group()
     k = next(k for k, asked in enumerate(known.asked) if asked.name == wrong)

@@ -83,11 +83,18 @@ def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
     assert repr(again) == repr(marks).replace("value=0.0", "value=0j").replace("right=0.18", "right=(0.18+0j)")
 
 
-@pytest.mark.parametrize("submission", [
-    Submission("nobody"), Submission("nobody", GIVEN), Submission("S1", problems=("broken",), unread=True),
-    Submission("S2", GIVEN | {("v of E", 99): Given(1.0)}), Submission("S3", {("H", None): Given(0.0)}),
-    Submission("S4", {("v of E", 3): Given(1.0, 2.0, "polar", "m/s", "deg", "1 at 2")}),
-], ids=lambda one: one.student)  # fmt: skip
+@pytest.mark.parametrize(
+    "submission",
+    [
+        Submission("nobody"),
+        Submission("nobody", GIVEN),
+        Submission("S1", problems=("broken",), unread=True),
+        Submission("S2", GIVEN | {("v of E", 99): Given(1.0)}),
+        Submission("S3", {("H", None): Given(0.0)}),
+        Submission("S4", {("v of E", 3): Given(1.0, 2.0, "polar", "m/s", "deg", "1 at 2")}),
+    ],
+    ids=lambda one: one.student,
+)
 def test_marks_of_every_kind_of_submission_are_the_same_in_a_second_run(submission, tmp_path):
     first, again = (graded(task(), TABLE, [submission], here, tmp_path / ".graded") for __ in range(2))
     assert repr(again) == repr(first) == repr(graded(task(), TABLE, [submission]))
@@ -100,12 +107,16 @@ def test_a_task_that_has_changed_is_graded_anew(tmp_path):
     assert done == [12, 12]
 
 
-@pytest.mark.parametrize("spoil", [
-    lambda text: text[: len(text) // 2],
-    lambda text: text.replace(b'"right"', b'"wrong"'),
-    lambda text: os.urandom(1000),
-    lambda text: b"{" * 10_000,
-], ids=["torn", "changed", "noise", "nested"])  # fmt: skip
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda text: text[: len(text) // 2],
+        lambda text: text.replace(b'"right"', b'"wrong"'),
+        lambda text: os.urandom(1000),
+        lambda text: b"{" * 10_000,
+    ],
+    ids=["torn", "changed", "noise", "nested"],
+)
 def test_what_is_damaged_of_the_kept_marks_is_graded_again(spoil, tmp_path):
     kept, done = tmp_path / ".graded", []
     first = graded(task(), TABLE, GROUP, here, kept)

@@ -43,16 +43,28 @@ def named(*lengths):
     return TYPES[kind] if kind >= 0 else None
 
 
-@pytest.mark.parametrize(("lengths", "kind", "letters"), [
-    ((1, 3, 4, 2.5), "GCCC", "ico"), ((3, 1, 4, 2.5), "GCRR", "i"),
-    ((3, 4, 1, 2.5), "GRCR", "c"), ((3, 4, 2.5, 1), "GRRC", "o"),
-    ((4, 2, 2.5, 2), "RRR1", ""), ((2, 4, 2.5, 2), "RRR2", ""),
-    ((2, 2.5, 4, 2), "RRR3", ""), ((2, 2.5, 2, 4), "RRR4", ""),
-    ((1, 2, 4, 3), "SCCC", "ico"), ((2, 1, 4, 3), "SCRR", "i"),
-    ((2, 4, 1, 3), "SRCR", "c"), ((2, 4, 3, 1), "SRRC", "o"),
-    ((2, 1, 2, 1), "S2X", None), ((1, 1, 2, 2), "S2X", None), ((1, 1, 1, 1), "S3X", None),
-    ((6, 1, 2, 3), None, ""), ((7, 1, 2, 3), None, ""),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("lengths", "kind", "letters"),
+    [
+        ((1, 3, 4, 2.5), "GCCC", "ico"),
+        ((3, 1, 4, 2.5), "GCRR", "i"),
+        ((3, 4, 1, 2.5), "GRCR", "c"),
+        ((3, 4, 2.5, 1), "GRRC", "o"),
+        ((4, 2, 2.5, 2), "RRR1", ""),
+        ((2, 4, 2.5, 2), "RRR2", ""),
+        ((2, 2.5, 4, 2), "RRR3", ""),
+        ((2, 2.5, 2, 4), "RRR4", ""),
+        ((1, 2, 4, 3), "SCCC", "ico"),
+        ((2, 1, 4, 3), "SCRR", "i"),
+        ((2, 4, 1, 3), "SRCR", "c"),
+        ((2, 4, 3, 1), "SRRC", "o"),
+        ((2, 1, 2, 1), "S2X", None),
+        ((1, 1, 2, 2), "S2X", None),
+        ((1, 1, 1, 1), "S3X", None),
+        ((6, 1, 2, 3), None, ""),
+        ((7, 1, 2, 3), None, ""),
+    ],
+)
 def test_every_type_has_its_name_and_its_turning_links(lengths, kind, letters):
     assert named(*lengths) == kind
     if letters is not None:
@@ -175,22 +187,27 @@ def test_conditions_of_crank_slider_and_slotted_lever_by_name():
 
 
 REFUSED = {
-    "{task: grashof, l1: 10, l2: 2, l3: 3, l4: 4}":
-        "synthesis.l1: the links do not close: l1 is as long as the others together, or longer\n  found:   10\n",
-    "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}":
-        "synthesis.l2: this is too small for a mechanism\n  found:   0",
-    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}":
-        "synthesis.driver: the driver is hinged to the frame\n  found:   'l3' opposite the frame l1\n"
-        "  allowed: l2, l4",
-    "{task: grashof, l1: 1, l2: 2, l3: 3}":
-        "synthesis: these keys do not determine a mechanism\n  found:   l1, l2, l3\n"
-        "  allowed: l1, l2, l3, l4 (+ frame, driver); r, l (+ e); OA, OC (+ e)",
-    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l5}":
-        "synthesis.frame: this word is not known here\n  found:   'l5'\n  allowed: l1, l2, l3, l4",
-    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, names: {r: OA}}":
-        "synthesis.names.r: the synthesis grashof finds nothing of that name\n  found:   'r'\n"
-        "  allowed: it finds no parameters",
-}  # fmt: skip
+    "{task: grashof, l1: 10, l2: 2, l3: 3, l4: 4}": (
+        "synthesis.l1: the links do not close: l1 is as long as the others together, or longer\n  found:   10\n"
+    ),
+    "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}": "synthesis.l2: this is too small for a mechanism\n  found:   0",
+    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}": (
+        "synthesis.driver: the driver is hinged to the frame\n  found:   'l3' opposite the frame l1\n  allowed: l2, l4"
+    ),
+    "{task: grashof, l1: 1, l2: 2, l3: 3}": (
+        "synthesis: these keys do not determine a mechanism\n"
+        "  found:   l1, l2, l3\n"
+        "  allowed: l1, l2, l3, l4 (+ frame, driver); r, l (+ e); OA, OC (+ e)"
+    ),
+    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l5}": (
+        "synthesis.frame: this word is not known here\n  found:   'l5'\n  allowed: l1, l2, l3, l4"
+    ),
+    "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, names: {r: OA}}": (
+        "synthesis.names.r: the synthesis grashof finds nothing of that name\n"
+        "  found:   'r'\n"
+        "  allowed: it finds no parameters"
+    ),
+}
 
 
 @pytest.mark.parametrize("text", REFUSED)

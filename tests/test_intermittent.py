@@ -125,8 +125,9 @@ def test_the_other_sense_is_taken_on_the_way_back():
 
 def test_a_link_that_turns_back_within_the_stroke_is_cut_there():
     """The rocker's dead position lies within the crank's stroke: the wheel goes as far on the way there as back."""
-    text = ROCKER.replace("turns: ccw}", "stroke: [0, 300]}").replace("positions: {count: 12, from: working stroke,",
-                                                                     "positions: {count: 12,")  # fmt: skip
+    text = ROCKER.replace("turns: ccw}", "stroke: [0, 300]}").replace(
+        "positions: {count: 12, from: working stroke,", "positions: {count: 12,"
+    )
     found = wheel(text, "{w: {moves_with: 3, when: forward}}")
     assert len(found.driven) == 3 and all(part.step > 0 for part in found.driven)
     q = np.radians(np.linspace(0, 300, 200001))
@@ -223,53 +224,73 @@ def test_nothing_of_it_is_imported_for_other_files():
 
 CASES = {
     "no such link": (
-        "moves_with: 3", "moves_with: 7", "7",
+        "moves_with: 3",
+        "moves_with: 7",
+        "7",
         "intermittent.shaft.moves_with: there is no moving link of that name\n  found:   '7'\n  allowed: 1, 2, 3",
     ),
     "a link that does not turn on the frame": (
-        "moves_with: 3", "moves_with: 2", "2, when",
+        "moves_with: 3",
+        "moves_with: 2",
+        "2, when",
         "intermittent.shaft.moves_with: a wheel moves with a link that turns on the frame\n"
         "  found:   '2'\n  allowed: 3",
     ),
     "another word": (
-        "when: backward", "when: back", "back,",
+        "when: backward",
+        "when: back",
+        "back,",
         "intermittent.shaft.when: this word is not known here\n  found:   'back'\n"
         "  allowed: forward, backward, working stroke, idle stroke\n  did you mean 'backward'?",
     ),
     "strokes of an output where the driver goes there and back": (
-        "when: backward", "when: working stroke", "working stroke, settings",
+        "when: backward",
+        "when: working stroke",
+        "working stroke, settings",
         "intermittent.shaft.when: there is no working stroke\n"
         "  allowed: forward, backward, or an output that has strokes",
     ),
     "unknown parameter": (
-        "R: 125}]}", "RR: 125}]}", "RR: 125",
+        "R: 125}]}",
+        "RR: 125}]}",
+        "RR: 125",
         "intermittent.shaft.settings[1].RR: there is no parameter of that name\n  found:   'RR'\n"
         "  allowed: R, l, h, xA, xB, v\n  did you mean 'R'?",
     ),
     "a setting that does not fit": (
-        "R: 125}]}", "R: -125}]}", "{R: -125",
+        "R: 125}]}",
+        "R: -125}]}",
+        "{R: -125",
         "intermittent.shaft.settings[1]: a length cannot be negative\n  found:   'R'\n  allowed: more than zero",
     ),
     "a setting that is no arithmetic": (
-        "R: 125}]}", "R: 125 apples}]}", "125 apples",
-        "intermittent.shaft.settings[1].R: unknown unit\n  found:   'apples'\n"
-        "  allowed: e.g. mm, deg, rpm, kg, N, N*m",
+        "R: 125}]}",
+        "R: 125 apples}]}",
+        "125 apples",
+        "intermittent.shaft.settings[1].R: unknown unit\n  found:   'apples'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m",
     ),
     "a setting that cannot be assembled": (
-        "R: 125}]}", "R: 700}]}", "{R: 700",
+        "R: 125}]}",
+        "R: 700}]}",
+        "{R: 700",
         "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled with the driver at -319.527 mm\n"
         "  found:   50.6103 mm short of closing\n  allowed: lengths that reach, or another place of the driver",
     ),
     "no cycle": (
-        "speed: v, stroke: [xA, xB]", "speed: v", "shaft: {moves",
+        "speed: v, stroke: [xA, xB]",
+        "speed: v",
+        "shaft: {moves",
         "intermittent.shaft: intermittent motion is found over a cycle, and the driver has none\n"
         "  allowed: a crank that turns fully, or a driver with a stroke that the linkage can go"
         "; driver: {stroke: [0, 100]}",
     ),
     "a name that is taken": (
-        "shaft: {moves", "3: {moves", "3: {moves", "intermittent.3: this name is taken\n  found:   '3'",
+        "shaft: {moves",
+        "3: {moves",
+        "3: {moves",
+        "intermittent.3: this name is taken\n  found:   '3'",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("old, new, part, message", CASES.values(), ids=CASES)

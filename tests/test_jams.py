@@ -178,8 +178,10 @@ def test_a_spring_whose_ends_meet_between_the_positions_is_named(turns):
     """The fixed end lies on the circle of A at 40 deg; positions are at 0, 30, 60 deg and so on."""
     x, y = 50 * math.cos(math.radians(40)), 50 * math.sin(math.radians(40))
     at = f"at: [[{x:.9f}, {y:.9f}], A]"
-    told = ("the ends of spring s meet at 40 deg: its force reverses its direction there. Write other points in "
-            "between, or a torsion spring")  # fmt: skip
+    told = (
+        "the ends of spring s meet at 40 deg: its force reverses its direction there. Write other points in "
+        "between, or a torsion spring"
+    )
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 90}}", turns=turns) == [told]
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 0}}", turns=turns) == []  # F = c r
     near = f"at: [[{x:.9f}, {y + 1:.9f}], A]"
@@ -337,9 +339,10 @@ def ladder(number):
     links.append(f"  e: {{points: [T{number}, E], length: {math.dist(places[f'T{number}'], points['E'])!r}}}")
     frame, sketch = (", ".join(f"{n}: [{x}, {y}]" for n, (x, y) in some.items()) for some in (points, places))
     return (
-        f"tmm: 1\nunits: {{length: m}}\npoints: {{{frame}}}\nlinks:\n" + "\n".join(links)
+        f"tmm: 1\nunits: {{length: m}}\npoints: {{{frame}}}\nlinks:\n"
+        + "\n".join(links)
         + f"\ndriver: {{link: 1, speed: 1 rad/s}}\nsketch: {{at: 0, {sketch}}}\n"
-    )  # fmt: skip
+    )
 
 
 def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
@@ -371,10 +374,11 @@ def kites(number):
         links.append(f"  r{k}: {{points: {{O{k}: [0, 0], B{k}: [250, 0], A{k}: [0, 100]}}}}")
     return (
         f"tmm: 1\npoints: {{{', '.join(points)}}}\nlinks:\n  g: {{points: [G]}}\n"
-        "  1: {points: [O0, A0], length: 100}\n" + "\n".join(links)
+        "  1: {points: [O0, A0], length: 100}\n"
+        + "\n".join(links)
         + "\ngears: {a: {between: [g, 1], ratio: 0.02, offset: 60 deg}}\ndriver: {link: g, speed: 1 rad/s}\n"
         + f"sketch: {{at: 0, {', '.join(places)}}}\n"
-    )  # fmt: skip
+    )
 
 
 def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monkeypatch):

@@ -152,14 +152,31 @@ def test_a_file_that_cannot_be_read_is_refused_in_its_language(tmp_path, content
 
 
 TO_PEOPLE = (
-    "drawing", "mechanics/plans", "note", "animation", "cli", "grading/exports",
-    "reports/structure_t", "reports/space_t",
-    "reports/cycle_t", "reports/quality_t", "reports/force_t", "reports/dynamics_t", "reports/synthesis_t",
-)  # fmt: skip
+    "drawing",
+    "mechanics/plans",
+    "note",
+    "animation",
+    "cli",
+    "grading/exports",
+    "reports/structure_t",
+    "reports/space_t",
+    "reports/cycle_t",
+    "reports/quality_t",
+    "reports/force_t",
+    "reports/dynamics_t",
+    "reports/synthesis_t",
+)
 TO_MACHINES = {  # files whose numbers are no words for people, or are rounded only
-    "drawing/formats/*", "animation/page.py", "animation/content.py", "grading/exports/tables_csv.py", "cli/bench/*",
-    "grading/exports/rows.py", "grading/exports/xlsx.py", "grading/exports/book.py", "note/expression.py",
-}  # fmt: skip
+    "drawing/formats/*",
+    "animation/page.py",
+    "animation/content.py",
+    "grading/exports/tables_csv.py",
+    "cli/bench/*",
+    "grading/exports/rows.py",
+    "grading/exports/xlsx.py",
+    "grading/exports/book.py",
+    "note/expression.py",
+}
 
 
 def decimals(tree: ast.AST) -> Iterator[int]:

@@ -16,13 +16,29 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "tmm_cli"
 LAYERS = (  # from below; parts of one layer do not know one another
-    ("language",), ("mechanics",), ("problem",), ("batch",), ("synthesis",), ("reports",), ("drawing",),
-    ("note", "animation", "grading", "sweep"), ("bench",), ("cli", "__main__", "__init__"),
-)  # fmt: skip
+    ("language",),
+    ("mechanics",),
+    ("problem",),
+    ("batch",),
+    ("synthesis",),
+    ("reports",),
+    ("drawing",),
+    ("note", "animation", "grading", "sweep"),
+    ("bench",),
+    ("cli", "__main__", "__init__"),
+)
 MECHANICS = (  # the same within mechanics
-    ("numerics",), ("linkage", "quantities", "errors"), ("structure",), ("groups",), ("assembly",), ("kinematics",),
-    ("forces",), ("plans", "dynamics"), ("analysis",), ("accuracy",),
-)  # fmt: skip
+    ("numerics",),
+    ("linkage", "quantities", "errors"),
+    ("structure",),
+    ("groups",),
+    ("assembly",),
+    ("kinematics",),
+    ("forces",),
+    ("plans", "dynamics"),
+    ("analysis",),
+    ("accuracy",),
+)
 DRAWING = (("paper",), ("formats",), ("symbols",), ("sheets",), ("layout",), ("run",))
 MOST_PAIRS = 90  # of entries at the top of the package, one of which imports the other
 FILES_AND_SCREENS = {"yaml", "pydantic", "pydantic_core", "typer", "rich", "matplotlib"}
@@ -99,10 +115,11 @@ def upward(layers: tuple[tuple[str, ...], ...], part: dict[str, str]) -> list[st
     floor = {name: number for number, names in enumerate(layers) for name in names}
     return [
         f"{name} imports {other}"
-        for name, others in ours().items() if name in part
-        for other in sorted(others) if other in part and part[other] != part[name]
-        and floor[part[other]] >= floor[part[name]]
-    ]  # fmt: skip
+        for name, others in ours().items()
+        if name in part
+        for other in sorted(others)
+        if other in part and part[other] != part[name] and floor[part[other]] >= floor[part[name]]
+    ]
 
 
 def test_every_module_stands_in_a_layer():
@@ -112,8 +129,13 @@ def test_every_module_stands_in_a_layer():
 def test_imports_point_downwards():
     assert not upward(LAYERS[:-1], {name: entry(name) for name in MODULES if entry(name) not in LAYERS[-1]})
     allowed = {"cli", "__main__", "__init__"}
-    assert not [name for name, others in ours().items() if entry(name) not in allowed
-                for other in others if entry(other) in {"cli", "__main__"}]  # fmt: skip
+    assert not [
+        name
+        for name, others in ours().items()
+        if entry(name) not in allowed
+        for other in others
+        if entry(other) in {"cli", "__main__"}
+    ]
 
 
 def test_within_mechanics_imports_point_downwards_too():
@@ -137,16 +159,21 @@ def test_no_modules_import_one_another_in_a_circle():
 
 def test_what_computes_knows_nothing_of_files_and_screens():
     assert not [
-        f"{name} imports {other}" for name in MODULES if entry(name) == "mechanics" or name.startswith("batch.tape")
-        for other in imported(name) if other.partition(".")[0] in FILES_AND_SCREENS
-    ]  # fmt: skip
+        f"{name} imports {other}"
+        for name in MODULES
+        if entry(name) == "mechanics" or name.startswith("batch.tape")
+        for other in imported(name)
+        if other.partition(".")[0] in FILES_AND_SCREENS
+    ]
 
 
 def test_imports_stand_at_the_top_except_where_most_runs_do_without():
     late = {
-        name for name, path in MODULES.items() for node in ast.walk(parsed(path))
+        name
+        for name, path in MODULES.items()
+        for node in ast.walk(parsed(path))
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and any(statements(node))
-    }  # fmt: skip
+    }
     unnamed = {name for name in late if not any(fnmatch(name, known) for known in IMPORT_WHEN_CALLED)}
     idle = {known for known in IMPORT_WHEN_CALLED if not any(fnmatch(name, known) for name in late)}
     assert not unnamed and not idle

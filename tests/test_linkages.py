@@ -97,9 +97,10 @@ def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
     it = replace(results.linkage, springs=springs)
     motion = replace(results.motion, linkage=it)
     back = replace(
-        it, driver=replace(it.driver, sense=-it.driver.sense),
+        it,
+        driver=replace(it.driver, sense=-it.driver.sense),
         others=tuple(replace(d, sense=-d.sense) for d in it.others),
-    )  # fmt: skip
+    )
     start = it.sketch.at if it.others else results.start
     law = DriverMotion(start, it.driver.rate, 0.0, -it.driver.sense)
     other = move(back, results.kernels, motion.q, law)

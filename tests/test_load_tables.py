@@ -62,10 +62,17 @@ def test_rows_of_a_second_turn_are_refused_with_what_to_do(tmp_path):
 
 @pytest.mark.parametrize(
     ("against", "crank", "table", "place", "found"),
-    [("crank turn", 50, "[[0, 5], [360, 0], [720, 5]]", "13:97: loads.gas.pressure.table[2][0]", "720 deg"),
-     ("share of stroke", 250, "[[0, 5], [1, 0]]", "13:36: loads.gas.pressure",
-      "the driver moves from 36.8699 deg to 143.13 deg")],
-)  # fmt: skip
+    [
+        ("crank turn", 50, "[[0, 5], [360, 0], [720, 5]]", "13:97: loads.gas.pressure.table[2][0]", "720 deg"),
+        (
+            "share of stroke",
+            250,
+            "[[0, 5], [1, 0]]",
+            "13:36: loads.gas.pressure",
+            "the driver moves from 36.8699 deg to 143.13 deg",
+        ),
+    ],
+)
 def test_a_table_of_pressures_is_refused_under_its_own_key(tmp_path, against, crank, table, place, found):
     """A gas force by pressures has no key `force`: the refusal names the key and the row of the file."""
     (tmp_path / "x.yaml").write_text(f"""tmm: 1
@@ -127,9 +134,12 @@ MANY = (
 
 @pytest.mark.parametrize(
     ("against", "table", "told"),
-    [("stroke", "[[0, 0], [100, 900]]", MANY), ("stroke", "[[0, 0], [2*OA, 900]]", ""),
-     ("share of stroke", "[[0, 0], [1, 900]]", "")],
-)  # fmt: skip
+    [
+        ("stroke", "[[0, 0], [100, 900]]", MANY),
+        ("stroke", "[[0, 0], [2*OA, 900]]", ""),
+        ("share of stroke", "[[0, 0], [1, 900]]", ""),
+    ],
+)
 def test_a_sweep_tells_of_tables_that_do_not_fit_all_its_strokes(tmp_path, against, table, told):
     text = CRANK_SLIDER.format(against=against, table=table).replace("length: 50", "length: OA")
     (tmp_path / "x.yaml").write_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"))
@@ -409,13 +419,18 @@ def test_a_diagram_draws_the_jump_at_its_place_with_both_values():
 @pytest.mark.parametrize(
     ("table", "told"),
     [
-        ("[[0, 0], [20, 0], [20, 5], [20, 9], [90, 0]]", "table[3][0]: the first column must grow\n  found:   20\n"
-         "  allowed: two rows: the value before the jump, and the value after it\n"),
+        (
+            "[[0, 0], [20, 0], [20, 5], [20, 9], [90, 0]]",
+            "table[3][0]: the first column must grow\n  found:   20\n"
+            "  allowed: two rows: the value before the jump, and the value after it\n",
+        ),
         ("[[0, 0], [20, 0], [10, 5]]", "table[2][0]: the first column must grow\n  found:   10\n"),
-        ("[[0, 0], [20, 0], [20, 5]], between: step", "table[2][0]: the first column must grow\n  found:   20\n"
-         "  allowed: each value once\n"),
+        (
+            "[[0, 0], [20, 0], [20, 5]], between: step",
+            "table[2][0]: the first column must grow\n  found:   20\n  allowed: each value once\n",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_jump_is_refused(tmp_path, table, told):
     ended = forces(tmp_path, against="stroke", table=table)
     assert ended.returncode == 2

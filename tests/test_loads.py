@@ -82,7 +82,9 @@ def test_friction_changes_its_sense_where_the_slider_turns_back(turns):
 @pytest.mark.parametrize("drawn_at", [0, 40, 77, 131])
 def test_what_stays_at_rest_is_not_resisted_however_the_drawing_lies(drawn_at):
     """The coupler of a parallelogram only translates, and the hinges on the frame do not move."""
-    problem = problem_of(read_text(f"""tmm: 1
+    problem = problem_of(
+        read_text(
+            f"""tmm: 1
 parameters: {{b: {drawn_at} deg, c: {60 + drawn_at} deg}}
 points: {{O: [0, 0], C: [400*cos(b), 400*sin(b)]}}
 links:
@@ -96,7 +98,10 @@ loads:
   F: {{on: 1, at: O, force: {{resists: 10}}}}
   P: {{on: 3, at: C, force: {{resists: 10}}}}
 positions: {{count: 11, from: b + 7 deg}}
-""", "x.yaml"))  # fmt: skip
+""",
+            "x.yaml",
+        )
+    )
     results = solve(problem)
     assert all(np.all(load.force == 0) and np.all(load.moment == 0) for load in results.loads)
     assert all(np.all(pair.force == 0) for pair in results.reactions.all)
@@ -228,41 +233,66 @@ def test_what_was_understood_of_loads_is_told():
     results = solved("loads: {f: {on: 2, from: 3, moment: {resists: 2}, when: [0, 90]}}")
     table = next(table for table in given(results.problem) if table.name == "loads")
     assert [column.values[0] for column in table.columns] == [
-        "f", "2 from 3", "", "2 N*m against the motion", "crank from 0 deg to 90 deg",
-    ]  # fmt: skip
+        "f",
+        "2 from 3",
+        "",
+        "2 N*m against the motion",
+        "crank from 0 deg to 90 deg",
+    ]
 
 
 @pytest.mark.parametrize(
     ("tail", "told"),
     [
-        ("loads: {f: {on: 3, force: [1, 0], when: [540, 720]}}",
-         "x.yaml:12:42: loads.f.when[0]: the crank does not come to this angle in its cycle\n"
-         "  found:   540\n  allowed: at most 360 deg; a longer cycle of loads is told by cycle: 2 turns"),
-        ("loads: {f: {on: 3, force: [1, 0], when: [0, 360]}}",
-         "x.yaml:12:41: loads.f.when: between these two angles there is nothing, or all\n"
-         "  found:   [0, 360]\n  allowed: two angles less than 360 deg apart, or when: always"),
-        ("loads: {f: {on: 3, from: 3, force: [1, 0]}}",
-         "x.yaml:12:26: loads.f.from: different links are wanted\n  found:   3, 3"),
-        ("loads: {f: {on: 3, force: {resists: 5, angle: 20}}}",
-         "x.yaml:12:20: loads.f.force: one of these keys is wanted\n"
-         "  found:   angle, resists\n  allowed: size, table, angle, resists"),
-        ("loads: {f: {on: 3, force: {resists: -5}}}",
-         "x.yaml:12:37: loads.f.force.resists: a force cannot be negative\n  found:   -5\n  allowed: more than zero"),
-        ("loads: {f: {on: 3, pressure: {size: 5 bar, angle: 0}}}",
-         "x.yaml:12:9: loads.f: one of these keys is wanted\n  allowed: area, bore"),
-        ("loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
-         "x.yaml:12:9: loads.f: one part of this load resists a motion, the other does not\n"
-         "  found:   both\n  allowed: two loads"),
-        ("loads: {f: {on: 3, force: [-9, 0]}}\nfriction: {coefficient: 0.1}\ndynamics: {delta: 1/30}",
-         "x.yaml:13:1: friction: a law of motion is not found where forces hang on reactions or on speeds\n"
-         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
-        ("springs: {s: {between: [0, 3], rate: 1, free: 9, damping: 3}}\ndynamics: {delta: 1/30}",
-         "x.yaml:12:50: springs.s.damping: a law of motion is not found where forces hang on reactions or on speeds\n"
-         "  allowed: loads that do not: force: {resists: 200 N} for a constant friction"),
-        ("masses: {2: {inertia: 1, points: []}}",
-         "x.yaml:12:10: masses.2: one of these keys is wanted\n  allowed: mass, weight"),
+        (
+            "loads: {f: {on: 3, force: [1, 0], when: [540, 720]}}",
+            "x.yaml:12:42: loads.f.when[0]: the crank does not come to this angle in its cycle\n"
+            "  found:   540\n  allowed: at most 360 deg; a longer cycle of loads is told by cycle: 2 turns",
+        ),
+        (
+            "loads: {f: {on: 3, force: [1, 0], when: [0, 360]}}",
+            "x.yaml:12:41: loads.f.when: between these two angles there is nothing, or all\n"
+            "  found:   [0, 360]\n  allowed: two angles less than 360 deg apart, or when: always",
+        ),
+        (
+            "loads: {f: {on: 3, from: 3, force: [1, 0]}}",
+            "x.yaml:12:26: loads.f.from: different links are wanted\n  found:   3, 3",
+        ),
+        (
+            "loads: {f: {on: 3, force: {resists: 5, angle: 20}}}",
+            "x.yaml:12:20: loads.f.force: one of these keys is wanted\n"
+            "  found:   angle, resists\n  allowed: size, table, angle, resists",
+        ),
+        (
+            "loads: {f: {on: 3, force: {resists: -5}}}",
+            "x.yaml:12:37: loads.f.force.resists: a force cannot be negative\n  found:   -5\n  allowed: more than zero",
+        ),
+        (
+            "loads: {f: {on: 3, pressure: {size: 5 bar, angle: 0}}}",
+            "x.yaml:12:9: loads.f: one of these keys is wanted\n  allowed: area, bore",
+        ),
+        (
+            "loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
+            "x.yaml:12:9: loads.f: one part of this load resists a motion, the other does not\n"
+            "  found:   both\n  allowed: two loads",
+        ),
+        (
+            "loads: {f: {on: 3, force: [-9, 0]}}\nfriction: {coefficient: 0.1}\ndynamics: {delta: 1/30}",
+            "x.yaml:13:1: friction: a law of motion is not found where forces hang on reactions or on speeds\n"
+            "  allowed: loads that do not: force: {resists: 200 N} for a constant friction",
+        ),
+        (
+            "springs: {s: {between: [0, 3], rate: 1, free: 9, damping: 3}}\ndynamics: {delta: 1/30}",
+            "x.yaml:12:50: springs.s.damping: a law of motion is not found where forces hang on reactions or "
+            "on speeds\n"
+            "  allowed: loads that do not: force: {resists: 200 N} for a constant friction",
+        ),
+        (
+            "masses: {2: {inertia: 1, points: []}}",
+            "x.yaml:12:10: masses.2: one of these keys is wanted\n  allowed: mass, weight",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused_with_its_place(tail, told):
     assert refused(tail) == told
 
@@ -340,16 +370,24 @@ def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():
 @pytest.mark.parametrize(
     ("load", "told"),
     [
-        ("on: 3, force: [0, -100]", "its force is perpendicular to the motion of its point. "
-         "Write it against the motion: force: {size: 100 N, angle: 180 deg}"),
-        ("on: 3, axes: link, force: [0, 100]", "its force is perpendicular to the motion of its point. "
-         "Write it against the motion: force: {size: 100 N, angle: 180 deg}"),
-        ("on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}", "its force is perpendicular to "
-         "the motion of its point. Write it against the motion: angle: 180 deg"),
+        (
+            "on: 3, force: [0, -100]",
+            "its force is perpendicular to the motion of its point. "
+            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+        ),
+        (
+            "on: 3, axes: link, force: [0, 100]",
+            "its force is perpendicular to the motion of its point. "
+            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+        ),
+        (
+            "on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}",
+            "its force is perpendicular to the motion of its point. Write it against the motion: angle: 180 deg",
+        ),
         ("on: 3, moment: 5", "link 3 does not rotate. Write a force"),
         ("on: 1, force: [100, 0]", "its point is at rest. Write the link or the point that moves"),
     ],
-)  # fmt: skip
+)
 def test_a_load_that_does_no_work_in_its_working_stroke_is_told_what_to_write(load, told):
     found = work_warnings(f"loads: {{F: {{{load}, when: working stroke}}}}", "{link: 3, working: forward}")
     assert found == [f"load F does no work in the working stroke: {told}"]

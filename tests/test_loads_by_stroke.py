@@ -64,7 +64,7 @@ PHI = np.radians(np.arange(0, 360, 30))
 @pytest.mark.parametrize(
     "against, pin",
     [("stroke", np.pi / 2), ("stroke of 5", np.pi / 2), ("stroke of 3", 0.0)],
-)  # fmt: skip
+)
 def test_a_table_follows_the_stroke_of_its_own_piston_or_of_the_named_one(against, pin):
     """Cranks at 90 degrees; the table falls from 1000 N to 0 over the stroke of 100 mm."""
     expected = 1000 * (1 - run_of(PHI + pin) / 0.1)
@@ -73,8 +73,9 @@ def test_a_table_follows_the_stroke_of_its_own_piston_or_of_the_named_one(agains
 
 
 def test_a_table_in_shares_follows_its_own_piston_too():
-    shares = TWO_PISTONS.replace("against: stroke, table: [[0, 1000], [100, 0]]",
-                                 "against: share of stroke, table: [[0, 1000], [1, 0]]")  # fmt: skip
+    shares = TWO_PISTONS.replace(
+        "against: stroke, table: [[0, 1000], [100, 0]]", "against: share of stroke, table: [[0, 1000], [1, 0]]"
+    )
     assert sizes(shares) == pytest.approx(1000 * (1 - run_of(PHI + np.pi / 2) / 0.1), abs=1e-9)
     named = shares.replace("share of stroke", "share of stroke of 3")
     assert sizes(named) == pytest.approx(1000 * (1 - run_of(PHI) / 0.1), abs=1e-9)
@@ -168,11 +169,14 @@ def test_tables_of_the_file_name_the_link_whose_stroke_it_is():
     assert "stroke of link 5" in str([column.values for column in tables["loads"].columns])
 
 
-@pytest.mark.parametrize("written, message, found", [
-    ("stroke of 9", "there is no moving link of that name", "'9'"),
-    ("strokes", "this word is not known here", "'strokes'"),
-    ("stroke of 1", "there is no working stroke", "link 1 has no ends of its stroke"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "written, message, found",
+    [
+        ("stroke of 9", "there is no moving link of that name", "'9'"),
+        ("strokes", "this word is not known here", "'strokes'"),
+        ("stroke of 1", "there is no working stroke", "link 1 has no ends of its stroke"),
+    ],
+)
 def test_a_stroke_that_there_is_not_is_refused(written, message, found):
     with pytest.raises(ProblemError) as error:
         solve(problem_of(read_text(TWO_PISTONS.replace("against: stroke", f"against: {written}"), "pistons.yaml")))

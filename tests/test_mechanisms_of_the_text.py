@@ -96,9 +96,10 @@ def test_pin_lever_of_equal_gears_gives_four_strokes_of_the_slider():
     g = math.radians(42)
     inner, outer = math.asin(90 * math.cos(g) / 120), math.asin(90 / 120)
     places = [
-        (-120 + 140 * np.exp(1j * (psi + math.radians(50)))) - math.sqrt(
-            220**2 - (140 * math.sin(psi + math.radians(50)) - 0.97 * 140) ** 2) for psi in (inner, outer)
-    ]  # fmt: skip
+        (-120 + 140 * np.exp(1j * (psi + math.radians(50))))
+        - math.sqrt(220**2 - (140 * math.sin(psi + math.radians(50)) - 0.97 * 140) ** 2)
+        for psi in (inner, outer)
+    ]
     strokes, swing = shown("gear-doubling")
     assert strokes == 4
     assert swing == pytest.approx(outer - inner, rel=1e-9)
@@ -154,8 +155,10 @@ def test_safety_lever_presses_on_its_stop_until_the_load_is_too_large():
 
 def test_crank_rocker_of_the_swing_doubler_obeys_grashof():
     linkage = load(str(PROBLEMS / "four-bars/swing-crank-rocker.yaml")).linkage
-    lengths = sorted(abs(linkage.local(link, b) - linkage.local(link, a)) for link, a, b in
-                     (("1", "O", "A"), ("2", "A", "B"), ("3", "D", "B"), ("0", "O", "D")))  # fmt: skip
+    lengths = sorted(
+        abs(linkage.local(link, b) - linkage.local(link, a))
+        for link, a, b in (("1", "O", "A"), ("2", "A", "B"), ("3", "D", "B"), ("0", "O", "D"))
+    )
     assert lengths[0] == pytest.approx(0.075) and lengths[0] + lengths[3] < lengths[1] + lengths[2]
     assert solved("four-bars/swing-crank-rocker").roles["3"] == "crank"
 

@@ -9,9 +9,15 @@ from random_linkages import linkage
 from test_properties import solved
 
 CASES = [
-    (3, ("RRR",)), (36, ("RRP",)), (41, ("RPR",)), (24, ("RPP", "PRP")), (53, ("RRP", "RPR", "RRR")),
-    (72, ("RPP", "RRR", "RPR")), (59, ("RPR", "PRP")), (7, ("PRP", "RRP", "RPP")),
-]  # fmt: skip
+    (3, ("RRR",)),
+    (36, ("RRP",)),
+    (41, ("RPR",)),
+    (24, ("RPP", "PRP")),
+    (53, ("RRP", "RPR", "RRR")),
+    (72, ("RPP", "RRR", "RPR")),
+    (59, ("RPR", "PRP")),
+    (7, ("PRP", "RRP", "RPP")),
+]
 
 
 @pytest.mark.parametrize("seed, kinds", CASES)

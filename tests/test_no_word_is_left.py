@@ -71,8 +71,13 @@ def tabled(results, problem):
 
 
 def said(results, problem):
-    return (*understood(results.problem), *doubts(results.problem), *warnings(results), *in_words(results),
-            *remarks(results))  # fmt: skip
+    return (
+        *understood(results.problem),
+        *doubts(results.problem),
+        *warnings(results),
+        *in_words(results),
+        *remarks(results),
+    )
 
 
 def noted(results, problem):

@@ -52,9 +52,8 @@ def test_every_formula_gives_its_printed_result_within_its_last_digit(name):
 
 def test_a_formula_with_a_sign_changed_is_not_written():
     changed = [
-        block for block in written("shaper").blocks
-        if isinstance(block, Found) and isinstance(block.expression, Sum)
-    ]  # fmt: skip
+        block for block in written("shaper").blocks if isinstance(block, Found) and isinstance(block.expression, Sum)
+    ]
     assert changed
     for found in changed:
         (sign, first), *others = found.expression.terms
@@ -193,10 +192,14 @@ def hostile() -> Results:
     loads = tuple(replace(load, name=HOSTILE) for load in problem.linkage.loads)
     return solve(
         replace(
-            problem, title=HOSTILE, description=HOSTILE, title_texts=texts,
-            linkage=replace(problem.linkage, links=links, loads=loads), extended=None,
+            problem,
+            title=HOSTILE,
+            description=HOSTILE,
+            title_texts=texts,
+            linkage=replace(problem.linkage, links=links, loads=loads),
+            extended=None,
         )
-    )  # fmt: skip
+    )
 
 
 def test_texts_of_the_file_are_data_in_the_page():

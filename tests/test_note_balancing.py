@@ -87,9 +87,13 @@ def test_a_file_that_does_not_ask_has_neither_chapter(name):
     assert not headings & HEADINGS
 
 
-@pytest.mark.parametrize(("name", "chapter", "stem"), [
-    ("balanced-four-bar", balancing, "shaking-force"), ("six-bar", centres, "centres-03"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "chapter", "stem"),
+    [
+        ("balanced-four-bar", balancing, "shaking-force"),
+        ("six-bar", centres, "centres-03"),
+    ],
+)
 def test_each_chapter_has_its_drawing(name, chapter, stem):
     figures = [block.key for block in chapter.blocks(Subject(solved(name))) if isinstance(block, Figure)]
     assert figures == [stem]

@@ -9,7 +9,7 @@ import pytest
 
 from tmm_cli.drawing.paper.record import Drawing, Line, Text
 from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.note.blocks import (  # fmt: skip
+from tmm_cli.note.blocks import (
     Contents,
     Equation,
     Figure,
@@ -33,10 +33,16 @@ M = "{http://schemas.openxmlformats.org/officeDocument/2006/math}"
 HOSTILE = '{ TOC \\o "1-9" } <w:r>&amp;\x00\x0b HYPERLINK "http://x" \u202eright to left\u202c =1+1 ' + "x" * 10_000
 # children of these elements of OMML in the order of ECMA-376, part 1, 22.1.2
 ORDER = {
-    "f": ("fPr", "num", "den"), "sSup": ("sSupPr", "e", "sup"), "sSub": ("sSubPr", "e", "sub"),
-    "sSubSup": ("sSubSupPr", "e", "sub", "sup"), "rad": ("radPr", "deg", "e"), "bar": ("barPr", "e"), "d": ("dPr", "e"),
-    "dPr": ("begChr", "sepChr", "endChr"), "oMathPara": ("oMathParaPr", "oMath"),
-}  # fmt: skip
+    "f": ("fPr", "num", "den"),
+    "sSup": ("sSupPr", "e", "sup"),
+    "sSub": ("sSubPr", "e", "sub"),
+    "sSubSup": ("sSubSupPr", "e", "sub", "sup"),
+    "rad": ("radPr", "deg", "e"),
+    "bar": ("barPr", "e"),
+    "d": ("dPr", "e"),
+    "dPr": ("begChr", "sepChr", "endChr"),
+    "oMathPara": ("oMathParaPr", "oMath"),
+}
 
 
 def leaf(letter, value, below="", above=""):
@@ -49,20 +55,36 @@ SIDES = leaf("R", 3.0, "34", "n") ** 2 + leaf("R", 4.0, "34", "τ") ** 2
 FORCE = Found(Symbol("R", "34"), Function("sqrt", SIDES), 5.0, "N")
 WIDE = Found(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
 TURNED = Found(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)), 1.0, "m")
-DRAWING = Drawing((80.0, 60.0), (
-    Line((0j, 40 + 30j), "#000000", 0.3), Line((0j, 80j), "#000000", 0.3, "--"),
-    Text(10 + 10j, "Ползун", 4.0, "#000000"),
-))  # fmt: skip
-NOTE = Note("Crank shaper", "ru", (
-    Title("University", "Course project", HOSTILE, (("student", "Петров"),), "2026"), Contents(),
-    Heading("Forces"), Heading(HOSTILE, 2),
-    paragraph("Velocity ", Symbol("v", "B"), " in figure ", Ref("plan"), ", table ", Ref("v"), ". ", HOSTILE),
-    Equation(row(Letter(Symbol("v", "B"), True, 1), "=", Letter(Symbol("v", "A"), True, 2))),
-    FORCE, WIDE, TURNED,
-    Figure("Velocity plan", DRAWING, "plan"), Figure(HOSTILE, DRAWING),
-    Rows("Velocities", (("position",), (Symbol("v", "B"),)), tuple(((str(k),), (f"0,{k}",)) for k in range(12)), "v"),
-    Heading("Literature"), Sources((Source("a", "И. И. Артоболевский, Теория механизмов и машин"),)),
-))  # fmt: skip
+DRAWING = Drawing(
+    (80.0, 60.0),
+    (
+        Line((0j, 40 + 30j), "#000000", 0.3),
+        Line((0j, 80j), "#000000", 0.3, "--"),
+        Text(10 + 10j, "Ползун", 4.0, "#000000"),
+    ),
+)
+NOTE = Note(
+    "Crank shaper",
+    "ru",
+    (
+        Title("University", "Course project", HOSTILE, (("student", "Петров"),), "2026"),
+        Contents(),
+        Heading("Forces"),
+        Heading(HOSTILE, 2),
+        paragraph("Velocity ", Symbol("v", "B"), " in figure ", Ref("plan"), ", table ", Ref("v"), ". ", HOSTILE),
+        Equation(row(Letter(Symbol("v", "B"), True, 1), "=", Letter(Symbol("v", "A"), True, 2))),
+        FORCE,
+        WIDE,
+        TURNED,
+        Figure("Velocity plan", DRAWING, "plan"),
+        Figure(HOSTILE, DRAWING),
+        Rows(
+            "Velocities", (("position",), (Symbol("v", "B"),)), tuple(((str(k),), (f"0,{k}",)) for k in range(12)), "v"
+        ),
+        Heading("Literature"),
+        Sources((Source("a", "И. И. Артоболевский, Теория механизмов и машин"),)),
+    ),
+)
 
 
 @pytest.fixture(scope="module")

@@ -107,9 +107,14 @@ def names(equation: Equation) -> list[str]:
 def test_groups_come_from_the_last_to_the_driving_link():
     headings = [block.text for block in chapter("shaper") if isinstance(block, Heading)]
     assert headings == [
-        "Force analysis", "Loads of the links", "Group of links 4, 5", "Group of links 2, 3", "Driving link 1",
-        "Zhukovsky lever", "Forces in all positions",
-    ]  # fmt: skip
+        "Force analysis",
+        "Loads of the links",
+        "Group of links 4, 5",
+        "Group of links 2, 3",
+        "Driving link 1",
+        "Zhukovsky lever",
+        "Forces in all positions",
+    ]
 
 
 def test_lines_under_a_vector_say_what_is_known_of_it():

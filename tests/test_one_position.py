@@ -15,10 +15,17 @@ from tmm_cli.problem.reader import read_text
 SAMPLE = ("boom-lift", "crank-rocker")  # a cylinder, and a crank that rotates fully
 REFUSED = {"lifting-boom": "how far the driver goes is wanted"}  # a single run has no single position
 COMMANDS = (
-    ("run", "--digits", "--tables", "csv-local"), ("note",), ("sheets",), ("sheets", "--positions", "all"),
-    ("kinematics", "--extremes", "--centres"), ("kinematics", "--assemblies"), ("forces", "--extremes", "--hodographs"),
-    ("structure", "--drawings"), ("dynamics",), ("explain",),
-)  # fmt: skip
+    ("run", "--digits", "--tables", "csv-local"),
+    ("note",),
+    ("sheets",),
+    ("sheets", "--positions", "all"),
+    ("kinematics", "--extremes", "--centres"),
+    ("kinematics", "--assemblies"),
+    ("forces", "--extremes", "--hodographs"),
+    ("structure", "--drawings"),
+    ("dynamics",),
+    ("explain",),
+)
 
 
 def with_one_position(name):

@@ -116,10 +116,15 @@ def rod_on_crank_pin(results, rod, piston, pin, guide, push, position):
     on_piston = push + piston_mass * (g - motion.named(pin).a[position])
     across = 1j * np.exp(1j * guide)
     arm, to_centre = end - crank_pin, centre.x[position] - crank_pin
-    rows = np.array([
-        [1, 0, 1, 0, 0], [0, 1, 0, 1, 0], [0, 0, -arm.imag, arm.real, 0],
-        [0, 0, -1, 0, across.real], [0, 0, 0, -1, across.imag],
-    ])  # fmt: skip
+    rows = np.array(
+        [
+            [1, 0, 1, 0, 0],
+            [0, 1, 0, 1, 0],
+            [0, 0, -arm.imag, arm.real, 0],
+            [0, 0, -1, 0, across.real],
+            [0, 0, 0, -1, across.imag],
+        ]
+    )
     moment = (np.conj(to_centre) * inertia).imag + couple
     right = [-inertia.real, -inertia.imag, -moment, -on_piston.real, -on_piston.imag]
     x, y = np.linalg.solve(rows, right)[:2]
@@ -199,11 +204,14 @@ def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached()
     assert np.max(np.abs(results.lever.difference)) < 1e-9
 
 
-@pytest.mark.parametrize("point, link, message, found, allowed", [
-    ("Q", 1, "there is no hinge of that name", "'Q'", None),
-    ("B", 2, "this hinge joins two links: they make one pair", "2, 3", None),
-    ("A", 5, "link 5 is not in hinge A", "'5'", "1, 2, 4"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "point, link, message, found, allowed",
+    [
+        ("Q", 1, "there is no hinge of that name", "'Q'", None),
+        ("B", 2, "this hinge joins two links: they make one pair", "2, 3", None),
+        ("A", 5, "link 5 is not in hinge A", "'5'", "1, 2, 4"),
+    ],
+)
 def test_a_wrong_attachment_is_refused(point, link, message, found, allowed):
     with pytest.raises(ProblemError) as error:
         build(read_text(attached(V_ENGINE, point, link), "v-compressor.yaml"))

@@ -150,8 +150,16 @@ def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points(
 
 @pytest.mark.parametrize(
     ("name", "letter", "below"),
-    [("F", "F", ""), ("F5", "F", "5"), ("Fc", "F", "c"), ("F_cut", "F", "cut"), ("Q'", "Q′", ""),
-     ("press", "P", "press"), ("gas1", "P", "gas1"), ("press'", "P′", "press")],
-)  # fmt: skip
+    [
+        ("F", "F", ""),
+        ("F5", "F", "5"),
+        ("Fc", "F", "c"),
+        ("F_cut", "F", "cut"),
+        ("Q'", "Q′", ""),
+        ("press", "P", "press"),
+        ("gas1", "P", "gas1"),
+        ("press'", "P′", "press"),
+    ],
+)
 def test_a_load_has_a_letter_with_its_word_below_the_line(name, letter, below):
     assert named(name, "P") == Symbol(letter, below)

@@ -12,25 +12,33 @@ from models import results_of
 from tmm_cli.mechanics.forces.plan import find_transmitted_forces
 
 FOUR_BAR = {
-    "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "D": [0.4, 0]},
+    "tmm": 1,
+    "units": {"length": "m", "angle": "rad"},
+    "points": {"O": [0, 0], "D": [0.4, 0]},
     "links": {
-        "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.35},
+        "1": {"points": ["O", "A"], "length": 0.1},
+        "2": {"points": ["A", "B"], "length": 0.35},
         "3": {"points": ["D", "B"], "length": 0.25},
     },
-    "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.35, 0.25]},
-}  # fmt: skip
+    "driver": {"link": 1, "speed": 10},
+    "sketch": {"at": 1, "B": [0.35, 0.25]},
+}
 
 
 def slider(offset: float) -> dict:
     return {
-        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0]},
+        "tmm": 1,
+        "units": {"length": "m", "angle": "rad"},
+        "points": {"O": [0, 0]},
         "guides": {"x": {"through": [0, offset], "angle": 0}},
         "links": {
-            "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
+            "1": {"points": ["O", "A"], "length": 0.1},
+            "2": {"points": ["A", "B"], "length": 0.4},
             "3": {"points": ["B"], "slides": {"on": "x"}},
         },
-        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "B": [0.45, offset]},
-    }  # fmt: skip
+        "driver": {"link": 1, "speed": 10},
+        "sketch": {"at": 1, "B": [0.45, offset]},
+    }
 
 
 def test_a_four_bar_transmits_worst_with_the_crank_on_the_line_of_the_frame():
@@ -83,27 +91,34 @@ def test_a_stone_gives_its_slotted_link_all_of_its_force():
 
 def test_a_stone_pushes_its_slotted_link_square_to_it():
     problem = {
-        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "C": [0, -0.3]},
+        "tmm": 1,
+        "units": {"length": "m", "angle": "rad"},
+        "points": {"O": [0, 0], "C": [0, -0.3]},
         "links": {
-            "1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A"], "slides": {"on": 3, "along": "CD"}},
+            "1": {"points": ["O", "A"], "length": 0.1},
+            "2": {"points": ["A"], "slides": {"on": 3, "along": "CD"}},
             "3": {"points": ["C", "D"], "length": 0.6},
         },
-        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "D": [0.1, 0.29]},
-    }  # fmt: skip
+        "driver": {"link": 1, "speed": 10},
+        "sketch": {"at": 1, "D": [0.1, 0.29]},
+    }
     (found,) = results_of(problem, "kinematics").pressure
     assert found.link == "3" and found.largest < 1e-12
 
 
 def test_an_offset_slot_is_pushed_at_the_angle_of_its_offset():
     problem = {
-        "tmm": 1, "units": {"length": "m", "angle": "rad"}, "points": {"O": [0, 0], "C": [0, -0.3]},
+        "tmm": 1,
+        "units": {"length": "m", "angle": "rad"},
+        "points": {"O": [0, 0], "C": [0, -0.3]},
         "links": {
             "1": {"points": ["O", "A"], "length": 0.1},
             "2": {"points": ["A"], "slides": {"on": 3, "through": [0, 0.05], "angle": 0}},
             "3": {"points": ["C", "D"], "length": 0.6},
         },
-        "driver": {"link": 1, "speed": 10}, "sketch": {"at": 1, "D": [0.1, 0.29]},
-    }  # fmt: skip
+        "driver": {"link": 1, "speed": 10},
+        "sketch": {"at": 1, "D": [0.1, 0.29]},
+    }
     (found,) = results_of(problem, "kinematics").pressure
     # the stone is nearest to C when the crank points down: sin(angle) = offset / distance
     assert abs(math.sin(found.largest) - 0.05 / 0.2) < 1e-12
@@ -130,7 +145,9 @@ def test_a_link_driven_in_two_pairs_has_the_angle_of_their_power():
     """The lead of a class IV contour: without other forces the drawn reactions are those of the definition."""
     results = results_of(
         {
-            "tmm": 1, "units": {"length": "mm", "angle": "deg"}, "points": {"O": [0, 0], "G": [310, 110]},
+            "tmm": 1,
+            "units": {"length": "mm", "angle": "deg"},
+            "points": {"O": [0, 0], "G": [310, 110]},
             "links": {
                 "1": {"points": ["O", "A"], "length": 52},
                 "2": {"points": {"A": [0, 0], "B": [110, 0], "C": [40, 195]}},
@@ -138,11 +155,13 @@ def test_a_link_driven_in_two_pairs_has_the_angle_of_their_power():
                 "4": {"points": {"G": [0, 0], "D": [265, 0], "E": [145, 5]}},
                 "5": {"points": ["C", "E"], "length": 295},
             },
-            "driver": {"link": 1, "speed": 5}, "positions": {"count": 24},
+            "driver": {"link": 1, "speed": 5},
+            "positions": {"count": 24},
             "sketch": {"at": 90, "B": [95, -5], "C": [135, 198], "D": [308, -156], "E": [311, -36]},
-            "loads": {"M": {"on": 4, "moment": -60}}, "gravity": 0,
+            "loads": {"M": {"on": 4, "moment": -60}},
+            "gravity": 0,
         }
-    )  # fmt: skip
+    )
     (found,) = results.pressure
     assert found.link == "4" and found.pair == "D, E"
     power, most = 0.0, 0.0
@@ -192,13 +211,23 @@ def test_a_parallelogram_drawn_at_any_angle_has_its_largest_angle_at_its_change_
     """There a place of the scan may be the change point itself, where no angle is known."""
     for drawn_at in (0, 40):
         b, c = math.radians(drawn_at), math.radians(drawn_at + 60)
-        results = results_of({
-            "tmm": 1, "units": {"length": "m", "angle": "rad"},
-            "points": {"O": [0, 0], "C": [0.4 * math.cos(b), 0.4 * math.sin(b)]},
-            "links": {"1": {"points": ["O", "A"], "length": 0.1}, "2": {"points": ["A", "B"], "length": 0.4},
-                      "3": {"points": ["C", "B"], "length": 0.1}},
-            "driver": {"link": 1, "speed": 10},
-            "sketch": {"at": c, "B": [0.4 * math.cos(b) + 0.1 * math.cos(c), 0.4 * math.sin(b) + 0.1 * math.sin(c)]},
-        }, "kinematics")  # fmt: skip
+        results = results_of(
+            {
+                "tmm": 1,
+                "units": {"length": "m", "angle": "rad"},
+                "points": {"O": [0, 0], "C": [0.4 * math.cos(b), 0.4 * math.sin(b)]},
+                "links": {
+                    "1": {"points": ["O", "A"], "length": 0.1},
+                    "2": {"points": ["A", "B"], "length": 0.4},
+                    "3": {"points": ["C", "B"], "length": 0.1},
+                },
+                "driver": {"link": 1, "speed": 10},
+                "sketch": {
+                    "at": c,
+                    "B": [0.4 * math.cos(b) + 0.1 * math.cos(c), 0.4 * math.sin(b) + 0.1 * math.sin(c)],
+                },
+            },
+            "kinematics",
+        )
         (pressure,) = results.pressure
         assert pressure.largest == pytest.approx(math.pi / 2, abs=1e-6)

@@ -223,14 +223,21 @@ def test_mirror_image(seed, kinds):
         for s in it.slides
     )
     sketch = replace(
-        it.sketch, at=-it.sketch.at, points={p: z.conjugate() for p, z in it.sketch.points.items()},
+        it.sketch,
+        at=-it.sketch.at,
+        points={p: z.conjugate() for p, z in it.sketch.points.items()},
         angles={n: -a for n, a in it.sketch.angles.items()},
-    )  # fmt: skip
+    )
     loads = tuple(replace(x, at=x.at.conjugate(), force=x.force.conjugate(), moment=-x.moment) for x in it.loads)
     mirrored = replace(
-        it, links=links, slides=slides, sketch=sketch, loads=loads, gravity=it.gravity.conjugate(),
+        it,
+        links=links,
+        slides=slides,
+        sketch=sketch,
+        loads=loads,
+        gravity=it.gravity.conjugate(),
         driver=replace(it.driver, sense=-1),
-    )  # fmt: skip
+    )
     _, other, _, forces = solved(mirrored, (0.0, -0.01, 0.01))
     for name in it.moving:
         one, two = motion.centre(name), other.centre(name)
@@ -248,12 +255,13 @@ def test_order_and_names_of_links_change_nothing(order):
     links = {names[n]: replace(it.links[n], name=names[n]) for n in (FRAME, *order[::-1], "1")}
     assert all(isinstance(x, Link) for x in links.values())
     renamed = replace(
-        it, links=links,
+        it,
+        links=links,
         hinges=tuple(replace(h, links=tuple(names[n] for n in h.links)) for h in it.hinges),
         slides=tuple(replace(s, carrier=names[s.carrier], runner=names[s.runner]) for s in it.slides),
         sketch=replace(it.sketch, angles={names[n]: a for n, a in it.sketch.angles.items()}),
         loads=tuple(replace(x, link=names[x.link]) for x in it.loads),
-    )  # fmt: skip
+    )
     other = solved(renamed)[1]
     for name in it.moving:
         assert np.max(np.abs(motion.centre(name).a - other.centre(names[name]).a)) < 1e-12

@@ -18,12 +18,19 @@ from tmm_cli.mechanics.numerics.vectors import cross
 from tmm_cli.mechanics.structure.assur import analyse
 
 LINKAGES = [
-    (1, ("III", "gear"), "crank"), (1, ("IV",), "cylinder"), (1, ("VI", "cam"), "crank"),
-    (1, ("III", "swinging follower"), "swinging cylinder"), (1, ("rack", "RPP"), "cylinder"),
-    (1, ("geared five-bar", "RRR"), "crank"), (2, ("pinion", "PRP"), "swinging cylinder"),
-    (3, ("cylinder", "RRP"), "crank"), (1, ("arm", "RPR"), "cylinder"), (3, ("cylinder", "arm", "III"), "crank"),
-    (3, ("gear", "rack", "RPR"), "swinging cylinder"), (1, ("cam", "IV"), "crank"),
-]  # fmt: skip  # seeds and kinds: every kind of group, pair and driver, with some way to both sides of the sketch
+    (1, ("III", "gear"), "crank"),
+    (1, ("IV",), "cylinder"),
+    (1, ("VI", "cam"), "crank"),
+    (1, ("III", "swinging follower"), "swinging cylinder"),
+    (1, ("rack", "RPP"), "cylinder"),
+    (1, ("geared five-bar", "RRR"), "crank"),
+    (2, ("pinion", "PRP"), "swinging cylinder"),
+    (3, ("cylinder", "RRP"), "crank"),
+    (1, ("arm", "RPR"), "cylinder"),
+    (3, ("cylinder", "arm", "III"), "crank"),
+    (3, ("gear", "rack", "RPR"), "swinging cylinder"),
+    (1, ("cam", "IV"), "crank"),
+]  # seeds and kinds: every kind of group, pair and driver, with some way to both sides of the sketch
 OFFSETS = (0.0, 0.004, -0.004)  # of the driver from the sketch, rad or m
 CLOSE = 1e-9  # relative; groups may be 1/200 from a dead position, and several hang on one another
 

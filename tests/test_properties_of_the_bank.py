@@ -410,8 +410,12 @@ def cam_coupler():
         k = int(pick(np.array(angles, dtype=float)))
         near["theta"] = mpf(0.4)
         psi(mpf(float(phi[k])))
-        q = mp.findroot(lambda q: slope(psi, q), (mpf(float(phi[k - 1])), mpf(float(phi[(k + 1) % 240]))),
-                        solver="secant", tol=1e-18)  # fmt: skip
+        q = mp.findroot(
+            lambda q: slope(psi, q),
+            (mpf(float(phi[k - 1])), mpf(float(phi[(k + 1) % 240]))),
+            solver="secant",
+            tol=1e-18,
+        )
         found.append(psi(q))
     return found[0] - found[1]
 
@@ -437,8 +441,9 @@ def summing_lever():
     for pick in (np.argmax, np.argmin):
         k = int(pick(np.array(y, dtype=float)))
         near.update(y=y[k], alpha=mpf(0))
-        q = mp.findroot(lambda q: slope(y_of_e, q), (mpf(float(phi[k - 1])), mpf(float(phi[k + 1]))), solver="anderson",
-                        tol=1e-18)  # fmt: skip
+        q = mp.findroot(
+            lambda q: slope(y_of_e, q), (mpf(float(phi[k - 1])), mpf(float(phi[k + 1]))), solver="anderson", tol=1e-18
+        )
         found.append(y_of_e(q))
     return found
 
@@ -516,11 +521,21 @@ COURSE = {
     # lengths; position; masses; load along the guide, N; rpm, below zero clockwise
     1: ((100, -300j, 600, 250, (270j, 1)), 3, ((1, 0.5), (0.6, 0.0004), (8, 0.3, 0.5), (3, 0.02, 0.45), 40), 1200, 76),
     2: ((90, -280j, 560, None, (270j, 1)), 2, ((1.2, 0.4), (0.7, 5e-4), (9, 0.28, 0.5), (0.9, 0, 0), 35), 900, 90),
-    3: ((110, -400, 680, 300, (260, 1j)), 4, ((1.5, 0.4), (0.8, 6e-4), (10, 0.42, 0.5), (3.5, 0.03, 0.5), 28),
-        -1500j, 70),
-    4: ((105, 330j, 620, 240, (-265j, 1)), 3, ((1.4, 0.5), (0.6, 4e-4), (8.5, 0.31, 0.55), (2.8, 0.018, 0.5), 38),
-        1300, -85),
-}  # fmt: skip
+    3: (
+        (110, -400, 680, 300, (260, 1j)),
+        4,
+        ((1.5, 0.4), (0.8, 6e-4), (10, 0.42, 0.5), (3.5, 0.03, 0.5), 28),
+        -1500j,
+        70,
+    ),
+    4: (
+        (105, 330j, 620, 240, (-265j, 1)),
+        3,
+        ((1.4, 0.5), (0.6, 4e-4), (8.5, 0.31, 0.55), (2.8, 0.018, 0.5), 38),
+        1300,
+        -85,
+    ),
+}
 
 
 def course(number):
@@ -616,7 +631,7 @@ NUMBERS = {
     "summing-lever": lambda: [run * MM for run in summing_lever()],
     "toggle-press": lambda: [toggle_press()],
     "v-compressor": v_compressor,
-}  # fmt: skip
+}
 """By file, in the order of its block `shows`, those whose `expected` is a plain number; SI, radians."""
 
 

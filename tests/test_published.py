@@ -64,9 +64,13 @@ def test_homework_eight_link_of_three_dyads():
     sin, cos, deg = math.sin, math.cos, math.pi / 180
     o2, o4, o6, g, crank, tilt = 12.5 + 0j, 0j, 12.5 + 10.5j, 12.5 + 11.7j, 52.92024014972946 * deg, 150 * deg
     o2a, ba, ce, _, df, k = (
-        2.1799804307105649, 0.25342828166292991, 1.2982110114925343, 2.6287023468511764, 1.946962812654658,
+        2.1799804307105649,
+        0.25342828166292991,
+        1.2982110114925343,
+        2.6287023468511764,
+        1.946962812654658,
         6.8670173910301826,
-    )  # fmt: skip
+    )
     b = o4 + 2.5 * complex(cos(crank), sin(crank))
     a = b + 8.4 * complex(cos(ba), sin(ba))
     assert abs(a - (o2 + 5 * complex(cos(o2a), sin(o2a)))) < 1e-12  # the printed positions close
@@ -80,7 +84,9 @@ def test_homework_eight_link_of_three_dyads():
         return [z.real, z.imag]
 
     problem = {
-        "tmm": 1, "units": SI, "points": {"O2": xy(o2), "O4": xy(o4), "O6": xy(o6)},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O2": xy(o2), "O4": xy(o4), "O6": xy(o6)},
         "guides": {"g": {"through": xy(g), "angle": tilt}},
         "links": {
             "1": {"points": ["O4", "B"], "length": 2.5},
@@ -94,7 +100,7 @@ def test_homework_eight_link_of_three_dyads():
         "driver": {"link": "1", "speed": 30, "turns": "cw"},
         "sketch": {"at": crank, "A": xy(a), "C": xy(c), "E": xy(e), "F": xy(f)},
         "positions": {"at": [crank]},
-    }  # fmt: skip
+    }
     results = results_of(problem, "kinematics")
     assert [group.type for group in results.structure.groups] == ["RRR", "RRR", "RRP"]
     motion = results.motion
@@ -132,7 +138,9 @@ def jansen():
         return [x, math.sqrt(left * left - x * x)]
 
     return {
-        "tmm": 1, "units": SI, "points": {"O": [0, 0], "G": [-38, -7.8]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [0, 0], "G": [-38, -7.8]},
         "links": {
             "1": {"points": ["O", "A"], "length": 15},
             "2": {"points": ["A", "B"], "length": 50},
@@ -145,7 +153,7 @@ def jansen():
         "driver": {"link": "1", "speed": 1},
         "sketch": {"at": 0, "B": [-24, 31], "C": [-75, 8], "D": [-27, -46], "E": [-59, -28], "F": [-43, -92]},
         "positions": {"at": [math.radians(t) for t in (0, 45, 90, 135, 180, 270)]},
-    }  # fmt: skip
+    }
 
 
 def test_jansen_leg_walks_through_the_printed_points():
@@ -159,20 +167,23 @@ def test_jansen_leg_walks_through_the_printed_points():
 
 def test_change_point_four_bar_statics_at_90_degrees():
     problem = {
-        "tmm": 1, "units": SI, "points": {"O": [0, 0], "D": [4, 0]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [0, 0], "D": [4, 0]},
         "links": {
             "1": {"points": ["O", "A"], "length": 1},
             "2": {"points": ["A", "B"], "length": 3, "also": {"P": [1.5, 0.5]}},
             "3": {"points": ["D", "B"], "length": 2},
         },
         "masses": {
-            "1": {"mass": 2, "centre": {"on": "OA"}}, "2": {"mass": 3, "centre": {"on": "AB"}},
+            "1": {"mass": 2, "centre": {"on": "OA"}},
+            "2": {"mass": 3, "centre": {"on": "AB"}},
             "3": {"mass": 2, "centre": {"on": "DB"}},
         },
         "driver": {"link": "1", "speed": 1},
         "sketch": {"at": math.pi / 2, "B": [2.9, 1.7]},
         "positions": {"at": [math.pi / 2]},
-    }  # fmt: skip
+    }
     motion = results_of(problem, "kinematics").motion
     assert motion.link("2").angle[0] == pytest.approx(0.23001134379000288, rel=1e-10)
     assert motion.link("3").angle[0] == pytest.approx(2.1406445800390212, rel=1e-10)
@@ -198,22 +209,36 @@ def test_change_point_four_bar_statics_at_90_degrees():
 def test_jansen_leg_of_pyslvs_from_its_coordinates():
     """test/test_core.py of KmolYuan/pyslvs gives joints in one pose; links are as long as they are there."""
     o, a, g, b, c, d, e, f = (
-        0j, 9.61 + 11.52j, -38 - 7.8j, -35.24 + 33.61j, -77.75 - 2.54j, -20.1 - 42.79j, -56.05 - 35.42j, -22.22 - 91.74j
-    )  # fmt: skip
+        0j,
+        9.61 + 11.52j,
+        -38 - 7.8j,
+        -35.24 + 33.61j,
+        -77.75 - 2.54j,
+        -20.1 - 42.79j,
+        -56.05 - 35.42j,
+        -22.22 - 91.74j,
+    )
 
     def plate(**points):
         return {"points": {name: [z.real, z.imag] for name, z in points.items()}}
 
     problem = {
-        "tmm": 1, "units": SI, "points": {"O": [o.real, o.imag], "G": [g.real, g.imag]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [o.real, o.imag], "G": [g.real, g.imag]},
         "links": {
-            "1": {"points": ["O", "A"], "length": abs(a - o)}, "2": plate(A=a, B=b), "3": plate(G=g, B=b, C=c),
-            "4": plate(A=a, D=d), "5": plate(G=g, D=d), "6": plate(C=c, E=e), "7": plate(D=d, E=e, F=f),
+            "1": {"points": ["O", "A"], "length": abs(a - o)},
+            "2": plate(A=a, B=b),
+            "3": plate(G=g, B=b, C=c),
+            "4": plate(A=a, D=d),
+            "5": plate(G=g, D=d),
+            "6": plate(C=c, E=e),
+            "7": plate(D=d, E=e, F=f),
         },
         "driver": {"link": "1", "speed": 1},
         "sketch": {"at": math.atan2(a.imag, a.real), **plate(B=b, C=c, D=d, E=e, F=f)["points"]},
         "positions": {"at": [0, math.pi / 4]},
-    }  # fmt: skip
+    }
     foot = results_of(problem, "kinematics").motion.named("F").x
     assert foot[0] == pytest.approx(-43.1700551554 - 91.7532259054j, abs=1e-9)
     assert foot[1] == pytest.approx(-24.4063935925 - 91.7895961426j, abs=1e-9)
@@ -222,23 +247,33 @@ def test_jansen_leg_of_pyslvs_from_its_coordinates():
 def test_pyslvs_primitives_of_dyads():
     """PLLP: two circles meet; PLPP: a circle and a line meet."""
     two = {
-        "tmm": 1, "units": SI, "points": {"O": [-100, 0], "D": [30, 0]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [-100, 0], "D": [30, 0]},
         "links": {
-            "1": {"points": ["O", "A"], "length": 70}, "2": {"points": ["A", "B"], "length": 90},
+            "1": {"points": ["O", "A"], "length": 70},
+            "2": {"points": ["A", "B"], "length": 90},
             "3": {"points": ["D", "B"], "length": 30},
         },
-        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 0.2, "B": [40, 28]}, "positions": {"at": [0.0]},
-    }  # fmt: skip
+        "driver": {"link": "1", "speed": 1},
+        "sketch": {"at": 0.2, "B": [40, 28]},
+        "positions": {"at": [0.0]},
+    }
     dead = results_of(two, "kinematics").motion  # the circles touch: 90 = 60 + 30, a dead position
     assert dead.named("B").x[0] == pytest.approx(60 + 0j, abs=1e-9)
     assert not dead.moving[0]
     line = {
-        "tmm": 1, "units": SI, "points": {"O": [-3, 0]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [-3, 0]},
         "guides": {"g": {"through": [0, -3], "angle": math.atan2(3, 1.5)}},
         "links": {
-            "1": {"points": ["O", "A"], "length": 3}, "2": {"points": ["A", "B"], "length": math.sqrt(5)},
+            "1": {"points": ["O", "A"], "length": 3},
+            "2": {"points": ["A", "B"], "length": math.sqrt(5)},
             "3": {"points": ["B"], "slides": {"on": "g"}},
         },
-        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 0.0, "B": [2, 1]}, "positions": {"at": [0.0]},
-    }  # fmt: skip
+        "driver": {"link": "1", "speed": 1},
+        "sketch": {"at": 0.0, "B": [2, 1]},
+        "positions": {"at": [0.0]},
+    }
     assert results_of(line, "kinematics").motion.named("B").x[0] == pytest.approx(2 + 1j, abs=1e-12)

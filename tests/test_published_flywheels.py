@@ -144,8 +144,10 @@ TWO_TRIANGLES = (
 def test_the_inertia_of_a_crank_is_subtracted_from_the_first_group_of_mertsalov():
     """Two triangles of 100 N m gain 50 pi J; at 5 rad/s and delta = 0.02 the first group has 100 pi kg m2."""
     crank = 300.0
-    found = steady("5 rad/s", f"masses: {{1: {{mass: 0, inertia: {crank}, centre: O}}}}\ndynamics: {{delta: 0.02}}\n" +
-                   TWO_TRIANGLES)  # fmt: skip
+    found = steady(
+        "5 rad/s",
+        f"masses: {{1: {{mass: 0, inertia: {crank}, centre: O}}}}\ndynamics: {{delta: 0.02}}\n" + TWO_TRIANGLES,
+    )
     assert found.machine.constant == pytest.approx(crank, rel=1e-12)
     assert found.first_group == pytest.approx(100 * np.pi, rel=1e-12)
     assert found.mertsalov == pytest.approx(100 * np.pi - crank, rel=1e-11)

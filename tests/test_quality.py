@@ -30,9 +30,10 @@ def case(points, links, driver, sketch, **more):
 def four_bar(a, b, c, d, at, B, **more):
     """Crank OA = a, coupler AB = b, rocker DB = c; D is at the place d."""
     links = {
-        "1": {"points": ["O", "A"], "length": a}, "2": {"points": ["A", "B"], "length": b},
+        "1": {"points": ["O", "A"], "length": a},
+        "2": {"points": ["A", "B"], "length": b},
         "3": {"points": ["D", "B"], "length": c},
-    }  # fmt: skip
+    }
     return case({"O": [0, 0], "D": list(d)}, links, {"link": "1", "speed": 1}, {"at": at, "B": list(B)}, **more)
 
 
@@ -60,11 +61,17 @@ def test_a_rocker_has_a_stroke_along_its_arc_and_k_both_ways():
 def crank_slider(r, rod, e, at, B, driver="1"):
     """The slider B runs along the x axis at the height e."""
     links = {
-        "1": {"points": ["O", "A"], "length": r}, "2": {"points": ["A", "B"], "length": rod},
+        "1": {"points": ["O", "A"], "length": r},
+        "2": {"points": ["A", "B"], "length": rod},
         "3": {"points": ["B"], "slides": {"on": "x"}},
-    }  # fmt: skip
-    return case({"O": [0, 0]}, links, {"link": driver, "speed": 1}, {"at": at, **B},
-                guides={"x": {"through": [0, e], "angle": 0}})  # fmt: skip
+    }
+    return case(
+        {"O": [0, 0]},
+        links,
+        {"link": driver, "speed": 1},
+        {"at": at, **B},
+        guides={"x": {"through": [0, e], "angle": 0}},
+    )
 
 
 def ends(problem):
@@ -137,9 +144,10 @@ def test_strokes_of_a_crank_rocker():
 
 def slotted_lever(r, pivot, at):
     links = {
-        "1": {"points": ["O", "A"], "length": r}, "2": {"points": ["A"], "slides": {"on": "3", "along": "CD"}},
+        "1": {"points": ["O", "A"], "length": r},
+        "2": {"points": ["A"], "slides": {"on": "3", "along": "CD"}},
         "3": {"points": ["C", "D"], "length": 1.0},
-    }  # fmt: skip
+    }
     A = (r * math.cos(at) - pivot[0], r * math.sin(at) - pivot[1])
     D = [pivot[k] + A[k] / math.hypot(*A) for k in (0, 1)]
     return case({"O": [0, 0], "C": list(pivot)}, links, {"link": "1", "speed": 1}, {"at": at, "D": D})
@@ -205,11 +213,12 @@ def triad(r, rods, at, start, guide=None):
         return [x + px * math.cos(t) - py * math.sin(t), y + px * math.sin(t) + py * math.cos(t)]
 
     links = {
-        "1": {"points": ["O", "A"], "length": r}, "2": {"points": ["A", "B"], "length": rods[0]},
+        "1": {"points": ["O", "A"], "length": r},
+        "2": {"points": ["A", "B"], "length": rods[0]},
         "3": {"points": dict(zip("BCD", map(list, PLATE), strict=True))},
         "4": {"points": ["C", "K"], "length": rods[1]},
         "5": {"points": ["D"], "slides": {"on": "g"}} if guide else {"points": ["D", "L"], "length": rods[2]},
-    }  # fmt: skip
+    }
     points = {"O": [0, 0]} | {n: list(p) for n, p in PIVOTS.items() if n != "L" or not guide}
     guides = {"guides": {"g": {"through": list(guide[:2]), "angle": guide[2]}}} if guide else {}
     sketch = {"at": at, **{n: place(k) for k, n in enumerate("BCD")}}
@@ -275,15 +284,17 @@ def test_strokes_of_a_class_iii_group():
         def stops(x, y, t, q):
             # velocities of plate and crank with C at rest: rows of the equations by x, y, t, and by q
             rows = [
-                [mp.diff(lambda *v, k=k: equations(*v)[k], (x, y, t, q), tuple(int(n == m) for m in range(4)))
-                 for n in range(4)]
+                [
+                    mp.diff(lambda *v, k=k: equations(*v)[k], (x, y, t, q), tuple(int(n == m) for m in range(4)))
+                    for n in range(4)
+                ]
                 for k in (0, 2)
-            ]  # fmt: skip
+            ]
             px, py = (mp.mpf(v) for v in PLATE[1])
             still = [
                 [1, 0, -px * mp.sin(t) - py * mp.cos(t), 0],
                 [0, 1, px * mp.cos(t) - py * mp.sin(t), 0],
-            ]  # fmt: skip
+            ]
             return mp.det(mp.matrix([*rows, *still]))
 
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), stroke.start)

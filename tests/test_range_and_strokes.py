@@ -22,36 +22,47 @@ UNITS = {"length": "mm", "angle": "deg"}
 
 def test_the_group_that_stops_the_driver_is_named():
     """A parallelogram that could go on to 90 deg carries a lever whose rod ends its way before."""
-    results = results_of({
-        "tmm": 1, "units": UNITS, "points": {"O": [0, 0], "P": [0, 120]},
-        "links": {
-            "1": {"points": ["O", "A"], "length": 400},
-            "2": {"points": {"P": [0, 0], "B": [400, 0], "D": [300, 0]}},
-            "3": {"points": {"A": [0, 0], "B": [0, 120], "C": [-20, 190]}},
-            "4": {"points": ["D", "E"], "length": 100},
-            "5": {"points": ["C", "E"], "length": 60},
+    results = results_of(
+        {
+            "tmm": 1,
+            "units": UNITS,
+            "points": {"O": [0, 0], "P": [0, 120]},
+            "links": {
+                "1": {"points": ["O", "A"], "length": 400},
+                "2": {"points": {"P": [0, 0], "B": [400, 0], "D": [300, 0]}},
+                "3": {"points": {"A": [0, 0], "B": [0, 120], "C": [-20, 190]}},
+                "4": {"points": ["D", "E"], "length": 100},
+                "5": {"points": ["C", "E"], "length": 60},
+            },
+            "driver": {"link": "1", "speed": 1},
+            "sketch": {"at": 0, "B": [400, 120], "C": [380, 190], "D": [300, 120], "E": [320, 200]},
+            "positions": {"at": [0]},
         },
-        "driver": {"link": "1", "speed": 1},
-        "sketch": {"at": 0, "B": [400, 120], "C": [380, 190], "D": [300, 120], "E": [320, 200]},
-        "positions": {"at": [0]},
-    }, "kinematics")  # fmt: skip
+        "kinematics",
+    )
     assert {limit.group for limit in results.driver_range.limits} == {"II(4,5)"}
 
 
 def test_a_dwell_at_the_end_of_a_stroke_makes_no_strokes_of_rounding():
     """Where the rod is the radius of curvature of the pin's path, the speed of the ram has a threefold zero."""
-    results = results_of({
-        "tmm": 1, "units": UNITS, "points": {"O": [0, 0]}, "guides": {"y": {"through": "O", "angle": 90}},
-        "links": {
-            "1": {"points": ["O", "A"], "length": 100},
-            "2": {"points": {"A": [0, 0], "P": [0, -40]}},
-            "3": {"points": ["P", "D"], "length": 180**2 / 60},
-            "4": {"points": ["D"], "slides": {"on": "y"}},
+    results = results_of(
+        {
+            "tmm": 1,
+            "units": UNITS,
+            "points": {"O": [0, 0]},
+            "guides": {"y": {"through": "O", "angle": 90}},
+            "links": {
+                "1": {"points": ["O", "A"], "length": 100},
+                "2": {"points": {"A": [0, 0], "P": [0, -40]}},
+                "3": {"points": ["P", "D"], "length": 180**2 / 60},
+                "4": {"points": ["D"], "slides": {"on": "y"}},
+            },
+            "gears": {"ring": {"between": ["0", "2"], "carrier": "1", "radii": [150, 50], "inner": True}},
+            "driver": {"link": "1", "speed": 1},
+            "sketch": {"at": 90, "P": [0, 140], "D": [0, -400]},
         },
-        "gears": {"ring": {"between": ["0", "2"], "carrier": "1", "radii": [150, 50], "inner": True}},
-        "driver": {"link": "1", "speed": 1},
-        "sketch": {"at": 90, "P": [0, 140], "D": [0, -400]},
-    }, "kinematics")  # fmt: skip
+        "kinematics",
+    )
     assert len(results.strokes.strokes) == 2
     top, bottom = sorted(stroke.start for stroke in results.strokes.strokes)
     assert math.degrees(top) - 90 < 1e-9
@@ -62,10 +73,12 @@ def test_a_dwell_at_the_end_of_a_stroke_makes_no_strokes_of_rounding():
 @pytest.mark.parametrize(
     ("cam", "output", "turns", "start"),
     [
-        ("flat follower", "2", "ccw", -50), ("flat follower", "4", "cw", 77.3),
-        ("swinging follower", "2", "cw", 0), ("swinging follower", "4", "ccw", 77.3),
+        ("flat follower", "2", "ccw", -50),
+        ("flat follower", "4", "cw", 77.3),
+        ("swinging follower", "2", "cw", 0),
+        ("swinging follower", "4", "ccw", 77.3),
     ],
-)  # fmt: skip
+)
 def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, turns, start):
     """Rise over 120 deg, dwell over 60, return over 100, dwell over 80; whichever way the cam turns the rise is slower.
 
@@ -121,8 +134,10 @@ def flat_follower(law, **keys):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_cam_turned_clockwise_moves_its_follower_as_its_mirror_image_does_where_pieces_meet_too(shape):
     """Where the acceleration jumps it is that of the piece which then begins, whichever way the cam turns."""
-    own, image = (f"{{over: {over}, rise: 20, law: {shape}}}, {{over: 120}}, {{over: {then}, rise: -20, law: {shape}}}"
-                  for over, then in ((60, 90), (90, 60)))  # fmt: skip
+    own, image = (
+        f"{{over: {over}, rise: 20, law: {shape}}}, {{over: 120}}, {{over: {then}, rise: -20, law: {shape}}}"
+        for over, then in ((60, 90), (90, 60))
+    )
     drawn = flat_follower(f"[{own}, {{over: 90}}]", speed="speed: 1, turns: cw").motion.centre("2")
     other = flat_follower(f"[{{over: 90}}, {image}]", speed="speed: 1").motion.centre("2")
     assert np.max(np.abs(drawn.v - other.v)) < 1e-15 and np.max(np.abs(drawn.a - other.a)) < 1e-13

@@ -214,68 +214,95 @@ output: 3
     "text, formula, sentences",
     [
         pytest.param(
-            four_bar("4: {points: [B, D], length: 150}", "5: {points: [A, D], length: 180}",
-                     sketched=", D: [130, 270]"),
-            "I(0,1) -> II(2+4+5,3)", ["links 2, 4, 5 are rigid to one another and count as one"],
+            four_bar(
+                "4: {points: [B, D], length: 150}", "5: {points: [A, D], length: 180}", sketched=", D: [130, 270]"
+            ),
+            "I(0,1) -> II(2+4+5,3)",
+            ["links 2, 4, 5 are rigid to one another and count as one"],
             id="three bars hinged in a triangle",
         ),
         pytest.param(
-            four_bar("4: {points: {X: [0, 0], P: [0, 20], A: [60, 0]}}",
-                     crank="{O: [0, 0], X: [40, 0], P: [40, 20]}", sketched=", X: [20, 34], P: [3, 44], A: [50, 86]"),
-            "I(0,1+4) -> II(2,3)", ["links 1, 4 are rigid to one another and count as one, add q = 1"],
+            four_bar(
+                "4: {points: {X: [0, 0], P: [0, 20], A: [60, 0]}}",
+                crank="{O: [0, 0], X: [40, 0], P: [40, 20]}",
+                sketched=", X: [20, 34], P: [3, 44], A: [50, 86]",
+            ),
+            "I(0,1+4) -> II(2,3)",
+            ["links 1, 4 are rigid to one another and count as one, add q = 1"],
             id="a crank of two links bolted together",
         ),
         pytest.param(
-            four_bar("4: {points: {U: [0, 0], V: [20, 20], W: [40, 0]}}", rocker="[W, B], length: 200",
-                     sketched=", W: [320, 0]").replace("C: [300, 0]", "U: [280, 0], V: [300, 20]"),
-            "I(0,1) -> II(2,3)", ["rigid to the frame, and part of it: 4, adds q = 1"],
+            four_bar(
+                "4: {points: {U: [0, 0], V: [20, 20], W: [40, 0]}}",
+                rocker="[W, B], length: 200",
+                sketched=", W: [320, 0]",
+            ).replace("C: [300, 0]", "U: [280, 0], V: [300, 20]"),
+            "I(0,1) -> II(2,3)",
+            ["rigid to the frame, and part of it: 4, adds q = 1"],
             id="a bracket bolted to the frame",
         ),
         pytest.param(
-            ON_THE_SECOND, "I(0,1) -> II(3,4) -> II(5,6)", ["link 2 is redundant, adds q = 1"],
+            ON_THE_SECOND,
+            "I(0,1) -> II(3,4) -> II(5,6)",
+            ["link 2 is redundant, adds q = 1"],
             id="without the second coupler the dyad on it would fall apart",
         ),
         pytest.param(
-            WITH_A_DYAD, "I(0,1) -> II(2,3) -> II(5,6)", ["link 4 is redundant, adds q = 1"],
+            WITH_A_DYAD,
+            "I(0,1) -> II(2,3) -> II(5,6)",
+            ["link 4 is redundant, adds q = 1"],
             id="the second coupler on a compound hinge",
         ),
         pytest.param(
             WITH_A_DYAD.replace("links:\n", "hinges: {B: {attached to: 4}}\nlinks:\n"),
-            "I(0,1) -> II(3,4) -> II(5,6)", ["link 2 is redundant, adds q = 1"],
+            "I(0,1) -> II(3,4) -> II(5,6)",
+            ["link 2 is redundant, adds q = 1"],
             id="the file attaches the dyad to the second coupler",
         ),
         pytest.param(
-            ON_BOTH, "I(0,1) -> II(2,3) -> II(4) -> II(5,6), II(2,3) -> II(7,8)",
+            ON_BOTH,
+            "I(0,1) -> II(2,3) -> II(4) -> II(5,6), II(2,3) -> II(7,8)",
             ["pair E counts as a higher pair: one of its two constraints is redundant, adds q = 1"],
             id="neither coupler can be left out",
         ),
         pytest.param(
-            WHEELS, "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"],
+            WHEELS,
+            "I(0,1) -> II(2,3)",
+            ["link 4 is redundant, adds q = 1"],
             id="three coupled wheels, output the second",
         ),
         pytest.param(
-            WHEELS.replace("output: 3", "output: 4"), "I(0,1) -> II(2,4)", ["link 3 is redundant, adds q = 1"],
+            WHEELS.replace("output: 3", "output: 4"),
+            "I(0,1) -> II(2,4)",
+            ["link 3 is redundant, adds q = 1"],
             id="three coupled wheels, output the third",
         ),
         pytest.param(
-            WEDGE, "I(0,1) -> II(2)",
+            WEDGE,
+            "I(0,1) -> II(2)",
             ["pair B' counts as a higher pair: one of its two constraints is redundant, adds q = 1"],
             id="a wedge: its follower is the output",
         ),
         pytest.param(
-            GUIDES.replace("ANGLE", "0"), "I(0,1) -> II(2,3)", ["pair y is redundant, adds q = 2"],
+            GUIDES.replace("ANGLE", "0"),
+            "I(0,1) -> II(2,3)",
+            ["pair y is redundant, adds q = 2"],
             id="a second parallel guide",
         ),
         pytest.param(
-            BOLTED, "I(0,1) -> II(2+3,4)", ["links 2, 3 are rigid to one another and count as one, add q = 1"],
+            BOLTED,
+            "I(0,1) -> II(2+3,4)",
+            ["links 2, 3 are rigid to one another and count as one, add q = 1"],
             id="two parts bolted together, and the slider for an instant as quick as they are",
         ),
         pytest.param(
-            planets(3, "h"), "I(0,h) -> II(p0) -> II(s)",
-            ["link p1 is redundant, adds q = 1", "link p2 is redundant, adds q = 1"], id="three planets",
+            planets(3, "h"),
+            "I(0,h) -> II(p0) -> II(s)",
+            ["link p1 is redundant, adds q = 1", "link p2 is redundant, adds q = 1"],
+            id="three planets",
         ),
     ],
-)  # fmt: skip
+)
 def test_rigid_links_count_as_one_and_redundant_links_and_pairs_are_left_out_of_the_formula(text, formula, sentences):
     structure = solved_text(text, stage="structure").structure
     assert (structure.formula, [*left_out(structure)]) == (formula, sentences)
@@ -300,10 +327,12 @@ def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
     sketched = {**linkage.sketch.angles, "plate": linkage.sketch.angles[link] - math.pi / 2}
     bolted = mobile(
         replace(
-            linkage, links={**linkage.links, "plate": plate}, hinges=(*others, *hinges),
+            linkage,
+            links={**linkage.links, "plate": plate},
+            hinges=(*others, *hinges),
             sketch=replace(linkage.sketch, angles=sketched),
         )
-    )  # fmt: skip
+    )
     alike = next((links for rigid in plain.reduction.rigid if link in (links := rigid.links)), (link,))
     (rigid,) = (rigid for rigid in bolted.reduction.rigid if "plate" in rigid.links)
     assert (set(rigid.links), rigid.constraints) == ({*alike, "plate"}, 1)
@@ -318,12 +347,18 @@ def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
         ("crossed-slots", "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"]),
         ("parallel-couplers", "I(0,1) -> II(2,3)", ["link 4 is redundant, adds q = 1"]),
         ("four-bars/transfer", "I(0,1) -> II(2,3)", [f"link {n} is redundant, adds q = 1" for n in (4, 5, 6)]),
-        ("settings/breaking-rod", "I(0,1) -> II(2+3,4)",
-         ["links 2, 3 are rigid to one another and count as one, add q = 1"]),
-        ("settings/safety-rod", "I(0,1) -> II(2,3) -> II(4+5,6)",
-         ["links 4, 5 are rigid to one another and count as one, add q = 1"]),
+        (
+            "settings/breaking-rod",
+            "I(0,1) -> II(2+3,4)",
+            ["links 2, 3 are rigid to one another and count as one, add q = 1"],
+        ),
+        (
+            "settings/safety-rod",
+            "I(0,1) -> II(2,3) -> II(4+5,6)",
+            ["links 4, 5 are rigid to one another and count as one, add q = 1"],
+        ),
     ],
-)  # fmt: skip
+)
 def test_all_redundant_linkages_of_the_bank_are_of_class_ii(name, formula, sentences):
     structure = solve(problem(name), "structure").structure
     assert (structure.formula, structure.roman, [*left_out(structure)]) == (formula, "II", sentences)

@@ -33,15 +33,27 @@ def refused(text: str) -> str:
 @pytest.mark.parametrize(
     ("written", "value"),
     [
-        ("1.5e3", 1500.0), ("12:30", "12:30"), ("010", 10), ("0o17", 15), ("0x1F", 31), ("-5", -5),
-        ("+.5", 0.5), ("5.", 5.0),
-        ("true", True), ("FALSE", False), ("null", None), ("~", None), ("", None),
-        *((word, word) for word in ("on", "off", "yes", "No", "y", "n", "1_000", "2001-01-01", "82 rpm",
-          "=", "1.2.3")),
-        ("'5'", "5"), ('"1,5"', "1,5"), ("№ 7, вариант", "№ 7, вариант"), ("[1,5]", [1, 5]),
+        ("1.5e3", 1500.0),
+        ("12:30", "12:30"),
+        ("010", 10),
+        ("0o17", 15),
+        ("0x1F", 31),
+        ("-5", -5),
+        ("+.5", 0.5),
+        ("5.", 5.0),
+        ("true", True),
+        ("FALSE", False),
+        ("null", None),
+        ("~", None),
+        ("", None),
+        *((word, word) for word in ("on", "off", "yes", "No", "y", "n", "1_000", "2001-01-01", "82 rpm", "=", "1.2.3")),
+        ("'5'", "5"),
+        ('"1,5"', "1,5"),
+        ("№ 7, вариант", "№ 7, вариант"),
+        ("[1,5]", [1, 5]),
         ("{a: }", {"a": None}),
     ],
-)  # fmt: skip
+)
 def test_scalars_are_yaml_1_2_core(written: str, value: object) -> None:
     found = read_text(f"a: {written}\n", "f").data["a"]
     assert found == value
@@ -87,80 +99,108 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", EMPTY), ("# only\n# comments\n", EMPTY), ("---\n", EMPTY), ("\n \n", EMPTY),
-        ("[1, 2]", "f:1:1: the top level is not a mapping\n  found:   [1, 2]"
-         "\n  allowed: lines 'key: value'"),
+        ("", EMPTY),
+        ("# only\n# comments\n", EMPTY),
+        ("---\n", EMPTY),
+        ("\n \n", EMPTY),
+        ("[1, 2]", "f:1:1: the top level is not a mapping\n  found:   [1, 2]\n  allowed: lines 'key: value'"),
         ("tmm:1", "f:1:1: the top level is not a mapping\n  found:   'tmm:1'\n  allowed: lines 'key: value'"),
         ("a: 1\n---\nb: 2", "f:2:1: a second document\n  found:   ---\n  allowed: one document in a file"),
-        ("a:\n  k: 1\n  k: 2", "f:3:3: a.k: duplicate key\n  found:   'k'"
-         "\n  allowed: the first is at line 2"),
-        ("1: x\n'1': y", "f:2:1: 1: duplicate key\n  found:   '1'"
-         "\n  allowed: the first is at line 1"),
-        ("a:\n\tb: 1", "f:2:1: a tab is used for indentation\n  found:   a tab"
-         "\n  allowed: spaces, two for each level"),
-        ("a:\n  -\tb: 1", "f:2:4: a tab is used for indentation\n  found:   a tab"
-         "\n  allowed: spaces, two for each level"),
+        ("a:\n  k: 1\n  k: 2", "f:3:3: a.k: duplicate key\n  found:   'k'\n  allowed: the first is at line 2"),
+        ("1: x\n'1': y", "f:2:1: 1: duplicate key\n  found:   '1'\n  allowed: the first is at line 1"),
+        ("a:\n\tb: 1", "f:2:1: a tab is used for indentation\n  found:   a tab\n  allowed: spaces, two for each level"),
+        (
+            "a:\n  -\tb: 1",
+            "f:2:4: a tab is used for indentation\n  found:   a tab\n  allowed: spaces, two for each level",
+        ),
         ("a: 1,5", "f:1:4: a: decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
-        ("a: -1,5 мм", "f:1:4: a: decimal comma: write -1.5 мм\n  found:   '-1,5 мм'"
-         "\n  allowed: a decimal point; a list is written [-1, 5 мм]"),
+        (
+            "a: -1,5 мм",
+            "f:1:4: a: decimal comma: write -1.5 мм\n  found:   '-1,5 мм'"
+            "\n  allowed: a decimal point; a list is written [-1, 5 мм]",
+        ),
         ("a:\n  b: {c: 1,5}", "f:2:10: a.b.c: decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
-        ("a: [0, {d: 2, c: 1,5, e: 3}]", "f:1:18: a[1].c: decimal comma: write 1.5"
-         "\n  found:   '1,5'" + COMMA),
-        ("a: {b:1}", "f:1:5: a: a key without a value\n  found:   'b:1'"
-         "\n  allowed: 'key: value', a space after ':'"),
-        ("a: {b: 1, 5}", "f:1:11: a: a key without a value\n  found:   '5'"
-         "\n  allowed: 'key: value', a space after ':'"),
-        *((f"a: {w}", f"f:1:4: a: not a finite number\n  found:   '{w}'\n  allowed: a finite number")
-          for w in (".nan", "NaN", ".inf", "-.Inf", "inf", "+Infinity")),
-        ("a: 1e999", "f:1:4: a: the number is too large or too small\n  found:   '1e999'"
-         "\n  allowed: sizes from 1e-300 to 1e300"),
-        ("a: 1e-999", "f:1:4: a: the number is too large or too small\n  found:   '1e-999'"
-         "\n  allowed: sizes from 1e-300 to 1e300"),
-        ("a: " + "9" * 41, f"f:1:4: a: the number is too long\n  found:   '{'9' * 41}'"
-         "\n  allowed: at most 40 digits"),
+        ("a: [0, {d: 2, c: 1,5, e: 3}]", "f:1:18: a[1].c: decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
+        ("a: {b:1}", "f:1:5: a: a key without a value\n  found:   'b:1'\n  allowed: 'key: value', a space after ':'"),
+        (
+            "a: {b: 1, 5}",
+            "f:1:11: a: a key without a value\n  found:   '5'\n  allowed: 'key: value', a space after ':'",
+        ),
+        *(
+            (f"a: {w}", f"f:1:4: a: not a finite number\n  found:   '{w}'\n  allowed: a finite number")
+            for w in (".nan", "NaN", ".inf", "-.Inf", "inf", "+Infinity")
+        ),
+        (
+            "a: 1e999",
+            "f:1:4: a: the number is too large or too small\n  found:   '1e999'\n  allowed: sizes from 1e-300 to 1e300",
+        ),
+        (
+            "a: 1e-999",
+            "f:1:4: a: the number is too large or too small\n  found:   '1e-999'"
+            "\n  allowed: sizes from 1e-300 to 1e300",
+        ),
+        ("a: " + "9" * 41, f"f:1:4: a: the number is too long\n  found:   '{'9' * 41}'\n  allowed: at most 40 digits"),
         ("a: &x 1", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
         ("a: *x", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
-        ("a: !!python/object:os.system x", "f:1:4: a: tags are not part of a problem file"
-         "\n  found:   'tag:yaml.org,2002:python/object:os.system'\n  allowed: plain values"),
-        ("a: !!str 5", "f:1:4: a: tags are not part of a problem file"
-         "\n  found:   'tag:yaml.org,2002:str'\n  allowed: plain values"),
+        (
+            "a: !!python/object:os.system x",
+            "f:1:4: a: tags are not part of a problem file"
+            "\n  found:   'tag:yaml.org,2002:python/object:os.system'\n  allowed: plain values",
+        ),
+        (
+            "a: !!str 5",
+            "f:1:4: a: tags are not part of a problem file"
+            "\n  found:   'tag:yaml.org,2002:str'\n  allowed: plain values",
+        ),
         ("a: ! 5", "f:1:4: a: tags are not part of a problem file\n  found:   '!'\n  allowed: plain values"),
         ("a: x\x07", "f:1:5: a control or invisible character\n  found:   U+0007\n  allowed: printable text"),
-        ("a: 1\r\nb: \u202ex", "f:2:4: a control or invisible character\n  found:   U+202E"
-         "\n  allowed: printable text"),
+        ("a: 1\r\nb: \u202ex", "f:2:4: a control or invisible character\n  found:   U+202E\n  allowed: printable text"),
         ('a: "\\e[31m"', "f:1:4: a: a control character\n  found:   '\\x1b'\n  allowed: printable text"),
         ("? [1]\n: 2", "f:1:3: a list or mapping is used as a key\n  allowed: a word or number"),
-        ("a: 1\n  - 2", "f:1:4: a: a value and a list below it\n  found:   '1 - 2'"
-         "\n  allowed: one of the two"),
-        ("a: b: c", "f:1:5: a ':' where none can be\n  found:   ': c'"
-         "\n  allowed: one 'key: value' in a line; text with ': ' in quotes"),
-        ("a: [1, 2\nb: 3", "f:1:4: '[' is not closed\n  found:   '[1, 2'"
-         "\n  allowed: '[1, 2]', items separated by commas"),
-        ("a: {b: 3", "f:1:4: '{' is not closed\n  found:   '{b: 3'"
-         "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
-        ("a: [1, {b: 2]", "f:1:8: '{' is not closed\n  found:   '{b: 2]'"
-         "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
+        ("a: 1\n  - 2", "f:1:4: a: a value and a list below it\n  found:   '1 - 2'\n  allowed: one of the two"),
+        (
+            "a: b: c",
+            "f:1:5: a ':' where none can be\n  found:   ': c'"
+            "\n  allowed: one 'key: value' in a line; text with ': ' in quotes",
+        ),
+        (
+            "a: [1, 2\nb: 3",
+            "f:1:4: '[' is not closed\n  found:   '[1, 2'\n  allowed: '[1, 2]', items separated by commas",
+        ),
+        (
+            "a: {b: 3",
+            "f:1:4: '{' is not closed\n  found:   '{b: 3'\n  allowed: '{a: 1, b: 2}', items separated by commas",
+        ),
+        (
+            "a: [1, {b: 2]",
+            "f:1:8: '{' is not closed\n  found:   '{b: 2]'\n  allowed: '{a: 1, b: 2}', items separated by commas",
+        ),
         ("a: {b: 1; c: 2}", "f:1:9: ',' or the closing bracket is expected here\n  found:   '; c: 2}'" + BRACKETS),
-        ("a: {F: [2, 0] kN, b: 1}\nc: 2", "f:1:15: ',' or the closing bracket is expected here"
-         "\n  found:   'kN, b: 1}'" + BRACKETS),
-        ("a: {\n  b: 1\n  c: 2 }", "f:3:3: ',' or the closing bracket is expected here"
-         "\n  found:   'c: 2 }'" + BRACKETS),
-        ("a: {b: 'x}'\nc: 2", "f:1:4: '{' is not closed\n  found:   '{b: 'x}''"
-         "\n  allowed: '{a: 1, b: 2}', items separated by commas"),
+        (
+            "a: {F: [2, 0] kN, b: 1}\nc: 2",
+            "f:1:15: ',' or the closing bracket is expected here\n  found:   'kN, b: 1}'" + BRACKETS,
+        ),
+        (
+            "a: {\n  b: 1\n  c: 2 }",
+            "f:3:3: ',' or the closing bracket is expected here\n  found:   'c: 2 }'" + BRACKETS,
+        ),
+        (
+            "a: {b: 'x}'\nc: 2",
+            "f:1:4: '{' is not closed\n  found:   '{b: 'x}''\n  allowed: '{a: 1, b: 2}', items separated by commas",
+        ),
         ("a: [2, 0] kN", "f:1:11: text after a closing bracket\n  found:   'kN'" + AFTER_BRACKET),
         ("a: {b: 2} // speed\nc: 1", "f:1:11: text after a closing bracket\n  found:   '// speed'" + AFTER_BRACKET),
-        ("a: 'x\nb: 3", "f:1:4: a quote is not closed\n  found:   ''x'"
-         "\n  allowed: text between two equal quotes"),
-        ("a: 1\nb\nc: 2", "f:2:1: a line without ':'\n  found:   'b'"
-         "\n  allowed: 'key: value', with a space after ':'"),
-        ("a: @x", "f:1:4: a value cannot start with this character\n  found:   '@x'"
-         "\n  allowed: text between quotes"),
+        ("a: 'x\nb: 3", "f:1:4: a quote is not closed\n  found:   ''x'\n  allowed: text between two equal quotes"),
+        ("a: 1\nb\nc: 2", "f:2:1: a line without ':'\n  found:   'b'\n  allowed: 'key: value', with a space after ':'"),
+        ("a: @x", "f:1:4: a value cannot start with this character\n  found:   '@x'\n  allowed: text between quotes"),
         ("a:\n  b: 1\n c: 2", "f:3:2: this does not fit the lines above\n  found:   'c: 2'" + INDENT),
-        ("a: - 1", "f:1:4: a list item '-' where none can be\n  found:   '- 1'"
-         "\n  allowed: each '- item' in a line of its own"),
+        (
+            "a: - 1",
+            "f:1:4: a list item '-' where none can be\n  found:   '- 1'\n  allowed: each '- item' in a line of its own",
+        ),
         ("a: [1,,2]", "f:1:7: a value is missing\n  found:   ',2]'\n  allowed: a value"),
     ],
-)  # fmt: skip
+)
 def test_refusals(text: str, message: str) -> None:
     assert refused(text) == message
 
@@ -263,26 +303,48 @@ def test_an_error_finds_its_place() -> None:
 
 def test_an_error_as_text_and_data() -> None:
     error = ProblemError(
-        "unknown key", path=("links", "3", "lenght"), found="'lenght'", allowed="length, points", near="length",
-        file="shaper.yaml", mark=Mark(12, 7),
-    )  # fmt: skip
+        "unknown key",
+        path=("links", "3", "lenght"),
+        found="'lenght'",
+        allowed="length, points",
+        near="length",
+        file="shaper.yaml",
+        mark=Mark(12, 7),
+    )
     assert str(error) == (
         "shaper.yaml:12:7: links.3.lenght: unknown key\n  found:   'lenght'\n  allowed: length, points"
         "\n  did you mean 'length'?"
     )
     assert error.to_dict() == {
-        "message": "unknown key", "file": "shaper.yaml", "line": 12, "column": 7, "path": ["links", "3", "lenght"],
-        "found": "'lenght'", "allowed": "length, points", "near": "length",
-    }  # fmt: skip
+        "message": "unknown key",
+        "file": "shaper.yaml",
+        "line": 12,
+        "column": 7,
+        "path": ["links", "3", "lenght"],
+        "found": "'lenght'",
+        "allowed": "length, points",
+        "near": "length",
+    }
     assert "did you mean 'OA' in Latin letters?" in str(ProblemError("x", found=quote("ОА"), near="OA"))
 
 
 @pytest.mark.parametrize(
     ("name", "near"),
-    [("lenght", "length"), ("Length", "length"), ("lengh", "length"), ("ОА", "OA"), ("AO", "OA"),
-    ("oa", "OA"),
-     ("slide", "slides"), ("xyz", None), ("B", None), ("OB", None), ("", None), ("l" * 10_000, None)],
-)  # fmt: skip
+    [
+        ("lenght", "length"),
+        ("Length", "length"),
+        ("lengh", "length"),
+        ("ОА", "OA"),
+        ("AO", "OA"),
+        ("oa", "OA"),
+        ("slide", "slides"),
+        ("xyz", None),
+        ("B", None),
+        ("OB", None),
+        ("", None),
+        ("l" * 10_000, None),
+    ],
+)
 def test_nearest(name: str, near: str | None) -> None:
     assert nearest(name, ["points", "length", "slides", "OA"]) == near
 

@@ -97,11 +97,20 @@ def test_explain_lists_springs_friction_and_all_drivers():
     assert told("cylinder")["springs"] == [("s", "frame, 3", "[520, -120], [200, 0]", "2000 N/m", "120 mm", "20 N", "")]
     assert told("swinging follower")["springs"][0][3:5] == ("6 N*m/rad", "170 deg")
     assert told("friction")["friction"] == [
-        ("O", "0.1", "15 mm"), ("A", "0.1", "15 mm"), ("B", "0.1", "15 mm"), ("x", "0.1", "a guide"),
-    ]  # fmt: skip
+        ("O", "0.1", "15 mm"),
+        ("A", "0.1", "15 mm"),
+        ("B", "0.1", "15 mm"),
+        ("x", "0.1", "a guide"),
+    ]
     assert told("two cranks")["drivers"][1] == (
-        "4", "frame", "E", "turns", "12.5664 rad/s", "clockwise", "90 deg",
-    )  # fmt: skip
+        "4",
+        "frame",
+        "E",
+        "turns",
+        "12.5664 rad/s",
+        "clockwise",
+        "90 deg",
+    )
     assert told("cylinder")["drivers"] == [("2", "1", "A'", "slides", "0.1 m/s", "out", "260 mm")]
 
 

@@ -261,11 +261,30 @@ def test_what_saves_nothing_is_said_so():
 
 # ---------------------------------------------------------------------------------------------- writing of long cycles
 
-VALUES = np.concatenate([
-    [0.0, -0.0, 1.0, -1.0, np.nan, np.inf, -np.inf, 0.1, 1e15, 1e16, 123456789012345678.0, 1e-5, 1e-4, 5e-324, 1.8e308],
-    np.random.default_rng(1).standard_normal(3000) * 10.0 ** np.random.default_rng(2).integers(-30, 30, 3000),
-    np.repeat([1.5, 0.0, -2.25e-9], 2000), np.round(np.random.default_rng(3).standard_normal(500), 3),
-])  # fmt: skip
+VALUES = np.concatenate(
+    [
+        [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            np.nan,
+            np.inf,
+            -np.inf,
+            0.1,
+            1e15,
+            1e16,
+            123456789012345678.0,
+            1e-5,
+            1e-4,
+            5e-324,
+            1.8e308,
+        ],
+        np.random.default_rng(1).standard_normal(3000) * 10.0 ** np.random.default_rng(2).integers(-30, 30, 3000),
+        np.repeat([1.5, 0.0, -2.25e-9], 2000),
+        np.round(np.random.default_rng(3).standard_normal(500), 3),
+    ]
+)
 
 
 def test_a_table_is_written_as_a_csv_writer_writes_it():
@@ -324,8 +343,10 @@ def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):
     )
     done = subprocess.run(
         [sys.executable, "-c", code, "run", str(tmp_path / "long.yaml"), "--no-drawings", "-o", str(tmp_path / "out")],
-        capture_output=True, text=True, cwd=ROOT,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
     assert float(done.stderr.strip().splitlines()[-1]) < 90
     with (tmp_path / "out" / "long" / "cycle.csv").open(encoding="utf-8") as stream:
         assert sum(1 for _ in stream) == 3_001

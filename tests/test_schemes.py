@@ -54,8 +54,14 @@ def test_chains_are_as_many_as_in_the_literature(mobility, counts):
 def test_chains_of_ten_links_by_assortment():
     assert Counter(chain.assortment for chain in chains(8)) == {(4, 4): 9, (5, 2, 1): 5, (6, 0, 2): 2}
     assert Counter(chain.assortment for chain in chains(10)) == {
-        (4, 6): 50, (5, 4, 1): 95, (6, 2, 2): 57, (7, 0, 3): 3, (6, 3, 0, 1): 15, (7, 1, 1, 1): 8, (8, 0, 0, 2): 2,
-    }  # fmt: skip
+        (4, 6): 50,
+        (5, 4, 1): 95,
+        (6, 2, 2): 57,
+        (7, 0, 3): 3,
+        (6, 3, 0, 1): 15,
+        (7, 1, 1, 1): 8,
+        (8, 0, 0, 2): 2,
+    }
 
 
 def test_a_chain_with_one_freedom_does_not_fall_apart_and_others_may():
@@ -79,8 +85,9 @@ def sound(links, pairs, mobility):
         reached |= {b for pair in pairs for a, b in (pair, pair[::-1]) if a in reached}
     return len(reached) == links and all(
         3 * (size - 1) - 2 * sum(i in part and j in part for i, j in pairs) >= 1
-        for size in range(2, links + 1) for part in map(set, combinations(range(links), size))
-    )  # fmt: skip
+        for size in range(2, links + 1)
+        for part in map(set, combinations(range(links), size))
+    )
 
 
 @pytest.mark.parametrize("links, mobility", [(4, 1), (5, 2), (6, 1), (6, 3)])
@@ -119,8 +126,14 @@ def test_the_canonical_form_tells_colours_and_kinds_apart_and_the_petersen_graph
 
 def test_schemes_with_three_moving_links_are_the_four_link_mechanisms():
     assert [scheme.name for scheme in schemes(3)] == [
-        "II-RRR", "II-RRP", "II-RRP", "II-RPR", "II-PRP", "II-RPP", "II-RPP",
-    ]  # fmt: skip
+        "II-RRR",
+        "II-RRP",
+        "II-RRP",
+        "II-RPR",
+        "II-PRP",
+        "II-RPP",
+        "II-RPP",
+    ]
     four_bar, crank_slider, *_ = schemes(3)
     assert four_bar.joints == ((0, 1, "R"), (1, 2, "R"), (0, 3, "R"), (2, 3, "R"))
     assert crank_slider.joints == ((0, 1, "R"), (1, 2, "R"), (0, 3, "P"), (2, 3, "R"))
@@ -134,8 +147,10 @@ def same(one, other):
     fixed, free = range(1, one.cranks + 1), range(one.cranks + 1, one.links + 1)
     return any(
         {(frozenset((order[i], order[j])), kind) for i, j, kind in other.joints} == pairs
-        for cranks in permutations(fixed) for rest in permutations(free) for order in [(0, *cranks, *rest)]
-    )  # fmt: skip
+        for cranks in permutations(fixed)
+        for rest in permutations(free)
+        for order in [(0, *cranks, *rest)]
+    )
 
 
 @pytest.mark.parametrize(
@@ -191,9 +206,13 @@ def test_schemes_of_seven_links_in_the_usual_groups_are_not_too_many():
 
 @pytest.mark.parametrize(
     "links, groups, some",
-    [(3, "II", slice(None)), (5, "RRR,RRP", slice(0, None, 13)), (5, "II", slice(3, None, 80)),
-     (7, "RRR,RRP", slice(0, None, 900))],
-)  # fmt: skip
+    [
+        (3, "II", slice(None)),
+        (5, "RRR,RRP", slice(0, None, 13)),
+        (5, "II", slice(3, None, 80)),
+        (7, "RRR,RRP", slice(0, None, 900)),
+    ],
+)
 def test_the_problem_of_a_class_ii_scheme_is_that_scheme_and_runs(links, groups, some):
     for scheme in schemes(links, 1, named_types(groups))[some]:
         is_that_scheme_and_runs(scheme)

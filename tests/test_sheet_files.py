@@ -81,9 +81,12 @@ def test_a_named_segment_measures_what_its_scale_says(name, kind, places_of):
 
 
 HOSTILE = {
-    "student": "%%c \\P {\\fArial;x} $\\frac{1}{0}$ <b>", "group": "x" * 200, "teacher": "שלום עربي", "code": 17,
+    "student": "%%c \\P {\\fArial;x} $\\frac{1}{0}$ <b>",
+    "group": "x" * 200,
+    "teacher": "שלום עربي",
+    "code": 17,
     "department": "Кафедра теории механизмов и машин \U0001f600 " * 3,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("block", ["gost", "plain"])

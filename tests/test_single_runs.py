@@ -63,11 +63,16 @@ def test_a_motor_too_strong_brings_its_machine_to_its_speed_without_load(times):
     assert found.time[-1] == pytest.approx(TURN / 12.0, rel=1 / times)
 
 
-@pytest.mark.parametrize("task", [
-    RunTask(motor=Linear(500.0, 12.0)), RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
-    RunTask(speed=10.0, brake=200.0), RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
-    RunTask(drive=Profile("time", (0.0, 0.4, 0.41, 9.0), (250.0, 250.0, 20.0, 20.0))),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "task",
+    [
+        RunTask(motor=Linear(500.0, 12.0)),
+        RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
+        RunTask(speed=10.0, brake=200.0),
+        RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
+        RunTask(drive=Profile("time", (0.0, 0.4, 0.41, 9.0), (250.0, 250.0, 20.0, 20.0))),
+    ],
+)
 def test_works_are_the_change_of_kinetic_energy(task):
     found = run(machine(load=-80.0, ripple=0.6), task)
     assert found.balance < 1e-10
@@ -215,14 +220,21 @@ def test_a_run_against_the_driver_s_sense_is_warned_of():
     [
         ("[[0, 2 MPa], [340, 4.5 MPa]]", []),
         ("[[0, 2 MPa], [500, 4.5 MPa]]", []),
-        ("[[40, 2 MPa], [340, 4.5 MPa]]",
-         ["the table of the drive begins at 40 mm: its first value is held before; write a row at 0"]),
-        ("[[0, 2 MPa], [300, 4.5 MPa]]",
-         ["the table of the drive ends at 300 mm: its last value is held to 340 mm, the end of the run; write a row "
-          "there"]),
+        (
+            "[[40, 2 MPa], [340, 4.5 MPa]]",
+            ["the table of the drive begins at 40 mm: its first value is held before; write a row at 0"],
+        ),
+        (
+            "[[0, 2 MPa], [300, 4.5 MPa]]",
+            [
+                "the table of the drive ends at 300 mm: its last value is held to 340 mm, the end of the run; "
+                "write a row "
+                "there"
+            ],
+        ),
         ("[[40, 0 MPa], [200, 2 MPa], [300, 0 MPa]]", []),  # nothing drives before and after
     ],
-)  # fmt: skip
+)
 def test_a_drive_whose_table_is_too_short_for_the_run_is_warned_of(table, told):
     results = lowered(f"from: 980, to: 640, drive: {{against: way, area: 1963, table: {table}}}")
     assert of_the_run(results) == told

@@ -44,27 +44,42 @@ def told(old: str, new: str) -> str:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [  # here А, В, С, Е and О are Cyrillic
-        ("1: {name: crank, points: [O, A]", "1: {name: crank, points: [O, А]",
-         f"x.yaml:20:32: links.1.points[1]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?"),
-        ("points: [A], slides", "points: [А], slides",
-         f"x.yaml:21:29: links.2.points[0]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?"),
-        ("points: [E], slides", "points: [Е], slides",
-         f"x.yaml:24:27: links.5.points[0]: {TWINS}\n  found:   'Е'\n  did you mean 'E' in Latin letters?"),
-        ("along: CD", "along: СD",
-         "x.yaml:21:56: links.2.slides.along: two points of one link are wanted\n  found:   'СD'"
-         "\n  allowed: two of C, D\n  did you mean 'CD' in Latin letters?"),
+        (
+            "1: {name: crank, points: [O, A]",
+            "1: {name: crank, points: [O, А]",
+            f"x.yaml:20:32: links.1.points[1]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?",
+        ),
+        (
+            "points: [A], slides",
+            "points: [А], slides",
+            f"x.yaml:21:29: links.2.points[0]: {TWINS}\n  found:   'А'\n  did you mean 'A' in Latin letters?",
+        ),
+        (
+            "points: [E], slides",
+            "points: [Е], slides",
+            f"x.yaml:24:27: links.5.points[0]: {TWINS}\n  found:   'Е'\n  did you mean 'E' in Latin letters?",
+        ),
+        (
+            "along: CD",
+            "along: СD",
+            "x.yaml:21:56: links.2.slides.along: two points of one link are wanted\n  found:   'СD'"
+            "\n  allowed: two of C, D\n  did you mean 'CD' in Latin letters?",
+        ),
     ],
-)  # fmt: skip
+)
 def test_cyrillic_letters_in_the_names_of_points(old: str, new: str, message: str) -> None:
     assert refusal(changed(old, new)) == message
 
 
 @pytest.mark.parametrize(
     ("key", "word", "place", "allowed"),
-    [("links", "звенья", "3:1: звенья", TOP), ("links", "članovi", "3:1: članovi", TOP),
-     ("driver", "Привод", "7:1: Привод", TOP),
-     ("length", "длина", "4:23: links.1.длина", "name, points, length, also, slides")],
-)  # fmt: skip
+    [
+        ("links", "звенья", "3:1: звенья", TOP),
+        ("links", "članovi", "3:1: članovi", TOP),
+        ("driver", "Привод", "7:1: Привод", TOP),
+        ("length", "длина", "4:23: links.1.длина", "name, points, length, also, slides"),
+    ],
+)
 def test_keys_in_another_language(key: str, word: str, place: str, allowed: str) -> None:
     message = f"x.yaml:{place}: unknown key\n  found:   '{word}'\n  allowed: {allowed}\n  did you mean '{key}'?"
     assert told(key, word) == message
@@ -74,26 +89,53 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
     ("old", "new", "message"),
     [
         ("tmm: 1\n", "", "x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of this format; write tmm: 1"),
-        ("1 rad/s", "70 об.мин", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об.мин'"
-         "\n  allowed: об/мин"),
-        ("1 rad/s", "70 об./мин.", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об./мин.'"
-         "\n  allowed: об/мин"),
-        ("1 rad/s", "70 r.p.m.", "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'r.p.m.'"
-         "\n  allowed: rpm"),
-        ("at: 60", "at: pi/3 rad", "x.yaml:8:14: sketch.at: an angle is wanted here"
-         "\n  found:   'pi/3 rad', a number (1.0472)"
-         "\n  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is in radians already"),
-        ("length: 100", "length: (40 + 60) mm",
-         "x.yaml:4:31: links.1.length: a unit follows a number only: here write * 1 mm"
-         "\n  found:   '(40 + 60) mm', at 'mm'" + ARITHMETIC),
-        ("at: 60", "at: atan2(1, 2)", "x.yaml:8:14: sketch.at: a comma in brackets needs quotes here"
-         "\n  found:   'atan2(1, 2)'\n  allowed: \"atan2(1, 2)\""),
-        ("[300, 0]", "(300, 0)", "x.yaml:2:24: points.D: two coordinates [x, y] are wanted"
-         "\n  found:   '(300, 0)'\n  allowed: [300, 0]"),
-        ("[300, 0]", "[hypot(300, 0), 0]", "x.yaml:2:25: points.D[0]: a comma in brackets needs quotes here"
-         "\n  found:   'hypot(300, 0)'\n  allowed: \"hypot(300, 0)\""),
+        (
+            "1 rad/s",
+            "70 об.мин",
+            "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об.мин'\n  allowed: об/мин",
+        ),
+        (
+            "1 rad/s",
+            "70 об./мин.",
+            "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'об./мин.'\n  allowed: об/мин",
+        ),
+        (
+            "1 rad/s",
+            "70 r.p.m.",
+            "x.yaml:7:26: driver.speed: a unit is written without dots\n  found:   'r.p.m.'\n  allowed: rpm",
+        ),
+        (
+            "at: 60",
+            "at: pi/3 rad",
+            "x.yaml:8:14: sketch.at: an angle is wanted here"
+            "\n  found:   'pi/3 rad', a number (1.0472)"
+            "\n  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is in radians already",
+        ),
+        (
+            "length: 100",
+            "length: (40 + 60) mm",
+            "x.yaml:4:31: links.1.length: a unit follows a number only: here write * 1 mm"
+            "\n  found:   '(40 + 60) mm', at 'mm'" + ARITHMETIC,
+        ),
+        (
+            "at: 60",
+            "at: atan2(1, 2)",
+            "x.yaml:8:14: sketch.at: a comma in brackets needs quotes here"
+            "\n  found:   'atan2(1, 2)'\n  allowed: \"atan2(1, 2)\"",
+        ),
+        (
+            "[300, 0]",
+            "(300, 0)",
+            "x.yaml:2:24: points.D: two coordinates [x, y] are wanted\n  found:   '(300, 0)'\n  allowed: [300, 0]",
+        ),
+        (
+            "[300, 0]",
+            "[hypot(300, 0), 0]",
+            "x.yaml:2:25: points.D[0]: a comma in brackets needs quotes here"
+            "\n  found:   'hypot(300, 0)'\n  allowed: \"hypot(300, 0)\"",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_to_write_instead(old: str, new: str, message: str) -> None:
     assert told(old, new) == message
 
@@ -111,8 +153,9 @@ def test_a_bare_per_cent_is_no_allowed_difference(lever: str, found: str, allowe
 
 def test_brackets_on_both_sides_of_a_comma_are_two_values() -> None:
     assert read_text("a: [2*cos(30), f(1)]\nb: {c: (1), d: (2)}", "f").data == {
-        "a": ["2*cos(30)", "f(1)"], "b": {"c": "(1)", "d": "(2)"},
-    }  # fmt: skip
+        "a": ["2*cos(30)", "f(1)"],
+        "b": {"c": "(1)", "d": "(2)"},
+    }
 
 
 @pytest.mark.parametrize("item", ["1", "(1"])
@@ -152,14 +195,18 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
 @pytest.mark.parametrize(
     ("task", "message"),
     [
-        ("{task: crank-slider, stroke: 120, k: 0.11, pressure: 400}",
-         "x.yaml:2:49: synthesis.k: k is the time of the working stroke over that of the idle one, the shorter"
-         "\n  found:   0.11\n  allowed: another task: no other value of it was found to help"),
-        ("{task: four-bar-by-k, l3: 120, k: 1.1, psi1: 1e-14, psi2: 0}",
-         "x.yaml:2:70: synthesis.psi2: a rocker swings by more than zero and less than 180 deg"
-         "\n  found:   0\n  allowed: the nearest is psi2: 5.72987e-05 deg"),
+        (
+            "{task: crank-slider, stroke: 120, k: 0.11, pressure: 400}",
+            "x.yaml:2:49: synthesis.k: k is the time of the working stroke over that of the idle one, the shorter"
+            "\n  found:   0.11\n  allowed: another task: no other value of it was found to help",
+        ),
+        (
+            "{task: four-bar-by-k, l3: 120, k: 1.1, psi1: 1e-14, psi2: 0}",
+            "x.yaml:2:70: synthesis.psi2: a rocker swings by more than zero and less than 180 deg"
+            "\n  found:   0\n  allowed: the nearest is psi2: 5.72987e-05 deg",
+        ),
     ],
-)  # fmt: skip
+)
 def test_tasks_that_no_mechanism_meets_end_at_once(task: str, message: str) -> None:
     with pytest.raises(ProblemError) as caught:
         alone(read_text(f"tmm: 1\nsynthesis: {task}\n", "x.yaml"))
@@ -173,10 +220,17 @@ def test_the_group_that_was_sketched_wrong_is_blamed_and_not_a_later_one() -> No
     )
 
 
-@pytest.mark.parametrize("call", [
-    "sin(1e200*1e200)", "cos(1e200*1e200)", "tan(1e200*1e200)", "(1 mm)^(1e200*1e200 - 1e200*1e200)",
-    "min(1, 1e200*1e200)", "1/(1e200*1e200)",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "call",
+    [
+        "sin(1e200*1e200)",
+        "cos(1e200*1e200)",
+        "tan(1e200*1e200)",
+        "(1 mm)^(1e200*1e200 - 1e200*1e200)",
+        "min(1, 1e200*1e200)",
+        "1/(1e200*1e200)",
+    ],
+)
 def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
     message = f"x.yaml:4:31: links.1.length: this number is too large\n  found:   '{call}'"
     assert told("length: 100", f'length: "{call}"') == message
@@ -185,18 +239,37 @@ def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("length: 100", "length: 1e306 km",
-         "x.yaml:4:31: links.1.length: this number is too large\n  found:   '1e306 km'"),
-        ("length: 100", "length: 1e200", "x.yaml:4:31: links.1.length: this is too large for a mechanism"
-         "\n  found:   1e200\n  allowed: 1e+15 mm or less"),
-        ("length: 100", "length: 1e-200", "x.yaml:4:31: links.1.length: this is too small for a mechanism"
-         "\n  found:   1e-200\n  allowed: 1e-17 mm or more"),
-        ("1 rad/s", "1e160 rpm", "x.yaml:7:26: driver.speed: this is too large for a mechanism"
-         "\n  found:   '1e160 rpm'\n  allowed: 1e+12 rad/s or less"),
-        ("at: 60", "at: 6e19", "x.yaml:8:14: sketch.at: this is too large for a mechanism"
-         "\n  found:   6e19\n  allowed: 5.72958e+07 deg or less"),
+        (
+            "length: 100",
+            "length: 1e306 km",
+            "x.yaml:4:31: links.1.length: this number is too large\n  found:   '1e306 km'",
+        ),
+        (
+            "length: 100",
+            "length: 1e200",
+            "x.yaml:4:31: links.1.length: this is too large for a mechanism"
+            "\n  found:   1e200\n  allowed: 1e+15 mm or less",
+        ),
+        (
+            "length: 100",
+            "length: 1e-200",
+            "x.yaml:4:31: links.1.length: this is too small for a mechanism"
+            "\n  found:   1e-200\n  allowed: 1e-17 mm or more",
+        ),
+        (
+            "1 rad/s",
+            "1e160 rpm",
+            "x.yaml:7:26: driver.speed: this is too large for a mechanism"
+            "\n  found:   '1e160 rpm'\n  allowed: 1e+12 rad/s or less",
+        ),
+        (
+            "at: 60",
+            "at: 6e19",
+            "x.yaml:8:14: sketch.at: this is too large for a mechanism"
+            "\n  found:   6e19\n  allowed: 5.72958e+07 deg or less",
+        ),
     ],
-)  # fmt: skip
+)
 def test_sizes_that_no_mechanism_has(old: str, new: str, message: str) -> None:
     assert told(old, new) == message
 
@@ -240,7 +313,7 @@ springs: {s: {between: [0, 3], at: [O, {on: DB, at: 0.5}], rate: 100, free: 50}}
         ("{on: BD, at: 0.25}", "50", "10:37: loads.F.at", "BD"),
         ("{on: DB, at: 0.5}", "-40", "11:53: springs.s.at[1]", "DB"),
     ],
-)  # fmt: skip
+)
 def test_a_bare_length_or_per_cent_is_no_share(old: str, number: str, at: str, points: str) -> None:
     place, _, where = at.partition(": ")
     new = old[: old.index("at: ")] + f"at: {number}}}"

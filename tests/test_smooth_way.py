@@ -114,9 +114,10 @@ def chain(number):
         links.append(f"  c{k}: {{points: [A{k - 1}, A{k}], length: 300}}")
         links.append(f"  r{k}: {{points: [O{k}, A{k}], length: 100}}")
     return (
-        f"tmm: 1\npoints: {{{', '.join(points)}}}\nlinks:\n" + "\n".join(links)
+        f"tmm: 1\npoints: {{{', '.join(points)}}}\nlinks:\n"
+        + "\n".join(links)
         + f"\ndriver: {{link: 1, speed: 60 rpm}}\nsketch: {{at: 60 deg, {', '.join(places)}}}\n"
-    )  # fmt: skip
+    )
 
 
 def test_a_chain_of_parallelograms_comes_back_after_one_turn():

@@ -25,14 +25,25 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.synthesis.solving import count
 
-LETTERS = {"R": "turning", "P": "sliding", "H": "screw", "C": "cylindrical", "U": "universal", "S": "spherical",
-           "E": "planar", "L": "cylinder on plane", "B": "sphere on plane"}  # fmt: skip
+LETTERS = {
+    "R": "turning",
+    "P": "sliding",
+    "H": "screw",
+    "C": "cylindrical",
+    "U": "universal",
+    "S": "spherical",
+    "E": "planar",
+    "L": "cylinder on plane",
+    "B": "sphere on plane",
+}
 
 
 def chain(text):
     """A chain from words like "R01 S12": kind and both links."""
-    pairs = [SpatialPair(f"{word}{k}", word[1], word[2], KINDS[LETTERS[word[0]]], LETTERS[word[0]])
-             for k, word in enumerate(text.split())]  # fmt: skip
+    pairs = [
+        SpatialPair(f"{word}{k}", word[1], word[2], KINDS[LETTERS[word[0]]], LETTERS[word[0]])
+        for k, word in enumerate(text.split())
+    ]
     links = dict.fromkeys(link for p in pairs for link in (p.i, p.j) if link != FRAME)
     return SpatialChain(tuple(links), tuple(pairs))
 
@@ -83,8 +94,10 @@ def stewart(leg):
     for k in range(6):
         bodies = [FRAME, *(f"{k}{part}" for part in range(len(leg) - 1)), "p"]
         links += bodies[1:-1]
-        pairs += [SpatialPair(f"{kind}{k}{n}", bodies[n], bodies[n + 1], KINDS[LETTERS[kind]], LETTERS[kind])
-                  for n, kind in enumerate(leg)]  # fmt: skip
+        pairs += [
+            SpatialPair(f"{kind}{k}{n}", bodies[n], bodies[n + 1], KINDS[LETTERS[kind]], LETTERS[kind])
+            for n, kind in enumerate(leg)
+        ]
     return SpatialChain((*links, "p"), tuple(pairs))
 
 
@@ -235,18 +248,22 @@ def screws(pair, kind, poses):
     if pair.slide is None:
         place = spatial(origin + z * pair.local)
         axes = np.eye(3)
-        return np.column_stack({
-            "turning": [turn(place, up)],
-            "cylindrical": [turn(place, up), run(up)],
-            "spherical": [turn(place, axis) for axis in axes],
-        }[kind])  # fmt: skip
+        return np.column_stack(
+            {
+                "turning": [turn(place, up)],
+                "cylindrical": [turn(place, up), run(up)],
+                "spherical": [turn(place, axis) for axis in axes],
+            }[kind]
+        )
     along = spatial(z * np.exp(1j * pair.slide.direction))
     place, across = spatial(origin + z * pair.slide.through), np.cross(up, along)
-    return np.column_stack({
-        "sliding": [run(along)],
-        "cylindrical": [run(along), turn(place, along)],
-        "planar": [run(along), run(up), turn(place, across)],
-    }[kind])  # fmt: skip
+    return np.column_stack(
+        {
+            "sliding": [run(along)],
+            "cylindrical": [run(along), turn(place, along)],
+            "planar": [run(along), run(up), turn(place, across)],
+        }[kind]
+    )
 
 
 class Placed:
@@ -401,9 +418,11 @@ def test_no_proposal_for_one_group_has_fewer_changes_or_fewer_freedoms(kind):
         structure = analyse(linkage)
         if any(p.i == FRAME and p.j in g.links for g in structure.groups for p in g.outer):
             found = space(linkage, structure)
-            score = None if found.replacements is None else (
-                len(found.replacements), sum(r.freedoms for r in found.replacements)
-            )  # fmt: skip
+            score = (
+                None
+                if found.replacements is None
+                else (len(found.replacements), sum(r.freedoms for r in found.replacements))
+            )
             assert score == fewest(linkage, structure)
 
 
@@ -498,8 +517,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             "pairs: {A: {between: [1, 1], kind: turning}}",
-            "x.yaml:4:26: structure.spatial.pairs.A.between: different links are wanted\n"
-            "  found:   1, 1",
+            "x.yaml:4:26: structure.spatial.pairs.A.between: different links are wanted\n  found:   1, 1",
         ),
         (
             "links: [arm, hand]\npairs: {A: {between: [0, arm], kind: screw}, B: {between: [arm, hnad], kind: screw}}",
@@ -520,8 +538,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             "pairs: {A: {between: [0, 1]}}",
-            "x.yaml:4:13: structure.spatial.pairs.A: one of these keys is wanted\n"
-            "  allowed: kind, freedoms",
+            "x.yaml:4:13: structure.spatial.pairs.A: one of these keys is wanted\n  allowed: kind, freedoms",
         ),
         (
             "pairs: {A: {between: [0, 1], kind: turning, freedoms: 1}}",
@@ -555,8 +572,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             f"links: [0, 1]\npairs: {PAIRS}",
-            "x.yaml:4:13: structure.spatial.links[0]: this name is taken\n"
-            "  found:   '0'",
+            "x.yaml:4:13: structure.spatial.links[0]: this name is taken\n  found:   '0'",
         ),
         (
             f"pairs: {PAIRS}\nwnated: 1",
@@ -566,7 +582,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
             "  did you mean 'wanted'?",
         ),
     ],
-)  # fmt: skip
+)
 def test_mistakes_are_told_where_they_are(text, message):
     with pytest.raises(ProblemError) as error:
         spatial(text)

@@ -150,30 +150,45 @@ def test_what_was_understood_of_it_is_told():
 @pytest.mark.parametrize(
     ("driver", "told"),
     [
-        ("speed: {against: crank angle, table: [[0, 4], [180, -8], [360, 4]]}",
-         "x.yaml:9:71: driver.speed.table[1][1]: a speed is counted in the driver's sense, which is one alone\n"
-         "  found:   -8\n  allowed: zero or more; turns: cw for the other sense"),
-        ("speed: {against: crank angle, table: [[0, 4], [180, 8], [360, 5]]}",
-         "x.yaml:9:81: driver.speed.table[2][1]: the table does not close: its cycle ends otherwise than it begins\n"
-         "  found:   5\n  allowed: 4, as in the first row"),
-        ("speed: {against: crank angle, table: [[0, 4], [180, 8], [400, 4]]}",
-         "x.yaml:9:76: driver.speed.table[2][0]: this row is never reached: it is more than a cycle after the first "
-         "one\n"
-         "  found:   400\n  allowed: at most 360 deg; a longer cycle is told by cycle: 2 turns"),
-        ("speed: {against: crank angle, table: [[0, 4], [180, 8], [330, 5]]}",
-         "x.yaml:9:49: driver.speed.table: the table of speeds does not reach over all positions\n"
-         "  found:   the table goes from 0 deg to 330 deg\n"
-         "  allowed: a last row at 360 deg with the speed of the first, or positions: {at: [...]} within it"),
-        ("speed: {against: crank angle, table: [[0, 4], [90, 0.1], [100, 9], [360, 4]]}",
-         "x.yaml:9:58: driver.speed.table[0][0]: between this row and the next the smooth curve of squares of speeds "
-         "goes below zero\n  found:   0\n  allowed: between: linear, or more rows there"),
-        ("speed: {against: crank angle, table: [[0, 4], [360, 4]]}, acceleration: 3",
-         "x.yaml:9:77: driver.acceleration: an acceleration goes with a speed at position 0, a table of them with a "
-         "table of speeds"),
-        ("speed: {against: crank angle, table: [[0, 0], [360, 0]]}",
-         "x.yaml:9:49: driver.speed.table: the driver stands still in all rows"),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [180, -8], [360, 4]]}",
+            "x.yaml:9:71: driver.speed.table[1][1]: a speed is counted in the driver's sense, which is one alone\n"
+            "  found:   -8\n  allowed: zero or more; turns: cw for the other sense",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [180, 8], [360, 5]]}",
+            "x.yaml:9:81: driver.speed.table[2][1]: the table does not close: its cycle ends otherwise than it begins\n"
+            "  found:   5\n  allowed: 4, as in the first row",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [180, 8], [400, 4]]}",
+            "x.yaml:9:76: driver.speed.table[2][0]: this row is never reached: it is more than a cycle after the first "
+            "one\n"
+            "  found:   400\n  allowed: at most 360 deg; a longer cycle is told by cycle: 2 turns",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [180, 8], [330, 5]]}",
+            "x.yaml:9:49: driver.speed.table: the table of speeds does not reach over all positions\n"
+            "  found:   the table goes from 0 deg to 330 deg\n"
+            "  allowed: a last row at 360 deg with the speed of the first, or positions: {at: [...]} within it",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [90, 0.1], [100, 9], [360, 4]]}",
+            "x.yaml:9:58: driver.speed.table[0][0]: between this row and the next the smooth curve of squares "
+            "of speeds "
+            "goes below zero\n  found:   0\n  allowed: between: linear, or more rows there",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, acceleration: 3",
+            "x.yaml:9:77: driver.acceleration: an acceleration goes with a speed at position 0, a table of them with a "
+            "table of speeds",
+        ),
+        (
+            "speed: {against: crank angle, table: [[0, 0], [360, 0]]}",
+            "x.yaml:9:49: driver.speed.table: the driver stands still in all rows",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused_with_its_place(driver, told):
     assert refused(driver) == told
 
@@ -181,14 +196,18 @@ def test_what_cannot_be_is_refused_with_its_place(driver, told):
 @pytest.mark.parametrize(
     ("tail", "told"),
     [
-        ("dynamics: {delta: 1/30}",
-         "x.yaml:9:19: driver.speed: a law of motion is found, or it is given by a table\n"
-         "  allowed: one speed beside dynamics"),
-        ("grading: {answers: [{of: H}]}",
-         "x.yaml:9:19: driver.speed: variants and searches know drivers of one speed and one acceleration only\n"
-         "  allowed: speed: 82 rpm"),
+        (
+            "dynamics: {delta: 1/30}",
+            "x.yaml:9:19: driver.speed: a law of motion is found, or it is given by a table\n"
+            "  allowed: one speed beside dynamics",
+        ),
+        (
+            "grading: {answers: [{of: H}]}",
+            "x.yaml:9:19: driver.speed: variants and searches know drivers of one speed and one acceleration only\n"
+            "  allowed: speed: 82 rpm",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_knows_one_speed_only_refuses_a_table(tail, told):
     assert refused("speed: {against: crank angle, table: [[0, 4], [180, 6], [360, 4]]}", tail) == told
 

@@ -63,8 +63,11 @@ def test_a_console_that_lacks_characters_shows_question_marks(encoding, command,
     file.write_text(text.replace("title: ", "title: ω̇ 摇 Кулиса ", 1), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-m", "tmm_cli", command, str(file)],
-        capture_output=True, env={**ENVIRONMENT, "PYTHONIOENCODING": encoding}, cwd=tmp_path, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        env={**ENVIRONMENT, "PYTHONIOENCODING": encoding},
+        cwd=tmp_path,
+        check=False,
+    )
     assert done.returncode == 0 and b"Traceback" not in done.stderr
     assert "phi" in done.stdout.decode(encoding) or "crank" in done.stdout.decode(encoding)
     assert encoding == "ascii" or command == "forces" or "Кулиса" in done.stdout.decode(encoding)
@@ -77,8 +80,11 @@ def test_a_file_whose_name_is_not_utf_8_is_worked_on_like_any(tmp_path):
     for command in (["run", "--no-drawings", "-o", str(tmp_path)], ["check"]):
         done = subprocess.run(
             [sys.executable, "-m", "tmm_cli", command[0], name, *command[1:]],
-            capture_output=True, env=ENVIRONMENT, cwd=ROOT, check=False,
-        )  # fmt: skip
+            capture_output=True,
+            env=ENVIRONMENT,
+            cwd=ROOT,
+            check=False,
+        )
         assert b"Traceback" not in done.stderr, done.stderr
         assert done.returncode == (1 if command == ["check"] else 0)
 
@@ -129,11 +135,22 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
 @pytest.mark.parametrize(
     ("word", "cell"),
     [
-        ("a;b", '"a;b"'), ("a;=cmd()", "\"a;'=cmd()\""), ("a\t@sum", "\"a\t'@sum\""), ("a, +b", "\"a,' +b\""),
-        ("x|-y()", "\"x|'-y()\""), ("=1", "'=1"), (" =1", "' =1"), ("1; -2,5", '"1; -2,5"'), ("-1.5e-3", "-1.5e-3"),
-        ("nan", '"nan"'), ("Inf", '"Inf"'), ("link 2", "link 2"), ('a"b', '"a""b"'), ("\tx", "\"'\tx\""),
+        ("a;b", '"a;b"'),
+        ("a;=cmd()", '"a;\'=cmd()"'),
+        ("a\t@sum", '"a\t\'@sum"'),
+        ("a, +b", '"a,\' +b"'),
+        ("x|-y()", '"x|\'-y()"'),
+        ("=1", "'=1"),
+        (" =1", "' =1"),
+        ("1; -2,5", '"1; -2,5"'),
+        ("-1.5e-3", "-1.5e-3"),
+        ("nan", '"nan"'),
+        ("Inf", '"Inf"'),
+        ("link 2", "link 2"),
+        ('a"b', '"a""b"'),
+        ("\tx", '"\'\tx"'),
     ],
-)  # fmt: skip
+)
 def test_no_cell_breaks_or_runs_in_any_locale(word, cell):
     table = table_of_words("t", "", ("header",), [(word,)])
     assert "".join(csv_text(table, UnitSystem())) == f"header\n{cell}\n"
@@ -147,9 +164,10 @@ def test_names_of_links_reach_the_table_defused(tmp_path):
     assert tmm("structure", tmp_path / "x.yaml", "-o", tmp_path).returncode == 0
     lines = (tmp_path / "x" / "links.csv").read_text(encoding="utf-8").splitlines()
     assert lines[1:] == [
-        '1,crank,"\'=cmd|calc","O, A",turns about O', '2,stone,"nan",A,translation',
+        '1,crank,"\'=cmd|calc","O, A",turns about O',
+        '2,stone,"nan",A,translation',
         '3,slider,"a;\'-b",E,slides along guide x',
-    ]  # fmt: skip
+    ]
 
 
 def test_what_is_no_number_has_an_empty_cell():
@@ -171,9 +189,21 @@ def test_characters_that_the_font_lacks_are_one_note(tmp_path):
 
 SHAPER_FILE = ROOT / "problems" / "shaper.yaml"
 NAMED = [
-    "run", "structure", "kinematics", "forces", "dynamics", "explain", "check", "note", "sheets", "animate", "gallery",
-    "synthesis", "import", "export",
-]  # fmt: skip
+    "run",
+    "structure",
+    "kinematics",
+    "forces",
+    "dynamics",
+    "explain",
+    "check",
+    "note",
+    "sheets",
+    "animate",
+    "gallery",
+    "synthesis",
+    "import",
+    "export",
+]
 
 
 @pytest.mark.parametrize("command", NAMED)
@@ -197,12 +227,24 @@ def test_a_line_break_in_a_name_makes_no_line_of_its_own(tmp_path):
 
 
 WITH_PLACES = [
-    ("run", "f"), ("structure", "f"), ("kinematics", "f"), ("forces", "f"), ("dynamics", "f"), ("note", "f"),
-    ("sheets", "f"), ("animate", "f"), ("gallery", "f"), ("synthesis", "f"), ("import", "f"),
-    ("export", "f", "--to", "pylinkage"), ("new", "shaper"), ("sweep", "f", "--over", "r=20..80:4"),
-    ("schemes", "--links", "4"), ("grade", "f", "--variants", "v", "--submissions", "s"),
+    ("run", "f"),
+    ("structure", "f"),
+    ("kinematics", "f"),
+    ("forces", "f"),
+    ("dynamics", "f"),
+    ("note", "f"),
+    ("sheets", "f"),
+    ("animate", "f"),
+    ("gallery", "f"),
+    ("synthesis", "f"),
+    ("import", "f"),
+    ("export", "f", "--to", "pylinkage"),
+    ("new", "shaper"),
+    ("sweep", "f", "--over", "r=20..80:4"),
+    ("schemes", "--links", "4"),
+    ("grade", "f", "--variants", "v", "--submissions", "s"),
     ("variants", "f", "--count", "3"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("words", WITH_PLACES, ids=lambda words: words[0])
@@ -266,7 +308,9 @@ def test_want_of_memory_is_one_line(monkeypatch):
 
 def test_a_wrong_backend_of_matplotlib_does_not_matter(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "tmm_cli", "run", str(SINE), "-o", str(tmp_path)], capture_output=True, encoding="utf-8",
+        [sys.executable, "-m", "tmm_cli", "run", str(SINE), "-o", str(tmp_path)],
+        capture_output=True,
+        encoding="utf-8",
         env={**os.environ, "PYTHONPATH": str(ROOT), "MPLBACKEND": "nonsense"},
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr

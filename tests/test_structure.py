@@ -44,7 +44,7 @@ SIX = "I(0,1) -> II(2,3) -> II(4,5)"
         ("tangent", "I(0,1) -> II(2,3)", ["PRP"], ["slotted link", "stone", "slider"]),
         ("cylinder", "I(0,1) -> II(2,3)", ["RRR"], ["slider", "coupler", "rocker"]),
     ],
-)  # fmt: skip
+)
 def test_formula_of_structure_types_and_names(name, formula, types, roles):
     results = moved(name)
     assert results.structure.formula == formula
@@ -64,19 +64,23 @@ def test_a_compound_hinge_of_three_links_is_two_pairs():
 def test_groups_do_not_depend_on_the_order_in_which_links_are_written(order):
     """Hinge B joins 2, 3 and 4, whichever is written first."""
     links = {
-        "2": {"points": ["A", "B"], "length": 0.35}, "3": {"points": ["D", "B"], "length": 0.25},
-        "4": {"points": ["B", "F"], "length": 0.45}, "5": {"points": ["F"], "slides": {"on": "x"}},
+        "2": {"points": ["A", "B"], "length": 0.35},
+        "3": {"points": ["D", "B"], "length": 0.25},
+        "4": {"points": ["B", "F"], "length": 0.45},
+        "5": {"points": ["F"], "slides": {"on": "x"}},
         "6": {"points": ["B"], "slides": {"on": "4", "through": "F", "angle": 0}},
-    }  # fmt: skip
+    }
     links["6"] = {"points": ["B", "H"], "length": 0.3}
     links["7"] = {"points": ["H"], "slides": {"on": "y"}}
     problem = {
-        "tmm": 1, "units": SI, "points": {"O": [0, 0], "D": [0.4, 0]},
+        "tmm": 1,
+        "units": SI,
+        "points": {"O": [0, 0], "D": [0.4, 0]},
         "guides": {"x": {"through": [0, 0.2], "angle": 0}, "y": {"through": [0.5, 0], "angle": 1.57}},
         "links": {"1": {"points": ["O", "A"], "length": 0.1}, **{n: links[n] for n in (*order, "7")}},
         "driver": {"link": "1", "speed": 1},
         "sketch": {"at": 0.3, "B": [0.37, 0.25], "F": [0.81, 0.2], "H": [0.5, 0.52]},
-    }  # fmt: skip
+    }
     structure = results_of(problem, "structure").structure
     assert sorted(sorted(g.links) for g in structure.groups) == [["2", "3"], ["4", "5"], ["6", "7"]]
     assert len([p for p in structure.pairs if p.point == "B"]) == 3
@@ -176,13 +180,17 @@ def test_a_driven_slider_is_balanced_along_its_guide():
 def test_a_gap_narrower_than_any_sampling_still_stops_the_crank(short):
     """Nearly a parallelogram: the crank is blocked where A and D are nearer than links 2 and 3 can fold."""
     problem = {
-        "tmm": 1, "units": {"length": "mm", "angle": "deg"}, "points": {"O": [0, 0], "D": [300, 0]},
+        "tmm": 1,
+        "units": {"length": "mm", "angle": "deg"},
+        "points": {"O": [0, 0], "D": [300, 0]},
         "links": {
-            "1": {"points": ["O", "A"], "length": 100}, "2": {"points": ["A", "B"], "length": 300},
+            "1": {"points": ["O", "A"], "length": 100},
+            "2": {"points": ["A", "B"], "length": 300},
             "3": {"points": ["D", "B"], "length": 100 - short},
         },
-        "driver": {"link": "1", "speed": 1}, "sketch": {"at": 60, "B": [350, 86]},
-    }  # fmt: skip
+        "driver": {"link": "1", "speed": 1},
+        "sketch": {"at": 60, "B": [350, 86]},
+    }
     way = results_of(problem, "kinematics").driver_range
     blocked = math.acos((100**2 + 300**2 - (200 + short) ** 2) / (2 * 100 * 300))
     assert not way.full
@@ -244,7 +252,7 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
         ("clamp", 10, 0, 1, [(1, "ВВВ"), (2, "ВВП"), (2, "ВВП")], ("complex", "combined"), "tprptpt"),
         ("parallel-couplers", 6, 0, 0, [(1, "ВВВ")], ("simple",), "rprp"),
     ],
-)  # fmt: skip
+)
 def test_pairs_groups_and_motions_are_those_counted_by_hand(name, p5, p4, w, types, kind, motions):
     results = solve(problem(name), "structure")
     structure, n = results.structure, len(results.structure.links)
@@ -260,8 +268,10 @@ def test_pairs_groups_and_motions_are_those_counted_by_hand(name, p5, p4, w, typ
 def test_a_planar_pair_has_its_freedoms_class_and_code():
     pairs = {pair.name: pair for pair in moved("cam-lever").structure.pairs}
     assert [(pairs[n].freedoms, pairs[n].pair_class, pairs[n].code) for n in ("O", "x", "cam")] == [
-        (1, 5, "1в"), (1, 5, "1п"), (2, 4, ""),
-    ]  # fmt: skip
+        (1, 5, "1в"),
+        (1, 5, "1п"),
+        (2, 4, ""),
+    ]
 
 
 def test_formulas_of_mobility_have_their_numbers():
@@ -274,11 +284,20 @@ def test_formulas_of_mobility_have_their_numbers():
 @pytest.mark.parametrize(
     "kinds, scheme",
     [
-        ("RRRR", "hinged four-bar"), ("RRRP", "crank-slider"), ("PRRR", "crank-slider"), ("RRPR", "slotted-lever"),
-        ("RPRR", "slotted-lever"), ("RRPP", "sine"), ("PPRR", "sine"), ("RPRP", "tangent"), ("PRPR", "tangent"),
-        ("RPPR", "double slotted-link"), ("PRRP", "double-slider"), ("RPPP", None),
+        ("RRRR", "hinged four-bar"),
+        ("RRRP", "crank-slider"),
+        ("PRRR", "crank-slider"),
+        ("RRPR", "slotted-lever"),
+        ("RPRR", "slotted-lever"),
+        ("RRPP", "sine"),
+        ("PPRR", "sine"),
+        ("RPRP", "tangent"),
+        ("PRPR", "tangent"),
+        ("RPPR", "double slotted-link"),
+        ("PRRP", "double-slider"),
+        ("RPPP", None),
     ],
-)  # fmt: skip
+)
 def test_a_contour_of_four_links_has_the_name_of_the_textbooks(kinds, scheme):
     assert four_link_scheme(kinds) == scheme
 
@@ -294,7 +313,7 @@ def test_a_contour_of_four_links_has_the_name_of_the_textbooks(kinds, scheme):
         ("engine-four", {f"0-1-{k}-{k + 1}-0": "crank-slider" for k in (2, 4, 6, 8)}, ()),
         ("five-bar", {}, ()),
     ],
-)  # fmt: skip
+)
 def test_basic_schemes_of_the_bank(name, contours_of_four, six_bar):
     structure = solve(problem(name), "structure").structure
     assert basic_schemes(structure) == contours_of_four
@@ -375,18 +394,33 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
     "name, sentences",
     [
         # K = p - n: 7 - 5; all pairs are lower
-        ("shaper", ("Chain, and kind of structure: closed, complex: the driver and several groups, of several types.",
-                    "Independent contours K = p − n: 2.")),
+        (
+            "shaper",
+            (
+                "Chain, and kind of structure: closed, complex: the driver and several groups, of several types.",
+                "Independent contours K = p − n: 2.",
+            ),
+        ),
         # p = 6 hinges on n = 4 links; the contour through the second coupler repeats the first
         ("parallel-couplers", ("Independent contours K = p − n: 2, of which dependent: 1.",)),
         # five hinges on four links, 3*4 - 2*5 = 2
-        ("five-bar", ("Primary mechanisms: I(0,1), I(0,4); together W = 2.",
-                      "Chain, and kind of structure: closed, simple: the driver and one group.")),
+        (
+            "five-bar",
+            (
+                "Primary mechanisms: I(0,1), I(0,4); together W = 2.",
+                "Chain, and kind of structure: closed, simple: the driver and one group.",
+            ),
+        ),
         # p = 5 + 1 on n = 4 links
-        ("cam-lever", ("Independent contours K = p − n: 2.",
-                       "With each higher pair replaced by a link with two turning pairs: W = 3·5 − 2·7 = 1.")),
+        (
+            "cam-lever",
+            (
+                "Independent contours K = p − n: 2.",
+                "With each higher pair replaced by a link with two turning pairs: W = 3·5 − 2·7 = 1.",
+            ),
+        ),
     ],
-)  # fmt: skip
+)
 def test_explain_and_the_note_have_the_words_of_the_structure(name, sentences, tmp_path):
     explained = re.sub(r"\s+", " ", tmm("explain", f"problems/{name}.yaml").stdout)
     done = tmm("note", f"problems/{name}.yaml", "-o", str(tmp_path))

@@ -164,20 +164,23 @@ HEAD = "quantity,position,value\n"
         (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first counts"),
         (HEAD + "H,,nan\n", "H: not a finite number; found: 'nan'"),
         (HEAD + "H,,(1; 2)\n", "H: one number is wanted here; found: '(1; 2)'"),
-        (HEAD + "M_b,7,3 foo\n",
-         "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
-        (HEAD + "H,,1,5\n",
-         "a row with more cells than the header is not counted: has it a decimal comma without quotes?"),
+        (HEAD + "M_b,7,3 foo\n", "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
+        (
+            HEAD + "H,,1,5\n",
+            "a row with more cells than the header is not counted: has it a decimal comma without quotes?",
+        ),
         ('"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n', "R_34 at 7: the components have two units; found: 'N', 'kN'"),
         ("R_34 x at 7\n5\n", "R_34 at 7: one component is missing; found: x; allowed: x, y"),
         ("R_34 angle at 7\n5\n", "R_34 at 7: the size is missing; found: angle; allowed: size, angle"),
         # minutes, were there several ways of dividing the blanks between the commas
-        (HEAD + f'"H{", " * 28}[",,1\n',
-         f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s"),
+        (
+            HEAD + f'"H{", " * 28}[",,1\n',
+            f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
+        ),
         ("student,quantity,value\nIvan,H,3\n", "the file names another student: 'Ivan'"),
         ("student,quantity,value\n../Ivan,H,3\n", "the file names another student: '∕Ivan'"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_counted_is_told_in_a_line(content, told, tmp_path):
     assert of_ana(tmp_path / "in", "Ana.csv", content).problems == (told,)
 
@@ -201,20 +204,34 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "content", "told"),
     [
-        ("Ana.yaml", "a: &x [1]\nb: *x\n", "Ana.yaml:1:4: a: aliases are not part of a problem file; allowed: the "
-         "value written out, or a parameter; text that starts with * or & in quotes"),
+        (
+            "Ana.yaml",
+            "a: &x [1]\nb: *x\n",
+            "Ana.yaml:1:4: a: aliases are not part of a problem file; allowed: the "
+            "value written out, or a parameter; text that starts with * or & in quotes",
+        ),
         ("Ana.yaml", "a: " + "[" * 500, "Ana.yaml:1:23: a[0][0]: nested too deeply; allowed: at most 20 levels"),
-        ("Ana.yaml", "a: !!python/object/apply:os.system [ls]", "Ana.yaml:1:4: a: tags are not part of a problem file; "
-         "found: 'tag:yaml.org,2002:python/object/apply:os.system'; allowed: plain values"),
+        (
+            "Ana.yaml",
+            "a: !!python/object/apply:os.system [ls]",
+            "Ana.yaml:1:4: a: tags are not part of a problem file; "
+            "found: 'tag:yaml.org,2002:python/object/apply:os.system'; allowed: plain values",
+        ),
         ("Ana.yaml", "H: 1\nH: 2\n", "Ana.yaml:2:1: H: duplicate key; found: 'H'; allowed: the first is at line 1"),
         ("Ana.yaml", "- 1\n", "Ana.yaml:1:1: the top level is not a mapping; found: [1]; allowed: lines 'key: value'"),
-        ("Ana.yaml", "answers: [1, 2]\n",
-         "Ana.yaml: this is no answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}"),
+        (
+            "Ana.yaml",
+            "answers: [1, 2]\n",
+            "Ana.yaml: this is no answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
+        ),
         ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is no text; allowed: a table as CSV or XLSX"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
-        ("Ana.csv", "what;where;number\nH;;414\nv of E;7;1,3\n",
-         "Ana.csv: no heading of this table is understood; found: 'what; where; number'; "
-         "allowed: quantity; position; unit; value, or names of answers such as v of E at 7"),
+        (
+            "Ana.csv",
+            "what;where;number\nH;;414\nv of E;7;1,3\n",
+            "Ana.csv: no heading of this table is understood; found: 'what; where; number'; "
+            "allowed: quantity; position; unit; value, or names of answers such as v of E at 7",
+        ),
         ("Ana.csv", "\n".join("1" * 2001), "Ana.csv: there are too many rows; allowed: at most 2000"),
         ("Ana.csv", b"1" * 1_000_001, "Ana.csv: the file is too large; found: 1000001; allowed: at most 1000000"),
         ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001; allowed: at most 1000000"),
@@ -222,7 +239,7 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
         ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),
         ("Ana.pdf", b"%PDF", "Ana.pdf: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),
     ],
-)  # fmt: skip
+)
 def test_a_broken_file_gets_one_line(name, content, told, tmp_path):
     found = of_ana(tmp_path / "in", name, content)
     assert found.problems == (told,)

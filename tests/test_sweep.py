@@ -72,11 +72,13 @@ def test_each_point_is_the_mechanism_of_a_file_with_that_parameter(file, over, s
         results = one_by_one(file, [setting.format(point[0])])
         force = next(r for r in results.reactions.all if {r.by, r.on} == {"3", "4"})
         alone = [
-            measures.stroke(results), measures.ratio(results), measures.pressure(results),
+            measures.stroke(results),
+            measures.ratio(results),
+            measures.pressure(results),
             largest(lambda r: r.reactions.balance.moment, results),
             largest(lambda r, pair=force.pair.name: r.reactions.of(pair).force, results),
             largest(lambda r: r.motion.link("3").omega, results),
-        ]  # fmt: skip
+        ]
         assert values[:3] == pytest.approx(alone[:3], rel=1e-12)
         assert values[3:] == pytest.approx(alone[3:], rel=1e-9)
         assert (state == LIMIT) == any(not one.holds for one in results.pressure)
@@ -205,19 +207,31 @@ def test_an_output_that_turns_back_more_often_is_still_told():
 @pytest.mark.parametrize(
     ("over", "message"),
     [
-        (["OB=1..2"], "--over OB=1..2: there is no parameter of that name\n  found:   'OB'\n"
-                      "  allowed: OA, OC, CD, DE, n1"),
-        (["OA"], "--over OA: a name, two bounds and perhaps a count are wanted\n  found:   'OA'\n"
-                 "  allowed: --over OA=80..120:41"),
-        (["OA=90..80"], "--over OA=90..80: the lower bound comes first\n  found:   'OA=90..80'\n"
-                        "  allowed: --over OA=80..120:41"),
-        (["OA=80..90:1"], "--over OA=80..90:1: the number of values is a whole number\n  found:   '1'\n"
-                          "  allowed: 2 to 1000000"),
-        (["n1=60..80 kg"], "--over n1=60..80 kg: an angular speed is wanted here\n  found:   'n1=60..80 kg'\n"
-                           "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s"),
+        (
+            ["OB=1..2"],
+            "--over OB=1..2: there is no parameter of that name\n  found:   'OB'\n  allowed: OA, OC, CD, DE, n1",
+        ),
+        (
+            ["OA"],
+            "--over OA: a name, two bounds and perhaps a count are wanted\n  found:   'OA'\n"
+            "  allowed: --over OA=80..120:41",
+        ),
+        (
+            ["OA=90..80"],
+            "--over OA=90..80: the lower bound comes first\n  found:   'OA=90..80'\n  allowed: --over OA=80..120:41",
+        ),
+        (
+            ["OA=80..90:1"],
+            "--over OA=80..90:1: the number of values is a whole number\n  found:   '1'\n  allowed: 2 to 1000000",
+        ),
+        (
+            ["n1=60..80 kg"],
+            "--over n1=60..80 kg: an angular speed is wanted here\n  found:   'n1=60..80 kg'\n"
+            "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s",
+        ),
         (["OA=8..9", "OA=80..90"], "--over OA=80..90: this is swept twice\n  found:   'OA'"),
     ],
-)  # fmt: skip
+)
 def test_a_range_that_cannot_be_is_refused(over, message):
     task = Task(read_file(str(PROBLEMS / "shaper.yaml")))
     with pytest.raises(ProblemError) as refused:
@@ -269,8 +283,18 @@ def test_hatching_stays_in_its_region_and_goes_on_from_piece_to_piece():
 
 
 def test_the_command_writes_what_it_shows(tmp_path):
-    done = tmm("sweep", "problems/crank-rocker.yaml", "--over", "l1=100..220:7", "--show", "psi,M_b",
-               "--set", "w1=20 rad/s", "-o", tmp_path)  # fmt: skip
+    done = tmm(
+        "sweep",
+        "problems/crank-rocker.yaml",
+        "--over",
+        "l1=100..220:7",
+        "--show",
+        "psi,M_b",
+        "--set",
+        "w1=20 rad/s",
+        "-o",
+        tmp_path,
+    )
     assert done.returncode == 0, done.stderr
     assert "7 mechanisms, all at once" in done.stderr
     folder = tmp_path / "crank-rocker-sweep"
@@ -294,8 +318,9 @@ def test_the_command_writes_what_it_shows(tmp_path):
 def test_a_sheet_a_quantity_over_two_parameters_and_one_for_all_over_one():
     two = sweep("crank-rocker", ["l1=60..240:7", "l4=300..500:5"], ["psi,k"])
     assert [name for name, __ in sheets("", two, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)] == [
-        "sweep-psi", "sweep-k"
-    ]  # fmt: skip
+        "sweep-psi",
+        "sweep-k",
+    ]
     one = sweep("crank-rocker", ["l1=60..240:7"], ["psi,k"])
     ((name, drawing),) = sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
     assert name == "sweep" and {"works", "does not turn fully"} <= set(drawing.texts())

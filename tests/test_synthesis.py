@@ -28,62 +28,85 @@ def refusal(text):
 
 
 REFUSED = {
-    "{task: crank-slider, stroke: 120, k: 1.5, ratio: 40}":
-        "synthesis.k: the crank does not turn fully: k is too large for this ratio of rod and crank\n"
-        "  found:   1.5",
-    "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}":
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3.5\n",
-    "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}":
-        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n",
-    "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}":
-        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n",
-    "{task: crank-slider, stroke: 120, k: 3, pressure: 80}":
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n",
-    "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}":
-        "synthesis.pressure: a largest pressure angle is less than a right angle\n  found:   95\n",
-    "{task: crank-slider, stroke: 120, nu: 2, ratio: 2.5}":
-        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n",
-    "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}":
-        "synthesis.nu: the offset is a distance; turn the drawing over for the other side\n  found:   -1\n",
-    "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}":
-        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n",
-    "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}":
-        "synthesis.stroke: this is too small for a mechanism\n  found:   0",
-    "{task: crank-slider, stroke: 50, e: 80, k: 1.5}":
-        "synthesis.k: the crank does not turn fully: k is too large for this stroke and offset\n  found:   1.5\n",
-    "{task: crank-slider, stroke: 50, e: 20, k: 1}":
-        "synthesis.k: with an offset k is more than 1\n  found:   1",
-    "{task: crank-slider, stroke: 50, e: 0, k: 1}":
-        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n",
-    "{task: crank-slider, stroke: 20, k: 1.1}":
-        "synthesis: these keys do not determine a mechanism; missing: ratio or pressure or e\n  found:   k\n"
-        "  allowed: ratio and nu; or ratio and e; or ratio and k; or pressure and nu; or pressure and k; or e and k",
-    "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}":
-        "synthesis.strok: unknown key\n  found:   'strok'\n"
-        "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
-    "{task: crank-slidr, stroke: 20}":
-        "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
-    "{task: [a]}": "synthesis.task: ", "{task: {a: b}}": "synthesis.task: ", "{task: 3}": "synthesis.task: ",
+    "{task: crank-slider, stroke: 120, k: 1.5, ratio: 40}": (
+        "synthesis.k: the crank does not turn fully: k is too large for this ratio of rod and crank\n  found:   1.5"
+    ),
+    "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}": (
+        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3.5\n"
+    ),
+    "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}": (
+        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n"
+    ),
+    "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}": (
+        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n"
+    ),
+    "{task: crank-slider, stroke: 120, k: 3, pressure: 80}": (
+        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n"
+    ),
+    "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}": (
+        "synthesis.pressure: a largest pressure angle is less than a right angle\n  found:   95\n"
+    ),
+    "{task: crank-slider, stroke: 120, nu: 2, ratio: 2.5}": (
+        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n"
+    ),
+    "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}": (
+        "synthesis.nu: the offset is a distance; turn the drawing over for the other side\n  found:   -1\n"
+    ),
+    "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}": (
+        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n"
+    ),
+    "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}": (
+        "synthesis.stroke: this is too small for a mechanism\n  found:   0"
+    ),
+    "{task: crank-slider, stroke: 50, e: 80, k: 1.5}": (
+        "synthesis.k: the crank does not turn fully: k is too large for this stroke and offset\n  found:   1.5\n"
+    ),
+    "{task: crank-slider, stroke: 50, e: 20, k: 1}": "synthesis.k: with an offset k is more than 1\n  found:   1",
+    "{task: crank-slider, stroke: 50, e: 0, k: 1}": (
+        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n"
+    ),
+    "{task: crank-slider, stroke: 20, k: 1.1}": (
+        "synthesis: these keys do not determine a mechanism; missing: ratio or pressure or e\n"
+        "  found:   k\n"
+        "  allowed: ratio and nu; or ratio and e; or ratio and k; or pressure and nu; or pressure and k; or e and k"
+    ),
+    "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}": "synthesis.strok: unknown key\n  found:   'strok'\n"
+    "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
+    "{task: crank-slidr, stroke: 20}": "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
+    "{task: [a]}": "synthesis.task: ",
+    "{task: {a: b}}": "synthesis.task: ",
+    "{task: 3}": "synthesis.task: ",
     "{stroke: 20}": "synthesis.task: the key `task` is missing\n",
     "3": "synthesis: keys with values are wanted\n  found:   3\n"
-         "  allowed: a task whose answer becomes parameters: {task: ...}",
-    "{task: crank-slider, stroke: 20 kg, k: 1.1, ratio: 3}":
-        "synthesis.stroke: a length is wanted here\n  found:   '20 kg', a mass (20 kg)\n"
-        "  allowed: a length, e.g. 110 mm or 0.11 m",
-    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {R: OA}}":
-        "synthesis.names.R: the synthesis crank-slider finds nothing of that name\n  found:   'R'\n"
-        "  allowed: r, l, e\n  did you mean 'r'?",
-    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: l}}":
-        "synthesis.names: r and l of the synthesis have the same name\n  found:   'l'\n  allowed: different names",
-    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: 2a}}":
-        "synthesis.names.r: this cannot be the name of a parameter\n  found:   '2a'\n"
-        "  allowed: letters, figures and _, a letter first",
-    "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}":
+    "  allowed: a task whose answer becomes parameters: {task: ...}",
+    "{task: crank-slider, stroke: 20 kg, k: 1.1, ratio: 3}": (
+        "synthesis.stroke: a length is wanted here\n"
+        "  found:   '20 kg', a mass (20 kg)\n"
+        "  allowed: a length, e.g. 110 mm or 0.11 m"
+    ),
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {R: OA}}": (
+        "synthesis.names.R: the synthesis crank-slider finds nothing of that name\n"
+        "  found:   'R'\n"
+        "  allowed: r, l, e\n"
+        "  did you mean 'r'?"
+    ),
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: l}}": (
+        "synthesis.names: r and l of the synthesis have the same name\n  found:   'l'\n  allowed: different names"
+    ),
+    "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: 2a}}": (
+        "synthesis.names.r: this cannot be the name of a parameter\n"
+        "  found:   '2a'\n"
+        "  allowed: letters, figures and _, a letter first"
+    ),
+    "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}": (
         "parameters.e: the parameter e is given by hand, and the synthesis crank-slider finds it (its e)\n"
-        "  found:   3\n  allowed: one of the two; another name: synthesis: {names: {e: ...}}",
-    "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}":
-        "synthesis.stroke: this rests on what the synthesis finds\n  found:   'H'\n  allowed: parameters that do not",
-}  # fmt: skip
+        "  found:   3\n"
+        "  allowed: one of the two; another name: synthesis: {names: {e: ...}}"
+    ),
+    "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}": (
+        "synthesis.stroke: this rests on what the synthesis finds\n  found:   'H'\n  allowed: parameters that do not"
+    ),
+}
 
 
 NO_MECHANISM = {
@@ -92,16 +115,18 @@ NO_MECHANISM = {
     "crank-slider, stroke: 10, k: 1, pressure: 1e-200": "pressure: this is too small",
     "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
     "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
-    "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2":
-        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less",
-    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]":
-        "near[0]: this is too large for a mechanism\n  found:   1e12",
+    "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2": (
+        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less"
+    ),
+    "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]": (
+        "near[0]: this is too large for a mechanism\n  found:   1e12"
+    ),
     "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too large",
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]": "near[0]: this is too large",
     "four-bar-by-k, l3: 100, psi1: 1e16, psi2: 10000000000000050, k: 1.2": "psi1: this is too large",
     "shaper, stroke: 10, k: 1.7, frame_ratio: .499, rod_ratio: 3e9": "rod_ratio: this is too large",
     "grashof, l1: 1e200, l2: 1e200, l3: 1e200, l4: 1e199": "l1: this is too large",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("block", NO_MECHANISM)
@@ -261,19 +286,28 @@ def test_a_misspelt_block_is_told_at_its_place(tmp_path):
 
 def test_what_the_synthesis_finds_is_among_the_names_that_arithmetic_may_use():
     with pytest.raises(ProblemError) as caught:
-        build(read_text("tmm: 1\nparameters: {n: 3, AS: 0.35*AB}\nsynthesis: {task: crank-slider, stroke: 120, k: 1.1, "
-                        f"ratio: 3.5}}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))  # fmt: skip
+        build(
+            read_text(
+                "tmm: 1\nparameters: {n: 3, AS: 0.35*AB}\nsynthesis: {task: crank-slider, stroke: 120, k: 1.1, "
+                f"ratio: 3.5}}\n{LINKAGE.format(speed=1.0)}",
+                "x.yaml",
+            )
+        )
     assert caught.value.path == ("parameters", "AS") and caught.value.near is None
     assert caught.value.allowed == "r, l, e, n"
 
 
-@pytest.mark.parametrize("block", [
-    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: 400}",
-    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: [400]}",
-    "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, near: [1, 2, 3]}",
-    "{task: slotted-lever, k: 1.8, B1: 3, B2: [1, 2], OC: 30}", "{task: slotted-lever, k: 1.8, CB: 30, within: 20}",
-    "{task: four-bar-by-angles, function: x^2, x: 3, input: [30, 120], output: [60, 150], l4: 100}",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: 400}",
+        "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, support: [400]}",
+        "{task: four-bar-by-k, l3: 250, psi1: 60, psi2: 110, k: 1.2, near: [1, 2, 3]}",
+        "{task: slotted-lever, k: 1.8, B1: 3, B2: [1, 2], OC: 30}",
+        "{task: slotted-lever, k: 1.8, CB: 30, within: 20}",
+        "{task: four-bar-by-angles, function: x^2, x: 3, input: [30, 120], output: [60, 150], l4: 100}",
+    ],
+)
 def test_a_place_or_a_range_that_is_none_is_said_in_our_words(block):
     with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\] are wanted"):
         build(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))

@@ -28,55 +28,109 @@ OPTIMAL = {
     "class III": ("press-class-iii", (("CE: 310, ", ""),), "{CE: [300, 325]}", "pressure", ""),
     "wheels": ("planet-on-rocker", (("DB: 200, ", ""),), "{DB: [150, 250]}", "moment", "{of: pressure, most: 50 deg}"),
     "stroke loads": (
-        "shaper", ((r"  CD: 650\n", ""),), "{CD: [600, 700]}", "moment",
+        "shaper",
+        ((r"  CD: 650\n", ""),),
+        "{CD: [600, 700]}",
+        "moment",
         "{of: stroke, most: 430}",
     ),
     "friction": (
-        "crank-slider-offset", (("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"), ("l: 190", "Q: 1"),
-                                (", acceleration: 20 rad/s.2", "")), "{l: [180, 260]}",
-        "{of: reaction, pair: A}", "",
+        "crank-slider-offset",
+        (
+            ("output:", "friction: {coefficient: 0.12, radius: 10}\noutput:"),
+            ("l: 190", "Q: 1"),
+            (", acceleration: 20 rad/s.2", ""),
+        ),
+        "{l: [180, 260]}",
+        "{of: reaction, pair: A}",
+        "",
     ),
     "cylinder": (
-        "cylinder", (("speed: v1}", "speed: v1, stroke: [0, 120]}"), ("AB: 250, ", "")), "{AB: [240, 270]}", "moment",
+        "cylinder",
+        (("speed: v1}", "speed: v1, stroke: [0, 120]}"), ("AB: 250, ", "")),
+        "{AB: [240, 270]}",
+        "moment",
         "{of: stroke, least: 30 deg}",
     ),
-    "cam": ("cam-lever", (("rise: 20", "rise: h"), ("rise: -20", "rise: -h")), "{h: [10 deg, 20 deg]}",
-            "{of: stroke, target: 30}", "{of: k, most: 2}"),  # it rests between its strokes
+    "cam": (
+        "cam-lever",
+        (("rise: 20", "rise: h"), ("rise: -20", "rise: -h")),
+        "{h: [10 deg, 20 deg]}",
+        "{of: stroke, target: 30}",
+        "{of: k, most: 2}",
+    ),  # it rests between its strokes
     "speed": (
-        "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"), (", acceleration: 20 rad/s.2", "")),
-        "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.2 m/s}", "",
+        "crank-slider-offset",
+        (("w0: 5 rad/s", "Q: 1"), (", acceleration: 20 rad/s.2", "")),
+        "{w0: [30 rpm, 90 rpm]}",
+        "{of: speed, target: 0.2 m/s}",
+        "",
     ),
     "speed of an accelerated crank": (
-        "crank-slider-offset", (("w0: 5 rad/s", "Q: 1"),), "{w0: [30 rpm, 90 rpm]}", "{of: speed, target: 0.4 m/s}", "",
+        "crank-slider-offset",
+        (("w0: 5 rad/s", "Q: 1"),),
+        "{w0: [30 rpm, 90 rpm]}",
+        "{of: speed, target: 0.4 m/s}",
+        "",
     ),
     "accelerated from the working stroke on": (
-        "crank-slider-offset", (("l: 190", "Q: 1"),), "{l: [180, 260]}", "moment", "",
+        "crank-slider-offset",
+        (("l: 190", "Q: 1"),),
+        "{l: [180, 260]}",
+        "moment",
+        "",
     ),
     "accelerated clockwise": (
-        "crank-slider-offset", (("l: 190", "Q: 1"), ("turns: ccw", "turns: cw"), (", when: working stroke", ""),
-                                ("from: working stroke", "from: 40 deg")), "{l: [180, 260]}", "moment", "",
+        "crank-slider-offset",
+        (
+            ("l: 190", "Q: 1"),
+            ("turns: ccw", "turns: cw"),
+            (", when: working stroke", ""),
+            ("from: working stroke", "from: 40 deg"),
+        ),
+        "{l: [180, 260]}",
+        "moment",
+        "",
     ),
     "accelerated from a place that varies": (
-        "crank-slider-offset", (("l: 190", "Q: 1"), (", when: working stroke", ""),
-                                ("from: working stroke", "from: a0")),
-        "{l: [180, 260], a0: [10 deg, 80 deg]}", "moment", "",
+        "crank-slider-offset",
+        (("l: 190", "Q: 1"), (", when: working stroke", ""), ("from: working stroke", "from: a0")),
+        "{l: [180, 260], a0: [10 deg, 80 deg]}",
+        "moment",
+        "",
     ),
     "accelerated through positions a turn farther on": (
-        "crank-slider-offset", (("l: 190", "Q: 1"), (", when: working stroke", ""),
-                                ("count: 12, from: working stroke, detail: .3.", "at: [380, 410, 460]")),
-        "{l: [180, 260]}", "moment\n  over: positions", "",
+        "crank-slider-offset",
+        (
+            ("l: 190", "Q: 1"),
+            (", when: working stroke", ""),
+            ("count: 12, from: working stroke, detail: .3.", "at: [380, 410, 460]"),
+        ),
+        "{l: [180, 260]}",
+        "moment\n  over: positions",
+        "",
     ),
     "acceleration": (
-        "crank-slider-offset", (("20 rad/s.2", "eps"),),
-        "{eps: [1 rad/s^2, 20 rad/s^2]}", "{of: speed, target: 0.3 m/s}", "",
+        "crank-slider-offset",
+        (("20 rad/s.2", "eps"),),
+        "{eps: [1 rad/s^2, 20 rad/s^2]}",
+        "{of: speed, target: 0.3 m/s}",
+        "",
     ),
     "output that turns on": (
-        "whitworth", (("OA: 150, ", ""), ("output: .link: 5", "output: {link: 3"), (", when: working stroke", ""),
-                      ("from: working stroke", "from: 0")), "{OA: [130, 170]}",
-        "{of: stroke, target: 230}\n  over: [0, 250]", "",
+        "whitworth",
+        (
+            ("OA: 150, ", ""),
+            ("output: .link: 5", "output: {link: 3"),
+            (", when: working stroke", ""),
+            ("from: working stroke", "from: 0"),
+        ),
+        "{OA: [130, 170]}",
+        "{of: stroke, target: 230}\n  over: [0, 250]",
+        "",
     ),
     "slider through its positions": ("clamp", (("AB: 200, ", ""),), "{AB: [195, 205]}", "moment", ""),
-}  # fmt: skip
+}
 
 
 def block(vary, objective, constraint):
@@ -115,8 +169,12 @@ def test_a_stroke_has_no_k():
             build(read_text(text, "x.yaml"))
         assert caught.value.message == said and caught.value.allowed == allowed
     with pytest.raises(ProblemError) as caught:
-        text = text_of("cylinder", edits[1], ("at: .0, 20.*120., detail: .3.", "count: 12"),
-                       (r"points: \{", block("{AB: [240, 270]}", "mass", "")))  # fmt: skip
+        text = text_of(
+            "cylinder",
+            edits[1],
+            ("at: .0, 20.*120., detail: .3.", "count: 12"),
+            (r"points: \{", block("{AB: [240, 270]}", "mass", "")),
+        )
         build(read_text(text, "x.yaml"))
     assert "how far the driver goes is wanted" in str(caught.value)
 
@@ -139,8 +197,12 @@ def refused(name, edits, *task):
 @pytest.mark.parametrize("objective", ["moment", "length"])
 def test_forces_of_a_driver_that_stops_on_its_way_are_refused(objective):
     """w^2 = 5^2 - 2*20*angle is zero after 0.625 rad: the crank does not come round."""
-    edits = (("l: 190", "Q: 1"), ("20 rad/s.2", "-20 rad/s^2"), (", when: working stroke", ""),
-             ("from: working stroke", "from: 40 deg"))  # fmt: skip
+    edits = (
+        ("l: 190", "Q: 1"),
+        ("20 rad/s.2", "-20 rad/s^2"),
+        (", when: working stroke", ""),
+        ("from: working stroke", "from: 40 deg"),
+    )
     limit = "{of: reaction, pair: A, most: 5 kN}"
     error = refused("crank-slider-offset", edits, "{l: [180, 260]}", objective, limit)
     assert error.path == (

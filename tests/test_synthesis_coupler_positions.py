@@ -146,8 +146,12 @@ def test_four_positions_come_back_from_the_turns_of_both_links():
         ways = [by_turn(poses, turn, branch) for branch in (0, 1)]
         gaps = [np.nan_to_num(np.asarray(np.abs(w.pivot - pivot), float), nan=9.0) for w in ways]
         second = gaps[1] < gaps[0]
-        one = Dyads(*(np.where(second, y, x) for x, y in ((w[0], w[1]) for w in (
-            [x.pivot for x in ways], [x.pin for x in ways]))))  # fmt: skip
+        one = Dyads(
+            *(
+                np.where(second, y, x)
+                for x, y in ((w[0], w[1]) for w in ([x.pivot for x in ways], [x.pin for x in ways]))
+            )
+        )
         assert np.max(np.minimum(*gaps)) < 1e-3  # how sharply near positions tell the pivot
         found.append(one)
     comes_back(places, angles, *found)
@@ -168,13 +172,18 @@ def test_positions_that_a_four_bar_took_in_order_have_no_defect_and_others_are_n
 FOUR = "[[0, 0, 0], [60, 40, 15], [110, 100, 35], [130, 170, 60]]"
 
 
-@pytest.mark.parametrize("block", [
-    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]",
-    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [-150, 150], C: [50, 0]",
-    "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [0, 300], D: [-50, 300]",
-    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 60",
-    f"positions: {FOUR}", f"positions: {FOUR}, AB_turn: 10", f"positions: {FOUR}, DC_turn: 40, DC_branch: 2",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], B: [0, -20], C: [50, 0]",
+        "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [-150, 150], C: [50, 0]",
+        "positions: [[0, 0, 0], [60, 40, 15], [110, 100, 35]], A: [0, 300], D: [-50, 300]",
+        "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 60",
+        f"positions: {FOUR}",
+        f"positions: {FOUR}, AB_turn: 10",
+        f"positions: {FOUR}, DC_turn: 40, DC_branch: 2",
+    ],
+)
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block)
     every = measured(found.synthesis.outcome, solve(found, "kinematics"))
@@ -237,11 +246,17 @@ def test_the_best_transmission_does_not_depend_on_how_densely_the_curves_are_lai
         assert there.defect == 0 and there.least == pytest.approx(found[2], abs=1e-9)
 
 
-@pytest.mark.parametrize(("positions", "least"), [
-    ([[-7, -21, 29], [45, -11, 31], [100, 20, 34], [169, -27, 63]], 59.814406),  # by AB_turn: 16.303, DC_turn: 15.403
-    (STRIP, 0.613174),
-    ([[11, -17, 33], [32, 7, 32], [116, -30, 24], [164, -21, 41]], 6.504174),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("positions", "least"),
+    [
+        (
+            [[-7, -21, 29], [45, -11, 31], [100, 20, 34], [169, -27, 63]],
+            59.814406,
+        ),  # by AB_turn: 16.303, DC_turn: 15.403
+        (STRIP, 0.613174),
+        ([[11, -17, 33], [32, 7, 32], [116, -30, 24], [164, -21, 41]], 6.504174),
+    ],
+)
 def test_a_four_bar_that_is_known_to_be_good_is_not_missed(positions, least):
     outcome = problem(f"positions: {positions}").synthesis.outcome
     assert np.degrees(next(v.value for v in outcome.found if v.text == LEAST)) > least
@@ -272,43 +287,60 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
 
 
 REFUSED = {
-    f"positions: [{ON_CIRCLE}], AB_turn: 31":
+    f"positions: [{ON_CIRCLE}], AB_turn: 31": (
         "synthesis.AB_turn: the coupler does not turn: both links turn as its places do on their circle\n"
-        "  found:   31\n  allowed: the nearest is AB_turn: 30 deg",
-    "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]":
-        "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long",
-    f"positions: {FOUR}, AB_turn: 15":
-        "synthesis.AB_turn: no link of sensible length turns by this angle",
-    f"positions: {FOUR}, AB_turn: 15.0000001":
-        "synthesis.AB_turn: no link of sensible length turns by this angle",
-    "positions: [[0, 0, 0], [60, 40, 15], [0, 0, 360], [130, 170, 60]]":
-        "synthesis.positions[2]: this position is there already\n  found:   position 1\n",
-    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60":
-        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: the nearest is AB: 36.05",
-    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]":
+        "  found:   31\n"
+        "  allowed: the nearest is AB_turn: 30 deg"
+    ),
+    "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]": (
+        "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long"
+    ),
+    f"positions: {FOUR}, AB_turn: 15": "synthesis.AB_turn: no link of sensible length turns by this angle",
+    f"positions: {FOUR}, AB_turn: 15.0000001": "synthesis.AB_turn: no link of sensible length turns by this angle",
+    "positions: [[0, 0, 0], [60, 40, 15], [0, 0, 360], [130, 170, 60]]": (
+        "synthesis.positions[2]: this position is there already\n  found:   position 1\n"
+    ),
+    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60": (
+        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: the nearest is AB: 36.05"
+    ),
+    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]": (
         "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
-        "  found:   [0, 0]\n  allowed: the nearest is B[1]: 1 mm",
-    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]":
-        "synthesis: these keys do not determine AB with 3 positions; too many: AB\n  found:   B, AB\n",
-    "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]":
-        "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n",
-    "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
+        "  found:   [0, 0]\n"
+        "  allowed: the nearest is B[1]: 1 mm"
+    ),
+    "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]": (
+        "synthesis: these keys do not determine AB with 3 positions; too many: AB\n  found:   B, AB\n"
+    ),
+    "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]": (
+        "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n"
+    ),
+    "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
         "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
-        "  found:   [0, 0]\n  allowed: the nearest is B[1]: 1 mm",
-    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right":
+        "  found:   [0, 0]\n"
+        "  allowed: the nearest is B[1]: 1 mm"
+    ),
+    "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right": (
         "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
-        "  found:   a list of 2\n  allowed: the nearest is positions[1][2]: 69.3",
-    "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]":
-        "synthesis.C: AB and DC have a pin or a pivot in common: that is no four-bar\n  found:   [0, 0]\n"
-        "  allowed: the nearest is C[0]: 1 mm",
-    "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]":
-        "synthesis.D: AB and DC have a pin or a pivot in common: that is no four-bar\n",
-    "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]":
-        "synthesis.positions: Burmester's curves have no links of sensible length",
-    "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50":
-        "synthesis.positions[1]: this position is there already\n  found:   position 1\n"
-        "  allowed: any other position, as one turned by 20 deg",
-}  # fmt: skip
+        "  found:   a list of 2\n"
+        "  allowed: the nearest is positions[1][2]: 69.3"
+    ),
+    "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]": (
+        "synthesis.C: AB and DC have a pin or a pivot in common: that is no four-bar\n"
+        "  found:   [0, 0]\n"
+        "  allowed: the nearest is C[0]: 1 mm"
+    ),
+    "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]": (
+        "synthesis.D: AB and DC have a pin or a pivot in common: that is no four-bar\n"
+    ),
+    "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]": (
+        "synthesis.positions: Burmester's curves have no links of sensible length"
+    ),
+    "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
+        "synthesis.positions[1]: this position is there already\n"
+        "  found:   position 1\n"
+        "  allowed: any other position, as one turned by 20 deg"
+    ),
+}
 
 
 @pytest.mark.parametrize("block", REFUSED)

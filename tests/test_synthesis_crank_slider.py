@@ -134,11 +134,14 @@ def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
     [
         ("e: 20", "missing: ratio or k\n  found:   e\n"),
         ("e: 20, ratio: 3.7, k: 1.1", "too many: k or e or ratio\n  found:   ratio, e, k\n"),
-        ("e: 112, ratio: 3.7", "synthesis.e: the crank does not turn fully: it needs l > r + e\n  found:   112\n"
-         "  allowed: the nearest is e: 105.274 mm"),
+        (
+            "e: 112, ratio: 3.7",
+            "synthesis.e: the crank does not turn fully: it needs l > r + e\n  found:   112\n"
+            "  allowed: the nearest is e: 105.274 mm",
+        ),
         ("e: -1, ratio: 3.7", "synthesis.e: the offset is a distance"),
     ],
-)  # fmt: skip
+)
 def test_offset_and_ratio_are_refused_where_they_give_no_crank(keys, message):
     with pytest.raises(ProblemError) as refused:
         problem({"stroke": 150} | dict(key.split(": ") for key in keys.split(", "))).linkage  # noqa: B018
@@ -178,12 +181,18 @@ def test_the_mean_speed_comes_back(drawn):
     assert on_mechanism(found)[0] * speed / np.pi == pytest.approx(c + 0.1, rel=MET, abs=0)
 
 
-@pytest.mark.parametrize("block", [
-    {"stroke": "120 mm", "ratio": 4, "nu": 0.5}, {"stroke": "120 mm", "ratio": 4, "k": 1.2},
-    {"speed": "0.4 m/s", "crank_speed": "15 rad/s", "ratio": 3, "nu": 0},
-    {"stroke": "80 mm", "k": 1.1, "pressure": "33 deg"}, {"stroke": "80 mm", "nu": 0.3, "pressure": "30 deg"},
-    {"stroke": "50 mm", "e": "20 mm", "k": 1.5}, {"stroke": "80 mm", "k": 1, "pressure": "20 deg"},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        {"stroke": "120 mm", "ratio": 4, "nu": 0.5},
+        {"stroke": "120 mm", "ratio": 4, "k": 1.2},
+        {"speed": "0.4 m/s", "crank_speed": "15 rad/s", "ratio": 3, "nu": 0},
+        {"stroke": "80 mm", "k": 1.1, "pressure": "33 deg"},
+        {"stroke": "80 mm", "nu": 0.3, "pressure": "30 deg"},
+        {"stroke": "50 mm", "e": "20 mm", "k": 1.5},
+        {"stroke": "80 mm", "k": 1, "pressure": "20 deg"},
+    ],
+)
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block, 15.0)
     for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
@@ -249,10 +258,16 @@ def test_a_k_just_below_the_bound_is_met_and_one_just_above_is_refused(drawn):
     assert r - found.linkage.slides[0].through.imag < rod  # e is below
 
 
-@pytest.mark.parametrize("keys", [
-    {"ratio": 3, "nu": 0.5}, {"ratio": 3, "k": 1.1}, {"pressure": "30 deg", "nu": 0.3},
-    {"pressure": "40 deg", "k": 1.1}, {"ratio": 3, "nu": 0},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"ratio": 3, "nu": 0.5},
+        {"ratio": 3, "k": 1.1},
+        {"pressure": "30 deg", "nu": 0.3},
+        {"pressure": "40 deg", "k": 1.1},
+        {"ratio": 3, "nu": 0},
+    ],
+)
 def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
     outcome = problem({"stroke": 120, **keys}).synthesis.outcome
     told = {v.text: float(v.value) for v in (*outcome.asked, *outcome.found)}

@@ -48,8 +48,7 @@ def random_tasks(count, seed, least=0.35):
         phi0, first = rng.uniform(-np.pi, np.pi, (2, 4 * COUNT))
         steps = rng.uniform(0.2, 0.6, (count - 1, 4 * COUNT))
         l2 = np.abs(1 + l3 * np.exp(1j * first) - l1 * np.exp(1j * phi0))
-        side = np.sign(((1 + l3 * np.exp(1j * first) - l1 * np.exp(1j * phi0)).conj()
-                                            * l3 * np.exp(1j * first)).imag)  # fmt: skip
+        side = np.sign(((1 + l3 * np.exp(1j * first) - l1 * np.exp(1j * phi0)).conj() * l3 * np.exp(1j * first)).imag)
         phi = np.concatenate([np.zeros((1, 4 * COUNT)), np.cumsum(steps, 0)])
         fine = phi[-1] * np.linspace(0, 1, 200)[:, None]
 
@@ -138,9 +137,13 @@ def exact_lengths(phi, psi):
     with mp.workdps(50):
         phi, psi = [mp.mpf(float(x)) for x in phi], [mp.mpf(float(x)) for x in psi]
         rows = mp.matrix([[mp.cos(q), mp.sin(q), mp.cos(p), mp.sin(p), 1] for p, q in zip(phi, psi, strict=True)])
-        u, v = (mp.lu_solve(rows, mp.matrix(right)) for right in (
-            [mp.cos(p - q) for p, q in zip(phi, psi, strict=True)],
-            [-mp.sin(p - q) for p, q in zip(phi, psi, strict=True)]))  # fmt: skip
+        u, v = (
+            mp.lu_solve(rows, mp.matrix(right))
+            for right in (
+                [mp.cos(p - q) for p, q in zip(phi, psi, strict=True)],
+                [-mp.sin(p - q) for p, q in zip(phi, psi, strict=True)],
+            )
+        )
 
         def sides(t):
             x = [a + t * b for a, b in zip(u, v, strict=True)]
@@ -192,11 +195,16 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
         assert np.nanmin(np.abs(found.l1 / l1 - 1) + np.abs(found.l3 / l3 - 1)) < 1e-5
 
 
-@pytest.mark.parametrize("block", [
-    "[[30, 30], [60, 60], [90, 90]]", "[[30, 210], [60, 240], [90, 270]]",
-    "[[20, 40], [50, 70], [90, 110], [100, 120]]",
-    "[[0, 10], [20, 30], [40, 50], [60, 70], [90, 100]]", "[[30, 50], [60, 80], [90, 110]], psi0: -20",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "[[30, 30], [60, 60], [90, 90]]",
+        "[[30, 210], [60, 240], [90, 270]]",
+        "[[20, 40], [50, 70], [90, 110], [100, 120]]",
+        "[[0, 10], [20, 30], [40, 50], [60, 70], [90, 100]]",
+        "[[30, 50], [60, 80], [90, 110]], psi0: -20",
+    ],
+)
 def test_equal_angles_are_those_of_any_parallelogram(block):
     found = problem(f"pairs: {block}, l4: 100")
     outcome = found.synthesis.outcome
@@ -266,13 +274,16 @@ def test_more_pairs_of_a_four_bar_than_are_needed_find_it(count, zeros):
         assert np.concatenate(found[:3]) == pytest.approx([one[k] for one in lengths], rel=1e-6)
 
 
-@pytest.mark.parametrize("block", [
-    "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], points: 12",
-    "function: exp(x), x: [0, 1], input: [45, 105], output: [0, 60], points: 15, phi0: 0, psi0: 0",
-    "pairs: [[40, 70], [45, 76], [50, 83], [55, 91], [60, 100]], phi0: 0, psi0: 0",
-    "pairs: [[0, 0], [10, 12], [20, 25], [30, 39], [40, 54], [50, 71]], psi0: 40",
-    "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], points: 20",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], points: 12",
+        "function: exp(x), x: [0, 1], input: [45, 105], output: [0, 60], points: 15, phi0: 0, psi0: 0",
+        "pairs: [[40, 70], [45, 76], [50, 83], [55, 91], [60, 100]], phi0: 0, psi0: 0",
+        "pairs: [[0, 0], [10, 12], [20, 25], [30, 39], [40, 54], [50, 71]], psi0: 40",
+        "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], points: 20",
+    ],
+)
 def test_errors_at_more_pairs_have_the_least_squares_and_are_those_of_the_mechanism(block):
     found = problem(f"{block}, l4: 100")
     outcome = found.synthesis.outcome
@@ -311,17 +322,23 @@ def test_two_pairs_alone_get_the_best_transmission():
         assert np.all((mark.defect != "") | mark.reversed | (mark.least <= least + 1e-9))
 
 
-@pytest.mark.parametrize("block", [
-    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100", "pairs: [[30, 60], [80, 90]], l4: 100, l1: 40",
-    "pairs: [[30, 60], [80, 90]], l1: 100", "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80",
-    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l1: 80, phi0: 10",
-    "pairs: [[30, 40], [60, 70], [90, 100]], l4: 100, l1: 80", "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l1: 100",
-    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], phi0: 20, l3: 100",
-    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l2: 100, choose: crank",
-    "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], l4: 100",
-    "function: sin(x), x: [0, 90], input: [0, 90], output: [0, 60], points: 5, l4: 100",
-    "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], l4: 100",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100",
+        "pairs: [[30, 60], [80, 90]], l4: 100, l1: 40",
+        "pairs: [[30, 60], [80, 90]], l1: 100",
+        "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80",
+        "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l1: 80, phi0: 10",
+        "pairs: [[30, 40], [60, 70], [90, 100]], l4: 100, l1: 80",
+        "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l1: 100",
+        "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], phi0: 20, l3: 100",
+        "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l2: 100, choose: crank",
+        "function: x^2, x: [1, 2], input: [30, 120], output: [60, 120], l4: 100",
+        "function: sin(x), x: [0, 90], input: [0, 90], output: [0, 60], points: 5, l4: 100",
+        "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], l4: 100",
+    ],
+)
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block)
     every = measured(found.synthesis.outcome, solve(found, "kinematics"))
@@ -342,47 +359,66 @@ def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
 
 
 REFUSED = {
-    "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100":
+    "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100": (
         "synthesis.pairs[2][0]: the input turns back: pair 3 cannot be reached after pair 2 in order\n"
-        "  found:   70\n  allowed: the nearest is pairs[2][0]: ",
-    "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100":
-        "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other assembly\n"
-        "  found:   [120, 100]\n  allowed: the nearest is pairs[2][1]: 82.7",
-    "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100":
+        "  found:   70\n"
+        "  allowed: the nearest is pairs[2][0]: "
+    ),
+    "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100": (
+        "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other "
+        "assembly\n"
+        "  found:   [120, 100]\n"
+        "  allowed: the nearest is pairs[2][1]: 82.7"
+    ),
+    "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100": (
         "synthesis.pairs[3]: no four-bar passes through these pairs\n"
-        "  found:   [150, 80]\n  allowed: the nearest is pairs[3][1]: 22.31",
-    "pairs: [[30, 60], [80, 90], [120, 100]]":
-        "synthesis: one length gives the size of the four-bar\n  found:   none\n  allowed: one of l1, l2, l3, l4",
-    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l4: 100, phi0: 10":
-        "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0",
-    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2":
-        "synthesis.choose: there is no solution of this number, or it has a defect\n"
-        "  found:   2\n  allowed: 1",
-    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2":
-        "synthesis.choose: there is no solution of this number, or it has a defect\n"
-        "  found:   2\n  allowed: 1",
-    "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100":
-        "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more",
-    "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
-        "synthesis.function: this function is not known here\n  found:   'log(x)'\n",
-    "function: \"\", x: [1, 2], input: [30, 120], output: [60, 120], l4: 100":
-        "synthesis.function: this function is not known here\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), ",
-    "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100":
-        "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, "
-        "or as the input locks on the way\n  found:   a list of 6",
-    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5":
-        "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0",
-    "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80":
-        "synthesis: one length gives the size of the four-bar\n  found:   l1, l3\n"
-        "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3",
-    "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100":
-        "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0",
-    "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100":
+        "  found:   [150, 80]\n"
+        "  allowed: the nearest is pairs[3][1]: 22.31"
+    ),
+    "pairs: [[30, 60], [80, 90], [120, 100]]": (
+        "synthesis: one length gives the size of the four-bar\n  found:   none\n  allowed: one of l1, l2, l3, l4"
+    ),
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l4: 100, phi0: 10": (
+        "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0"
+    ),
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2": (
+        "synthesis.choose: there is no solution of this number, or it has a defect\n  found:   2\n  allowed: 1"
+    ),
+    "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2": (
+        "synthesis.choose: there is no solution of this number, or it has a defect\n  found:   2\n  allowed: 1"
+    ),
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100": (
+        "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more"
+    ),
+    "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100": (
+        "synthesis.function: this function is not known here\n  found:   'log(x)'\n"
+    ),
+    'function: "", x: [1, 2], input: [30, 120], output: [60, 120], l4: 100': (
+        "synthesis.function: this function is not known here\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
+    ),
+    "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100": (
+        "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, or as the "
+        "input locks on the way\n"
+        "  found:   a list of 6"
+    ),
+    "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5": (
+        "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0"
+    ),
+    "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80": (
+        "synthesis: one length gives the size of the four-bar\n"
+        "  found:   l1, l3\n"
+        "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3"
+    ),
+    "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100": (
+        "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0"
+    ),
+    "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100": (
         "synthesis.x: the function has no values there, or the same at both ends\n"
-        "  allowed: two ends at which the function differs",
+        "  allowed: two ends at which the function differs"
+    ),
     "l4: 100": "synthesis: these keys do not determine a mechanism\n  found:   none\n"
-        "  allowed: pairs; or function (or table), x, input, output",
-}  # fmt: skip
+    "  allowed: pairs; or function (or table), x, input, output",
+}
 
 
 @pytest.mark.parametrize("block", REFUSED)
@@ -404,11 +440,14 @@ def test_a_branch_defect_that_is_kept_shows_on_the_mechanism():
     assert not all(m.met for m in every)
 
 
-@pytest.mark.parametrize("block", [
-    "function: log10(x), x: [1, 2], input: [45, 105], output: [0, 90], l4: 100",
-    "function: x^2, x: [0, 1], input: [30, 120], output: [60, 150], points: 5, l4: 100",
-    "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], l4: 100",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        "function: log10(x), x: [1, 2], input: [45, 105], output: [0, 90], l4: 100",
+        "function: x^2, x: [0, 1], input: [30, 120], output: [60, 150], points: 5, l4: 100",
+        "table: [[0, 0], [1, 2], [2, 5]], input: [90, 30], output: [110, 60], l4: 100",
+    ],
+)
 def test_the_largest_structural_error_is_that_of_all_places_not_of_a_scan(block):
     outcome = problem(block).synthesis.outcome
     largest = next(v.value for v in outcome.found if v.text == "largest structural error")

@@ -265,48 +265,94 @@ def refusal(more, **angles):
 
 
 REFUSED = [
-    (", near: [-300, -40]", {},
-     ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
-     "[-300, -40]",
-     "the nearest is near[0]: "),
-    ("", {"k": 5}, ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position, "
-     "or stand all but in it",
-     "5", "the nearest is "),
-    ("", {"k": 0.8}, ".k: k is the time of the working stroke over that of the idle one, the shorter",
-     "0.8", "the nearest is "),
-    ("", {"k": 1}, ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
-     "1", "the nearest is "),
-    ("", {"psi2": "50 deg"}, ".psi2: a rocker swings by more than zero and less than 180 deg",
-     "'psi2'", "the nearest is "),
-    (", l4: 900", {}, ".l4: no pivot of the admissible arcs meets this",
-     "900", "the nearest is "),
-    (", l4: 100", {}, ".l4: no pivot of the admissible arcs meets this",
-     "100", "the nearest is "),
+    (
+        ", near: [-300, -40]",
+        {},
+        ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
+        "[-300, -40]",
+        "the nearest is near[0]: ",
+    ),
+    (
+        "",
+        {"k": 5},
+        ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position, "
+        "or stand all but in it",
+        "5",
+        "the nearest is ",
+    ),
+    (
+        "",
+        {"k": 0.8},
+        ".k: k is the time of the working stroke over that of the idle one, the shorter",
+        "0.8",
+        "the nearest is ",
+    ),
+    (
+        "",
+        {"k": 1},
+        ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
+        "1",
+        "the nearest is ",
+    ),
+    (
+        "",
+        {"psi2": "50 deg"},
+        ".psi2: a rocker swings by more than zero and less than 180 deg",
+        "'psi2'",
+        "the nearest is ",
+    ),
+    (", l4: 900", {}, ".l4: no pivot of the admissible arcs meets this", "900", "the nearest is "),
+    (", l4: 100", {}, ".l4: no pivot of the admissible arcs meets this", "100", "the nearest is "),
     (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
-    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs meets this",
-     "900", "the nearest is "),
-    (", turns: cw", {"k": 2.6}, ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
-     "'cw'", "ccw"),
-    (", choose: supports level", {"psi1": "80 deg", "psi2": "85 deg"},
-     ".choose: no pivot of the admissible arcs meets this",
-     "'supports level'", "best transmission"),
+    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs meets this", "900", "the nearest is "),
+    (
+        ", turns: cw",
+        {"k": 2.6},
+        ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
+        "'cw'",
+        "ccw",
+    ),
+    (
+        ", choose: supports level",
+        {"psi1": "80 deg", "psi2": "85 deg"},
+        ".choose: no pivot of the admissible arcs meets this",
+        "'supports level'",
+        "best transmission",
+    ),
     (", yA: 500", {}, ".yA: no pivot of the admissible arcs meets this", "500", "the nearest is yA: 495.295 mm"),
     (", xA: -90", {}, ".xA: no pivot of the admissible arcs meets this", "-90", "the nearest is xA: 144.727 mm"),
-    (", l4: 300, choose: supports level", {}, ": the pivot A is chosen in one way",
-     "choose and l4", "one of choose, pressure, l1, l2, l4, near, xA, yA"),
-    (", pressure: 35 deg", {}, ".pressure: no pivot of the admissible arcs has this largest pressure angle",
-     "'35 deg'", "the nearest is pressure: 48.168 deg"),
-    (", pressure: 90 deg", {}, ".pressure: a largest pressure angle is less than a right angle", "'90 deg'",
-     "the nearest is pressure: 89.9"),
-    (", l1: 95", {}, ".l1: no pivot of the admissible arcs meets this",
-     "95", "the nearest is "),
-    (", l1: 70", {"k": 1}, ".l1: with k = 1 every crank is half of C1C2",
-     "70", "another task: no other value of it was found to help"),
-    (", l2: 60", {}, ".l2: no pivot of the admissible arcs meets this",
-     "60", "the nearest is "),
-    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs meets this",
-     "60", "the nearest is "),
-]  # fmt: skip
+    (
+        ", l4: 300, choose: supports level",
+        {},
+        ": the pivot A is chosen in one way",
+        "choose and l4",
+        "one of choose, pressure, l1, l2, l4, near, xA, yA",
+    ),
+    (
+        ", pressure: 35 deg",
+        {},
+        ".pressure: no pivot of the admissible arcs has this largest pressure angle",
+        "'35 deg'",
+        "the nearest is pressure: 48.168 deg",
+    ),
+    (
+        ", pressure: 90 deg",
+        {},
+        ".pressure: a largest pressure angle is less than a right angle",
+        "'90 deg'",
+        "the nearest is pressure: 89.9",
+    ),
+    (", l1: 95", {}, ".l1: no pivot of the admissible arcs meets this", "95", "the nearest is "),
+    (
+        ", l1: 70",
+        {"k": 1},
+        ".l1: with k = 1 every crank is half of C1C2",
+        "70",
+        "another task: no other value of it was found to help",
+    ),
+    (", l2: 60", {}, ".l2: no pivot of the admissible arcs meets this", "60", "the nearest is "),
+    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs meets this", "60", "the nearest is "),
+]
 
 
 @pytest.mark.parametrize(("more", "angles", "reason", "found", "allowed"), REFUSED)
@@ -343,8 +389,15 @@ def test_a_support_that_is_far_away_takes_no_digits(way):
     one = Task(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None, xA=1.5, yA=-0.5)
     here = choose(one)
     for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
-        there = choose(replace(one, support=far, near=None if one.near is None else one.near + far,
-                               xA=1.5 + np.real(far), yA=-0.5 + np.imag(far)))  # fmt: skip
+        there = choose(
+            replace(
+                one,
+                support=far,
+                near=None if one.near is None else one.near + far,
+                xA=1.5 + np.real(far),
+                yA=-0.5 + np.imag(far),
+            )
+        )
         assert (there.w, there.l1, there.l2, there.l4) == (here.w, here.l1, here.l2, here.l4)
 
 

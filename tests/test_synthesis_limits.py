@@ -75,9 +75,12 @@ def slider(**more):
 
 def rocker(**more):
     return lambda r: {
-        "task": "four-bar-by-k", "l3": r.uniform(10, 900), "psi1": r.uniform(20, 40), "psi2": r.uniform(60, 150),
+        "task": "four-bar-by-k",
+        "l3": r.uniform(10, 900),
+        "psi1": r.uniform(20, 40),
+        "psi2": r.uniform(60, 150),
         **{k: f(r) for k, f in more.items()},
-    }  # fmt: skip
+    }
 
 
 def down(make):
@@ -86,8 +89,12 @@ def down(make):
 
 
 def lever(**more):
-    return lambda r: {"task": "slotted-lever", "k": r.uniform(1.05, 4), "CB": r.uniform(50, 900),
-                      **{k: f(r) for k, f in more.items()}}  # fmt: skip
+    return lambda r: {
+        "task": "slotted-lever",
+        "k": r.uniform(1.05, 4),
+        "CB": r.uniform(50, 900),
+        **{k: f(r) for k, f in more.items()},
+    }
 
 
 def ram(**more):
@@ -101,8 +108,7 @@ def between(low, high):
 CASES = {  # a task that cannot be, and the key whose nearest value is told
     "k too large for L": (slider(k=between(2, 2.9), ratio=between(4, 60)), "k"),
     "k of 3 or more": (slider(k=between(3, 9), ratio=between(1.1, 9)), "k"),
-    "pressure angle too small": (
-        slider(k=between(1.2, 2.5), pressure=between(3, 20)), "pressure"),
+    "pressure angle too small": (slider(k=between(1.2, 2.5), pressure=between(3, 20)), "pressure"),
     "k of 3 or more, pressure": (slider(k=between(3, 9), pressure=between(20, 80)), "k"),
     "offset too large": (slider(k=between(1.8, 2.8), e=between(400, 900)), "k"),
     "k of 3 or more, offset": (slider(k=between(3, 9), e=between(4, 900)), "k"),
@@ -121,26 +127,44 @@ CASES = {  # a task that cannot be, and the key whose nearest value is told
     "stone passes": (lever(within=lambda r: [r.uniform(1000, 1100), 2000]), "within[0]"),
     "slot too short": (ram(k=between(1.1, 4), OC=between(5000, 9000), DE=between(5e3, 9e3)), "OC"),
     "slot too short, crank": (ram(k=between(1.1, 4), OA=between(5000, 9000), DE=between(5e3, 9e3)), "OA"),
-    "slot too short, ratio": (
-        ram(k=between(1.1, 4), frame_ratio=between(1, 3), DE=between(5e3, 9e3)), "frame_ratio"),
+    "slot too short, ratio": (ram(k=between(1.1, 4), frame_ratio=between(1, 3), DE=between(5e3, 9e3)), "frame_ratio"),
     "ram turns back": (ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), DE=between(0.1, 1)), "DE"),
     "ram turns back, ratio": (
-        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)), "rod_ratio"),
+        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), rod_ratio=between(0.01, 0.03)),
+        "rod_ratio",
+    ),
     "ram turns back, pressure": (
-        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)), "pressure"),
+        ram(k=between(2, 4), frame_ratio=between(0.1, 0.3), pressure=between(80, 89)),
+        "pressure",
+    ),
     "pressure angle of no k": (slider(k=between(1.1, 1.5), pressure=between(95, 150)), "pressure"),
     "pressure angle of a right angle": (slider(nu=between(0, 1), pressure=between(95, 150)), "pressure"),
     "sense, k too large": (rocker(k=between(30, 40), turns=lambda r: "cw"), "k"),
     "swing of half a turn": (
-        lambda r: {"task": "slotted-lever", "CB": 500, "OC": 90, "swing": r.uniform(181, 300)}, "swing"),
+        lambda r: {"task": "slotted-lever", "CB": 500, "OC": 90, "swing": r.uniform(181, 300)},
+        "swing",
+    ),
     "pressure angle of a ram": (
-        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), pressure=between(95, 150)), "pressure"),
+        ram(k=between(1.1, 4), frame_ratio=between(0.1, 0.3), pressure=between(95, 150)),
+        "pressure",
+    ),
     "links do not close": (
-        lambda r: {"task": "grashof", "l1": r.uniform(31, 90), **{f"l{k}": r.uniform(1, 10) for k in (2, 3, 4)}}, "l1"),
+        lambda r: {"task": "grashof", "l1": r.uniform(31, 90), **{f"l{k}": r.uniform(1, 10) for k in (2, 3, 4)}},
+        "l1",
+    ),
     "link does not reach": (
-        lambda r: {"task": "coupler-positions", "positions": [[0, 0, 0], [r.uniform(50, 90), 80, r.uniform(20, 60)]],
-                   "B": [0, 0], "C": [100, 0], "AB": r.uniform(1, 40), "DC": 400, "defects": "keep"}, "AB"),
-}  # fmt: skip
+        lambda r: {
+            "task": "coupler-positions",
+            "positions": [[0, 0, 0], [r.uniform(50, 90), 80, r.uniform(20, 60)]],
+            "B": [0, 0],
+            "C": [100, 0],
+            "AB": r.uniform(1, 40),
+            "DC": 400,
+            "defects": "keep",
+        },
+        "AB",
+    ),
+}
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -162,26 +186,36 @@ def guided(*positions, **more):
     return {"task": "coupler-positions", "positions": [list(place) for place in positions], **more}
 
 
-@pytest.mark.parametrize(("block", "path"), [
-    (pairs((30, 60), (80, 90), (70, 100)), ("pairs", 2, 0)), (pairs((5, 10), (200, 30), (400, 60)), ("pairs", 2, 0)),
-    (pairs((0, 0), (40, 30), (80, 120), (120, 100)), ("pairs", 3, 1)),
-    (pairs((30, 60), (60, 60), (90, 150), (150, 80)), ("pairs", 3, 1)),
-    (guided((0, 0, 0), (60, 40, 75), B=[0, 0], AB=70, C=[50, 0], DC=150, DC_side="right"), ("positions", 1, 2)),
-    (guided((0, 0, 0), (50, 20, 10), (100, 10, 30), A=[0, 60], D=[0, 60]), ("D", 1)),
-    (guided((0, 0, 0), (60, 40, 15), (110, 100, 35), (130, 170, 60), AB_turn=15, DC_turn=5, defects="keep"),
-     ("AB_turn",)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("block", "path"),
+    [
+        (pairs((30, 60), (80, 90), (70, 100)), ("pairs", 2, 0)),
+        (pairs((5, 10), (200, 30), (400, 60)), ("pairs", 2, 0)),
+        (pairs((0, 0), (40, 30), (80, 120), (120, 100)), ("pairs", 3, 1)),
+        (pairs((30, 60), (60, 60), (90, 150), (150, 80)), ("pairs", 3, 1)),
+        (guided((0, 0, 0), (60, 40, 75), B=[0, 0], AB=70, C=[50, 0], DC=150, DC_side="right"), ("positions", 1, 2)),
+        (guided((0, 0, 0), (50, 20, 10), (100, 10, 30), A=[0, 60], D=[0, 60]), ("D", 1)),
+        (
+            guided((0, 0, 0), (60, 40, 15), (110, 100, 35), (130, 170, 60), AB_turn=15, DC_turn=5, defects="keep"),
+            ("AB_turn",),
+        ),
+    ],
+)
 def test_of_angles_and_places_one_is_told_that_is_solved(block, path):
     where, printed = told(block)
     assert where == path
     solved(put(block, path, printed))
 
 
-@pytest.mark.parametrize("block", [
-    slider(e=lambda r: 0, k=lambda r: 4), slider(ratio=lambda r: 0.5, k=lambda r: 3.5),
-    rocker(k=lambda r: 5, psi2=lambda r: 60, l1=lambda r: 3000),
-    lambda r: pairs((200, 20), (150, 60), (700, 10), (30, 55)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "block",
+    [
+        slider(e=lambda r: 0, k=lambda r: 4),
+        slider(ratio=lambda r: 0.5, k=lambda r: 3.5),
+        rocker(k=lambda r: 5, psi2=lambda r: 60, l1=lambda r: 3000),
+        lambda r: pairs((200, 20), (150, 60), (700, 10), (30, 55)),
+    ],
+)
 def test_where_no_value_of_the_number_helps_that_is_said(block):
     assert refused(block(np.random.default_rng(0))).allowed == "another task: no other value of it was found to help"
 
@@ -199,10 +233,19 @@ output: 3
 """
 
 
-@pytest.mark.parametrize("case", [
-    "k too large for the swing", "k too large for the swing, clockwise", "sense, k too large", "frame too long",
-    "frame too short", "crank too long", "coupler too long", "coupler too short",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "case",
+    [
+        "k too large for the swing",
+        "k too large for the swing, clockwise",
+        "sense, k too large",
+        "frame too long",
+        "frame too short",
+        "crank too long",
+        "coupler too long",
+        "coupler too short",
+    ],
+)
 def test_at_a_printed_limit_the_four_bar_still_moves_as_it_was_asked(case):
     make, key = CASES[case]
     for seed in range(3):
@@ -216,8 +259,12 @@ def test_at_a_printed_limit_the_four_bar_still_moves_as_it_was_asked(case):
 
 def test_limits_are_rounded_to_their_side():
     units = UnitSystem({"length": "mm"})
-    for number, side, told in ((0.1234567654, -1, 123.456), (0.1234561196, 1, 123.457), (0.25, 1, 250),
-                               (0.1234567654, 0, 123.4567654)):  # fmt: skip
+    for number, side, told in (
+        (0.1234567654, -1, 123.456),
+        (0.1234561196, 1, 123.457),
+        (0.25, 1, 250),
+        (0.1234567654, 0, 123.4567654),
+    ):
         assert rounded(units, number, LENGTH, side) == pytest.approx(told, rel=1e-15)
     assert rounded(units, 3.0, NUMBER, -1) == 3 and rounded(units, 0.0, NUMBER, 1) == 0
 

@@ -120,10 +120,18 @@ def test_a_law_whose_first_angle_is_free_gives_back_the_linkage_that_it_was_read
     q = np.radians([20, 80, 140, 200])
     runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
     text = SLIDER.replace("e: [1, 80]}", "a0: [0 deg, 90 deg]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
-    problem = build(read_text(text.replace("OPTIONS", f"""
+    problem = build(
+        read_text(
+            text.replace(
+                "OPTIONS",
+                f"""
   objective: {{of: law, link: 3, at: [a0, a0 + 60, a0 + 120, a0 + 180], values: {runs.tolist()}}}
   generations: 20
-"""), "x.yaml"))  # fmt: skip
+""",
+            ),
+            "x.yaml",
+        )
+    )
     assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, np.radians(20)], rel=1e-8)
     law = problem.synthesis.outcome.listings[1]
     assert [row[0] for row in law.rows] == pytest.approx(q, rel=1e-8)
@@ -135,10 +143,18 @@ def test_a_law_may_leave_open_where_the_run_is_counted_from():
     runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
     text = SLIDER.replace("e: [1, 80]}", "s0: [50, 300]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
     values = ", ".join(f"s0 + {run!r}" for run in (runs - runs[0]).tolist())
-    problem = build(read_text(text.replace("OPTIONS", f"""
+    problem = build(
+        read_text(
+            text.replace(
+                "OPTIONS",
+                f"""
   objective: {{of: law, link: 3, at: [20, 60, 100, 140, 200, 290], values: [{values}]}}
   generations: 20
-"""), "x.yaml"))  # fmt: skip
+""",
+            ),
+            "x.yaml",
+        )
+    )
     assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, runs[0] / 1000], rel=1e-8)
     law = problem.synthesis.outcome.listings[1]
     assert [row[1] for row in law.rows] == pytest.approx(runs / 1000, rel=1e-8)
@@ -206,8 +222,9 @@ def test_a_quantity_that_is_the_same_for_all_is_told_exactly():
 
 
 REFUSED = {
-    "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20":
-        "no mechanism within the bounds was found that meets this",
+    "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20": (
+        "no mechanism within the bounds was found that meets this"
+    ),
     "  objective: presure": "this word is not known here",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
@@ -216,7 +233,7 @@ REFUSED = {
     "  objective: mass\n  constraints: [{of: k}]": "a constraint has a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the least is more than the most",
     "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "a number is wanted here",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("options", REFUSED)
@@ -226,12 +243,15 @@ def test_what_cannot_be_asked_is_refused(options):
     assert REFUSED[options] in str(caught.value)
 
 
-@pytest.mark.parametrize(("vary", "words"), [
-    ("{OA: [90, 30]}", "the lower bound comes first"),
-    ("{OA: [-90, 30]}", "a length cannot be negative"),
-    ("{OA: [30]}", "2 are wanted here"),
-    ("{n1: [30, 40]}", "is given by hand"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ("{OA: [90, 30]}", "the lower bound comes first"),
+        ("{OA: [-90, 30]}", "a length cannot be negative"),
+        ("{OA: [30]}", "2 are wanted here"),
+        ("{n1: [30, 40]}", "is given by hand"),
+    ],
+)
 def test_bounds_that_cannot_be_are_refused(vary, words):
     text = SLIDER.replace("{OA: [30, 90], AB: [80, 400], e: [1, 80]}", vary).replace("OPTIONS", "  objective: mass")
     with pytest.raises(ProblemError) as caught:
@@ -245,9 +265,13 @@ def test_stopped_by_hand_it_gives_the_best_so_far():
             raise KeyboardInterrupt
 
     found = evolve(
-        lambda x: (np.sum((x - 0.3) ** 2, axis=1), np.zeros(len(x))), 3, population=30, generations=100, seed=1,
+        lambda x: (np.sum((x - 0.3) ** 2, axis=1), np.zeros(len(x))),
+        3,
+        population=30,
+        generations=100,
+        seed=1,
         progress=stop,
-    )  # fmt: skip
+    )
     assert found.stopped and len(found.history) == 5 and found.objective[0] == min(found.objective)
 
 
@@ -269,9 +293,11 @@ def test_the_smallest_box_comes_out_the_same_from_two_seeds_although_points_take
   objective: box
   constraints: [{{of: stroke, least: 100}}, {{of: pressure, most: 40 deg}}]
   seed: {seed}
-""").synthesis.outcome.demands[1].value
+""")
+        .synthesis.outcome.demands[1]
+        .value
         for seed in (1, 2)
-    ]  # fmt: skip
+    ]
     assert boxes[0] == pytest.approx(boxes[1], rel=1e-9)
 
 

@@ -88,13 +88,22 @@ def test_the_crank_rocker_of_webkinematik():
 POINTS = (0.50 + 1.06j, -0.83 - 0.27j, -0.34 + 0.22j, -0.13 + 0.43j, 0.22 + 0.78j)
 # pins of both links in the plane of the coupler, and how far that has turned at points 1 to 4; links turn about 0 and 1
 SOLUTIONS = {
-    1: (-0.0877960434509403 - 0.85138690751564j, 0.235837391307301 - 1.41899202703639j,
-        (0.0, 1.4473421375642717, 0.9284137081314461, 0.75169921110931, 0.3871162822082786)),
-    11: (-0.0801573081756841 - 0.855275240173407j, -0.297321862562434 - 2.18414388671793j,
-         (0.0, 2.524711332238134, 0.9038272905536054, 0.7498546795650226, 0.38277375732994035)),
-    12: (0.676178657404253 - 0.613650952963839j, 0.356055523659319 + 0.310794500797803j,
-         (0.0, 5.771983513802544, 3.9629563185486125, 3.442223836627024, 0.5242754656511442)),
-}  # fmt: skip
+    1: (
+        -0.0877960434509403 - 0.85138690751564j,
+        0.235837391307301 - 1.41899202703639j,
+        (0.0, 1.4473421375642717, 0.9284137081314461, 0.75169921110931, 0.3871162822082786),
+    ),
+    11: (
+        -0.0801573081756841 - 0.855275240173407j,
+        -0.297321862562434 - 2.18414388671793j,
+        (0.0, 2.524711332238134, 0.9038272905536054, 0.7498546795650226, 0.38277375732994035),
+    ),
+    12: (
+        0.676178657404253 - 0.613650952963839j,
+        0.356055523659319 + 0.310794500797803j,
+        (0.0, 5.771983513802544, 3.9629563185486125, 3.442223836627024, 0.5242754656511442),
+    ),
+}
 
 
 def poses(solution, which):
@@ -105,8 +114,9 @@ def poses(solution, which):
 def turns(solution, which):
     """Angles of both links at these points."""
     first, second, turned = SOLUTIONS[solution]
-    arms = [[POINTS[n] + pin * cmath.exp(1j * turned[n]) - pivot for n in which]
-            for pin, pivot in ((first, 0), (second, 1))]  # fmt: skip
+    arms = [
+        [POINTS[n] + pin * cmath.exp(1j * turned[n]) - pivot for n in which] for pin, pivot in ((first, 0), (second, 1))
+    ]
     return [[cmath.phase(x) for x in arm] for arm in arms]
 
 
@@ -187,12 +197,24 @@ def test_chebyshevs_linkage_from_three_pairs_of_angles_and_one_of_its_levers(hel
 
 
 BEST = {
-    "r1": 39.35432733966176, "r2": 8.738597335076454, "r3": 27.91020567579063, "r4": 38.41653206619049,
-    "xK": 36.576759454887835, "yK": 18.058222622003274, "t0": 3.922197401424182, "x0": -9.015069651004032,
+    "r1": 39.35432733966176,
+    "r2": 8.738597335076454,
+    "r3": 27.91020567579063,
+    "r4": 38.41653206619049,
+    "xK": 36.576759454887835,
+    "yK": 18.058222622003274,
+    "t0": 3.922197401424182,
+    "x0": -9.015069651004032,
     "y0": 59.8594568458345,
-}  # fmt: skip
-CRANK = (1.6275724377055465, 2.42129538238649, 2.93021895068062, 3.4158306289051543, 3.9401612344766854,
-         5.428565504554411)  # fmt: skip
+}
+CRANK = (
+    1.6275724377055465,
+    2.42129538238649,
+    2.93021895068062,
+    3.4158306289051543,
+    3.9401612344766854,
+    5.428565504554411,
+)
 LINE = """
 tmm: 1
 units: {length: mm, angle: rad}
@@ -223,10 +245,13 @@ def test_optimal_synthesis_finds_the_lengths_of_the_best_four_bar_of_eca():
     vary = ("r2", "r3", "r4", "xK", "yK")
     bounds = ", ".join(f"{name}: [{0.9 * BEST[name]}, {1.1 * BEST[name]}]" for name in vary)
     through = ", ".join(f"[20, {y}]" for y in range(20, 50, 5))
-    problem = line(vary, (
-        f"synthesis: {{task: optimal, vary: {{{bounds}}}, "
-        f"objective: {{of: path, point: K, norm: least squares, through: [{through}]}}}}"
-    ))  # fmt: skip
+    problem = line(
+        vary,
+        (
+            f"synthesis: {{task: optimal, vary: {{{bounds}}}, "
+            f"objective: {{of: path, point: K, norm: least squares, through: [{through}]}}}}"
+        ),
+    )
     values = found(problem)
     assert [values[name] * 1000 for name in vary] == pytest.approx([BEST[name] for name in vary], rel=3e-7)
     best = problem.synthesis.outcome.listings[0].rows[0][4]

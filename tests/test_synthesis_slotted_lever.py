@@ -180,11 +180,17 @@ def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
     assert (f.crank, f.lever) == (pytest.approx(0.11, rel=1e-14), pytest.approx(0.65, rel=1e-14))
 
 
-@pytest.mark.parametrize("keys", [
-    "B1: [-150, 400], B2: [250, 450], k: 1.6, OC: 300", "B1: [-150, 400], B2: [250, 450], k: 1.6, C: left, OC: 300",
-    "CB: 500, k: 1.4, within: [100, 300]", "CB: 500, swing: 60 deg, support: [20, -300], axis: 120 deg, OC: 200",
-    "CB: 500, k: 1.4, within: [100, 300], choose: shortest", "B1: [-150, 400], B2: [250, 450], k: 1.6, OA: 60",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "keys",
+    [
+        "B1: [-150, 400], B2: [250, 450], k: 1.6, OC: 300",
+        "B1: [-150, 400], B2: [250, 450], k: 1.6, C: left, OC: 300",
+        "CB: 500, k: 1.4, within: [100, 300]",
+        "CB: 500, swing: 60 deg, support: [20, -300], axis: 120 deg, OC: 200",
+        "CB: 500, k: 1.4, within: [100, 300], choose: shortest",
+        "B1: [-150, 400], B2: [250, 450], k: 1.6, OA: 60",
+    ],
+)
 @pytest.mark.parametrize("sense", ["cw", "ccw"])
 def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
     found = lever(keys, sense)
@@ -199,10 +205,15 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
     assert slow.run == pytest.approx(run if told else -run, rel=1e-12)
 
 
-@pytest.mark.parametrize("keys", [
-    "stroke: 400, k: 1.5, OC: 350, DE: 200", "stroke: 400, k: 1.8, frame_ratio: 0.6, rod_ratio: 0.3",
-    "stroke: 90, k: 1.3, frame_ratio: 0.6, pressure: 4 deg", "stroke: 400, k: 1.5, OA: 100, DE: 200",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "keys",
+    [
+        "stroke: 400, k: 1.5, OC: 350, DE: 200",
+        "stroke: 400, k: 1.8, frame_ratio: 0.6, rod_ratio: 0.3",
+        "stroke: 90, k: 1.3, frame_ratio: 0.6, pressure: 4 deg",
+        "stroke: 400, k: 1.5, OA: 100, DE: 200",
+    ],
+)
 def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
     found = shaping(keys)
     for m in measured(found.synthesis.outcome, solve(found, "kinematics")):

@@ -44,10 +44,11 @@ def with_numbers(text, **numbers):
 
 def test_of_lengths_from_a_series_the_best_pair_of_all_is_found():
     text = text_of(
-        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "crank-slider",
+        (("r: 60, ", ""), ("l: 220, ", "")),
         "vary: {r: {from: 55, to: 75, step: 5}, l: {among: [180, 200, 220, 250]}}\n"
         "  objective: moment\n  constraints: [{of: pressure, most: 17 deg}, {of: stroke, least: 119}]",
-    )  # fmt: skip
+    )
     found, results = best_of(text)
     values = {}
     for r, length in itertools.product((55, 60, 65, 70, 75), (180, 200, 220, 250)):
@@ -62,10 +63,11 @@ def test_of_lengths_from_a_series_the_best_pair_of_all_is_found():
 
 def test_what_may_have_all_values_is_polished_beside_what_may_not():
     text = text_of(
-        "crank-slider", (("r: 60, ", ""), ("l: 220, ", "")),
+        "crank-slider",
+        (("r: 60, ", ""), ("l: 220, ", "")),
         "vary: {r: [50, 80], l: {from: 150, to: 300, step: 25}}\n  objective: length\n"
         "  constraints: [{of: stroke, least: 130}, {of: pressure, most: 20 deg}]\n  population: 30\n  generations: 40",
-    )  # fmt: skip
+    )
     found, _ = best_of(text)
     assert (found["r"], found["l"]) == pytest.approx((0.065, 0.2), rel=1e-12)  # r/sin 20 is 190 mm: 200 is the next
 
@@ -76,18 +78,20 @@ FIVE_BAR = (("speed: 120 rpm", "speed: n2"), ("l: 180, ", ""))
 def test_a_ratio_that_may_be_any_number_leaves_a_rocking_wheel_its_cycle():
     """Its partner swings, so all is back after a turn; bare bounds of a ratio are no lengths."""
     text = text_of(
-        "sector-and-wheel", (("teeth: [120, 40], module: 2", "ratio: i"),),
+        "sector-and-wheel",
+        (("teeth: [120, 40], module: 2", "ratio: i"),),
         "vary: {i: [2, 4]}\n  objective: {of: stroke, target: 80}\n  population: 8\n  generations: 4",
-    )  # fmt: skip
+    )
     found, results = best_of(text)
     assert 2 <= found["i"] <= 4 and results.strokes.travel == pytest.approx(0.08, rel=1e-9)
 
 
 def test_bare_bounds_are_what_the_file_takes_them_for():
     text = text_of(
-        "crank-slider", (("{on: AB, at: 0.35}", "{on: AB, at: share}"), ("r: 60, ", "")),
+        "crank-slider",
+        (("{on: AB, at: 0.35}", "{on: AB, at: share}"), ("r: 60, ", "")),
         "vary: {r: [50, 70], share: [0.2, 0.8]}\n  objective: moment",
-    )  # fmt: skip
+    )
     assert {p.name: p.kind for p in task_of(read_text(text, "x.yaml")).parameters} == {"r": "length", "share": "number"}
 
 
@@ -103,7 +107,8 @@ FREE = "n2: [60 rpm, 180 rpm]"
 MESSAGES = {
     "any ratio": (FREE, "after how many turns all comes round again rests on this parameter"),
     "some ratios": (  # over two turns, three and one
-        "n2: {among: [90 rpm, 80 rpm, 120 rpm]}", "after how many turns all comes round again rests on this",
+        "n2: {among: [90 rpm, 80 rpm, 120 rpm]}",
+        "after how many turns all comes round again rests on this",
     ),
     "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: [low, high], {from, to, step} or {among: [...]} is wanted"),
     "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "[low, high], {from, to, step} or {among: [...]} is wanted"),
@@ -117,15 +122,16 @@ MESSAGES = {
     "too large a step": ("l: {from: 1, to: 3, step: 5}", "1 to 9999 steps must lie between", "found:   5"),
     "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
     "refused by the file": ("l: {among: [0, 180, 200]}", "with l = 0 mm, n2 = "),
-}  # fmt: skip
+}
 
 
 def test_a_driver_that_turns_one_way_or_the_other_is_judged_in_its_own_sense():
     """As fast forth as back, it meets the other crank at other places: the moments differ."""
     text = text_of(
-        "five-bar", (("speed: 120 rpm, turns: cw", "speed: n2"), ("l: 180, ", "")),
+        "five-bar",
+        (("speed: 120 rpm, turns: cw", "speed: n2"), ("l: 180, ", "")),
         "vary: {n2: {among: [-120 rpm, 120 rpm]}, l: {among: [180, 200]}}\n  objective: moment",
-    )  # fmt: skip
+    )
     values = {n2: measure("moment", with_numbers(text, n2=f"{n2} rpm", l=180)) for n2 in (-120, 120)}
     assert values[120] < 0.9 * values[-120]
     found, results = best_of(text)
@@ -137,11 +143,14 @@ FEW = "vary: {l1: {from: 61, to: 97, step: 6}, l2: {from: 300, to: 384, step: 28
 WITH = "\n  constraints: [{of: stroke, least: 40 deg}, {of: pressure, most: 45 deg}]"
 
 
-@pytest.mark.parametrize("task, goal, better", [
-    ("objective: {of: reaction, pair: B}" + WITH, lambda r: measure("reaction", r, "B"), (85, 300)),
-    ("objective: box" + WITH, lambda r: measure("box", r), (85, 300)),
-    ("objective: {of: stroke, target: 44 deg}", lambda r: abs(measure("stroke", r) - np.radians(44)), (91, 384)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "task, goal, better",
+    [
+        ("objective: {of: reaction, pair: B}" + WITH, lambda r: measure("reaction", r, "B"), (85, 300)),
+        ("objective: box" + WITH, lambda r: measure("box", r), (85, 300)),
+        ("objective: {of: stroke, target: 44 deg}", lambda r: abs(measure("stroke", r) - np.radians(44)), (91, 384)),
+    ],
+)
 def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the_search(task, goal, better):
     text = text_of("crank-rocker", (("l1: 100, ", ""), ("l2: 350, ", "")), FEW + task)
     other = with_numbers(text, l1=better[0], l2=better[1])
@@ -164,16 +173,21 @@ def refusal_of(text):
     return str(caught.value)
 
 
-@pytest.mark.parametrize("limit, key, value", [
-    ("equal: 131", "equal", "132 mm"), ("least: 103, most: 107", "most", "108.001 mm"),
-    ("least: 101, most: 107", "least", "100 mm"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "limit, key, value",
+    [
+        ("equal: 131", "equal", "132 mm"),
+        ("least: 103, most: 107", "most", "108.001 mm"),
+        ("least: 101, most: 107", "least", "100 mm"),
+    ],
+)
 def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key, value):
     """Twice the crank, which is 50, 54, 58, 62, 66 or 70 mm long."""
     text = text_of(
-        "crank-slider", (("r: 60, ", ""),),
+        "crank-slider",
+        (("r: 60, ", ""),),
         f"vary: {{r: {{from: 50, to: 70, step: 4}}}}\n  objective: length\n  constraints: [{{of: stroke, {limit}}}]",
-    )  # fmt: skip
+    )
     said = refusal_of(text)
     assert f"the nearest is constraints[0].{key}: {value}" in said
     old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
@@ -181,16 +195,20 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
     assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
 
 
-@pytest.mark.parametrize("varies, said", [
-    ("z: {among: [25, 25.5, 26]}", "a number of teeth is whole"),
-    ("z: {from: -25, to: 25, step: 1}", "a number cannot be zero"),
-    ("z: {among: [25, 25.5, 26, 27]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "varies, said",
+    [
+        ("z: {among: [25, 25.5, 26]}", "a number of teeth is whole"),
+        ("z: {from: -25, to: 25, step: 1}", "a number cannot be zero"),
+        ("z: {among: [25, 25.5, 26, 27]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+    ],
+)
 def test_numbers_that_the_file_refuses_are_told(varies, said):
     text = text_of(
-        "gear-straight-line", (("teeth: [25, 25], module: 4", "teeth: [z, 20]"),),
+        "gear-straight-line",
+        (("teeth: [25, 25], module: 4", "teeth: [z, 20]"),),
         f"vary: {{{varies}}}\n  objective: length",
-    )  # fmt: skip
+    )
     assert said in refusal_of(text)
 
 
@@ -218,9 +236,10 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
 
 def test_bounds_of_a_number_of_teeth_are_refused():
     text = text_of(
-        "sector-and-wheel", (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
+        "sector-and-wheel",
+        (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
         "vary: {z1: [99.5, 140.2]}\n  objective: stroke",
-    )  # fmt: skip
+    )
     assert "a number of teeth is whole" in refusal_of(text)
 
 

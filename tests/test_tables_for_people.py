@@ -86,8 +86,9 @@ def test_what_an_earlier_run_wrote_for_people_goes_with_it(shaper, tmp_path):
 
 def test_sheets_are_named_by_whole_words():
     titles = (
-        "Asked for: four-bar-by-k", "Loads: weights and forces of inertia",
+        "Asked for: four-bar-by-k",
+        "Loads: weights and forces of inertia",
         "Balance of powers and of works over the whole cycle",
-    )  # fmt: skip
+    )
     data = workbook([Table(str(k), title, (Column("x", [1.0]),)) for k, title in enumerate(titles)], UNITS)
     assert list(sheets(data)) == ["Asked for", "Loads", "Balance of powers"]

@@ -79,10 +79,14 @@ def test_variants_at_once_are_the_variants_one_by_one(seed, kinds):
 
     def other():
         links = {
-            name: replace(x, points={n: p * (1 + 1e-3 * random.uniform(-1, 1)) for n, p in x.points.items()},
-                          mass=x.mass * random.uniform(1, 2), centre=x.centre * random.uniform(1, 2))
+            name: replace(
+                x,
+                points={n: p * (1 + 1e-3 * random.uniform(-1, 1)) for n, p in x.points.items()},
+                mass=x.mass * random.uniform(1, 2),
+                centre=x.centre * random.uniform(1, 2),
+            )
             for name, x in it.links.items()
-        }  # fmt: skip
+        }
         return replace(it, links=links)
 
     batch = prepare([it, other(), other()])

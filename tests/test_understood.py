@@ -128,15 +128,24 @@ def test_a_parameter_may_be_set_beside_the_file():
     ("setting", "message"),
     [
         ("CB=1", "parameters.CB: there is no parameter of that name\n  found:   'CB'\n  allowed: OA, OC, CD, DE, n1"),
-        ("oa=1", "parameters.oa: there is no parameter of that name\n  found:   'oa'\n  allowed: OA, OC, CD, DE, n1\n"
-         "  did you mean 'OA'?"),
-        ("OA=12 mmm", "parameters.OA: unknown unit\n  found:   'mmm'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n"
-         "  did you mean 'mm'?"),
-        ("OA=1,5", "parameters.OA: decimal comma: write 1.5\n  found:   '1,5'\n"
-         "  allowed: a decimal point; a list is written [1, 5]"),
+        (
+            "oa=1",
+            "parameters.oa: there is no parameter of that name\n  found:   'oa'\n  allowed: OA, OC, CD, DE, n1\n"
+            "  did you mean 'OA'?",
+        ),
+        (
+            "OA=12 mmm",
+            "parameters.OA: unknown unit\n  found:   'mmm'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n"
+            "  did you mean 'mm'?",
+        ),
+        (
+            "OA=1,5",
+            "parameters.OA: decimal comma: write 1.5\n  found:   '1,5'\n"
+            "  allowed: a decimal point; a list is written [1, 5]",
+        ),
         ("OA", "a name and a value are wanted\n  allowed: --set OA=120"),
     ],
-)  # fmt: skip
+)
 @pytest.mark.parametrize("command", ["run", "structure", "kinematics", "forces", "explain", "synthesis"])
 def test_a_setting_is_refused_as_in_the_file(command, setting, message):
     done = tmm(command, SHAPER, "--set", setting)
@@ -239,14 +248,23 @@ def test_masses_loads_and_pressures_are_said_before_the_tables():
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
-        ({"mean": "8.6"}, "mean speed has no unit and is taken as 8.6 rad/s = 82.12 rpm, though angles are in deg: "
-         "write `8.6 rad/s`, or `8.6 rpm`"),
-        ({"synchronous": "1500"}, "motor.synchronous has no unit and is taken as 1500 rad/s = 14324 rpm, though angles "
-         "are in deg: write `1500 rad/s`, or `1500 rpm`"),
-        ({"rated": "143"}, "motor.speed has no unit and is taken as 143 rad/s = 1366 rpm, though angles are in deg: "
-         "write `143 rad/s`, or `143 rpm`"),
+        (
+            {"mean": "8.6"},
+            "mean speed has no unit and is taken as 8.6 rad/s = 82.12 rpm, though angles are in deg: "
+            "write `8.6 rad/s`, or `8.6 rpm`",
+        ),
+        (
+            {"synchronous": "1500"},
+            "motor.synchronous has no unit and is taken as 1500 rad/s = 14324 rpm, though angles "
+            "are in deg: write `1500 rad/s`, or `1500 rpm`",
+        ),
+        (
+            {"rated": "143"},
+            "motor.speed has no unit and is taken as 143 rad/s = 1366 rpm, though angles are in deg: "
+            "write `143 rad/s`, or `143 rpm`",
+        ),
     ],
-)  # fmt: skip
+)
 def test_bare_speeds_of_the_law_of_motion_are_warned_of(changes, key):
     assert of_law(**changes) == [f"dynamics.{key} if turns a minute are meant"]
     assert of_law(**changes, file=TEXT.replace("angle: deg}", "angle: deg, angular speed: rad/s}")) == []
@@ -344,10 +362,16 @@ def test_cheeks_and_a_flywheel_are_no_slip_but_wrong_units_are():
     [
         ("centre: {on: CD, at: 0.5}", "centre: [24 m, 0]", "masses.3", "23350", "3", "CD"),
         ("at: [100, 30]", "at: [2 m, 0]", "loads.F", "2000", "5", ""),
-        ("output: 5", "springs: {s: {between: [0, 4], at: [O, {on: DE, at: 10}], rate: 1, free: 9}}\noutput: 5",
-         "springs.s", "1890", "4", "DE"),
+        (
+            "output: 5",
+            "springs: {s: {between: [0, 4], at: [O, {on: DE, at: 10}], rate: 1, free: 9}}\noutput: 5",
+            "springs.s",
+            "1890",
+            "4",
+            "DE",
+        ),
     ],
-)  # fmt: skip
+)
 def test_places_farther_than_the_mechanism_is_long_are_warned_of(old, new, key, distance, link, share):
     end = f", a share is written {{on: {share}, at: 50 %}}" if share else ""
     assert told((old, new)) == [
@@ -380,8 +404,11 @@ ONE_SLIDER = (
 
 
 def test_a_slider_that_is_described_by_two_links_is_warned_of():
-    for text in (TWICE, TWICE.replace("{on: y}", "{on: y, turned: 20}"), TWICE.replace("y: {through: [0, 0]}", "y: "
-                 "{through: [0, 0], angle: 180}")):  # fmt: skip
+    for text in (
+        TWICE,
+        TWICE.replace("{on: y}", "{on: y, turned: 20}"),
+        TWICE.replace("y: {through: [0, 0]}", "y: {through: [0, 0], angle: 180}"),
+    ):
         assert list(doubts(build(read_text(text, "x.yaml")))) == [ONE_SLIDER]
     apart = TWICE.replace("4: {points: [B]", "4: {points: [C]").replace("[A, B], length: 150", "{A: 0, B: 0, C: 0}")
     apart = apart.replace("{A: 0, B: 0, C: 0}", "{A: [0, 0], B: [150, 0], C: [75, 40]}")

@@ -31,22 +31,40 @@ from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem,
 @pytest.mark.parametrize(
     ("texts", "kind", "factor"),
     [
-        ("m м", "length", 1), ("mm мм", "length", 0.001), ("cm см", "length", 0.01), ("in", "length", 0.0254),
-        ("um μm µm мкм", "length", 1e-6), ("rad рад", "angle", 1), ("deg ° град º", "angle", math.pi / 180),
-        ("rev turn turns об", "angle", math.tau), ("s с c сек", "time", 1), ("min мин", "time", 60),
+        ("m м", "length", 1),
+        ("mm мм", "length", 0.001),
+        ("cm см", "length", 0.01),
+        ("in", "length", 0.0254),
+        ("um μm µm мкм", "length", 1e-6),
+        ("rad рад", "angle", 1),
+        ("deg ° град º", "angle", math.pi / 180),
+        ("rev turn turns об", "angle", math.tau),
+        ("s с c сек", "time", 1),
+        ("min мин", "time", 60),
         ("kg кг", "mass", 1),
-        ("g г", "mass", 0.001), ("t т", "mass", 1000), ("N Н H", "force", 1), ("kN кН кH", "force", 1000),
-        ("N*m N·m N⋅m Nm Н·м Нм N|m", "moment of force", 1), ("kN*m кН·м кНм", "moment of force", 1000),
-        ("kgf кгс", "force", 9.80665), ("tf тс", "force", 9806.65), ("kgf/cm2 кгс/см²", "pressure", 98066.5),
-        ("рад·с-1 rad·s-1", "angular speed", 1), ("мин-1", "angular speed", math.pi / 30), ("м·с-2", "acceleration", 1),
+        ("g г", "mass", 0.001),
+        ("t т", "mass", 1000),
+        ("N Н H", "force", 1),
+        ("kN кН кH", "force", 1000),
+        ("N*m N·m N⋅m Nm Н·м Нм N|m", "moment of force", 1),
+        ("kN*m кН·м кНм", "moment of force", 1000),
+        ("kgf кгс", "force", 9.80665),
+        ("tf тс", "force", 9806.65),
+        ("kgf/cm2 кгс/см²", "pressure", 98066.5),
+        ("рад·с-1 rad·s-1", "angular speed", 1),
+        ("мин-1", "angular speed", math.pi / 30),
+        ("м·с-2", "acceleration", 1),
         ("kg*m2 kg·m^2 kg*m**2 kg|m² кг·м² кг*м2", "moment of inertia", 1),
         ("m/s м/с m*s^-1 м·с⁻¹", "speed", 1),
-        ("m/s^2 м/с² m/s2", "acceleration", 1), ("rad/s рад/с рад/c", "angular speed", 1),
+        ("m/s^2 м/с² m/s2", "acceleration", 1),
+        ("rad/s рад/с рад/c", "angular speed", 1),
         ("rpm об/мин rev/min min^-1 мин⁻¹ 1/min 1/мин", "angular speed", math.pi / 30),
-        ("Hz Гц rev/s", "angular speed", math.tau), ("rad/s^2 рад/с²", "angular acceleration", 1),
-        ("N/mm Н/мм", "stiffness", 1000), ("%", "number", 0.01),
+        ("Hz Гц rev/s", "angular speed", math.tau),
+        ("rad/s^2 рад/с²", "angular acceleration", 1),
+        ("N/mm Н/мм", "stiffness", 1000),
+        ("%", "number", 0.01),
     ],
-)  # fmt: skip
+)
 def test_units_as_people_write_them(texts: str, kind: str, factor: float) -> None:
     for text in texts.split():
         unit = parse_unit(text.replace("|", " "))
@@ -100,8 +118,26 @@ def test_every_kind_has_its_article_and_an_example() -> None:
 
 def test_defaults_of_bare_numbers() -> None:
     units = UnitSystem()
-    symbols = ["", "mm", "deg", "s", "kg", "N", "N*m", "kg*m^2", "m/s", "m/s^2", "rad/s", "rad/s^2", "N/m", "N*m/rad",
-               "N*s/m", "N*m*s/rad", "MPa", "kg/m^3"]  # fmt: skip
+    symbols = [
+        "",
+        "mm",
+        "deg",
+        "s",
+        "kg",
+        "N",
+        "N*m",
+        "kg*m^2",
+        "m/s",
+        "m/s^2",
+        "rad/s",
+        "rad/s^2",
+        "N/m",
+        "N*m/rad",
+        "N*s/m",
+        "N*m*s/rad",
+        "MPa",
+        "kg/m^3",
+    ]
     assert [units.symbol(kind.dimension) for kind in KINDS.values()] == symbols
     assert units.factor(LENGTH) == 0.001
     assert units.factor(NUMBER) == 1
@@ -109,9 +145,12 @@ def test_defaults_of_bare_numbers() -> None:
 
 def test_every_unit_is_told_in_latin_letters_whatever_those_of_the_file() -> None:
     for kind, written, told in [
-        ("length", "мкм", "um"), ("angle", "°", "deg"), ("moment of force", "кН·м", "kN·m"),
-        ("moment of inertia", "кг·м²", "kg·m²"), ("angular speed", "мин⁻¹", "min⁻¹"),
-    ]:  # fmt: skip
+        ("length", "мкм", "um"),
+        ("angle", "°", "deg"),
+        ("moment of force", "кН·м", "kN·m"),
+        ("moment of inertia", "кг·м²", "kg·m²"),
+        ("angular speed", "мин⁻¹", "min⁻¹"),
+    ]:
         assert UnitSystem({kind: written}).symbol(KINDS[kind].dimension) == told
         assert parse_unit(told) == parse_unit(written)
     with spoken("sr"):
@@ -131,17 +170,21 @@ def test_a_file_chooses() -> None:
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        ({"length": "deg"}, "length: wrong unit\n  found:   'deg', an angle"
-         "\n  allowed: a unit of length, e.g. mm"),
-        ({"angle": "dge"}, "angle: unknown unit\n  found:   'dge'"
-         "\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n  did you mean 'deg'?"),
-        ({"lenght": "mm"}, "lenght: unknown key\n  found:   'lenght'"
-         "\n  allowed: length, angle, time, mass, force, moment, "
-         "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
-         "torsional stiffness, damping, torsional damping, pressure, density"
-          "\n  did you mean 'length'?"),
+        ({"length": "deg"}, "length: wrong unit\n  found:   'deg', an angle\n  allowed: a unit of length, e.g. mm"),
+        (
+            {"angle": "dge"},
+            "angle: unknown unit\n  found:   'dge'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n  did you mean 'deg'?",
+        ),
+        (
+            {"lenght": "mm"},
+            "lenght: unknown key\n  found:   'lenght'"
+            "\n  allowed: length, angle, time, mass, force, moment, "
+            "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
+            "torsional stiffness, damping, torsional damping, pressure, density"
+            "\n  did you mean 'length'?",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_file_chooses_wrongly(names: dict[str, str], message: str) -> None:
     with pytest.raises(ProblemError) as caught:
         UnitSystem(names)

@@ -45,10 +45,14 @@ def test_a_family_is_what_its_variants_are_one_by_one():
         assert abs(first.run[n, 0]) == pytest.approx(single.strokes.travel, rel=1e-14)
 
 
-@pytest.mark.parametrize("force", [
-    "[F, 0]", "{angle: 0, against: stroke, table: [[OA, F], [300, 2*F], [500, 0]]}",
-    "{angle: 0, against: share of stroke, table: [[5 %, F], [0.6, 2*F], [1, 0]]}",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "force",
+    [
+        "[F, 0]",
+        "{angle: 0, against: stroke, table: [[OA, F], [300, 2*F], [500, 0]]}",
+        "{angle: 0, against: share of stroke, table: [[5 %, F], [0.6, 2*F], [1, 0]]}",
+    ],
+)
 def test_loads_that_vary_are_those_of_the_variants_one_by_one(force):
     text = SHAPER.read_text(encoding="utf-8").replace("OA: 110", "OA: 110\n  F: 1500").replace("[1500, 0]", force)
     own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))

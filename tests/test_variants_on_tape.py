@@ -13,16 +13,18 @@ from tmm_cli.synthesis.reading import task_of
 
 ALWAYS = (", when: working stroke", ""), ("from: working stroke", "from: 90")
 TASKS = {
-    "class III": ("press-class-iii", (("CE: 310, ", ""), (", FE: 270", ""), *ALWAYS),
-                  "{CE: [200, 400], FE: [200, 350]}", "moment"),
+    "class III": (
+        "press-class-iii",
+        (("CE: 310, ", ""), (", FE: 270", ""), *ALWAYS),
+        "{CE: [200, 400], FE: [200, 350]}",
+        "moment",
+    ),
     "class III, margin": ("press-class-iii", (("CE: 310, ", ""),), "{CE: [250, 400]}", "margin"),
-    "class IV": ("class-iv", (("BD: 260, ", ""), *ALWAYS), "{BD: [255, 265]}",
-                 "{of: reaction, pair: D}"),
+    "class IV": ("class-iv", (("BD: 260, ", ""), *ALWAYS), "{BD: [255, 265]}", "{of: reaction, pair: D}"),
     "wheels with a lever group": ("sector-and-wheel", (("AB: 280, ", ""), *ALWAYS), "{AB: [270, 295]}", "moment"),
-    "wheels that come round after turns": ("three-lobes", (("OA: 100, ", ""), ALWAYS[0]), "{OA: [90, 110]}",
-                                           "moment"),
+    "wheels that come round after turns": ("three-lobes", (("OA: 100, ", ""), ALWAYS[0]), "{OA: [90, 110]}", "moment"),
     "two cranks": ("five-bar", (("l: 180, ", ""),), "{l: [175, 195]}", "moment"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("kind", TASKS)

@@ -51,22 +51,27 @@ def mirrored(it: Linkage) -> Linkage:
             replace(s, through=back(s.through), at=back(s.at), direction=-s.direction, turned=-s.turned)
             for s in it.slides
         ),
-        driver=driver(it.driver), others=tuple(driver(d) for d in it.others), meshes=tuple(mesh(m) for m in it.meshes),
+        driver=driver(it.driver),
+        others=tuple(driver(d) for d in it.others),
+        meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(
-            it.sketch, at=it.sketch.at * (1 if it.driver.kind == "slide" else -1),
+            it.sketch,
+            at=it.sketch.at * (1 if it.driver.kind == "slide" else -1),
             points={p: back(z) for p, z in it.sketch.points.items()},
             angles={n: -a for n, a in it.sketch.angles.items()},
         ),
         loads=tuple(load(x) for x in it.loads),
         springs=tuple(
             replace(
-                s, at_i=back(s.at_i), at_j=back(s.at_j),
+                s,
+                at_i=back(s.at_i),
+                at_j=back(s.at_j),
                 **({"free": -s.free, "preload": -s.preload} if s.turns else {}),
             )
             for s in it.springs
         ),
         gravity=back(it.gravity),
-    )  # fmt: skip
+    )
 
 
 def turned(it: Linkage, by: float) -> Linkage:
@@ -115,18 +120,22 @@ def turned(it: Linkage, by: float) -> Linkage:
             n: x if n != FRAME else replace(x, points={p: q * z for p, q in x.points.items()})
             for n, x in it.links.items()
         },
-        slides=tuple(slide(s) for s in it.slides), driver=drivers[0], others=tuple(drivers[1:]),
+        slides=tuple(slide(s) for s in it.slides),
+        driver=drivers[0],
+        others=tuple(drivers[1:]),
         meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(it.sketch, at=at, points={p: q * z for p, q in it.sketch.points.items()}, angles=angles),
         loads=tuple(
             replace(
-                x, force=x.force if x.follows or x.resists else x.force * z,
+                x,
+                force=x.force if x.follows or x.resists else x.force * z,
                 window=x.window and (x.window[0] + by, x.window[1] + by),
             )
             for x in it.loads
         ),
-        springs=tuple(spring(s) for s in it.springs), gravity=it.gravity * z,
-    )  # fmt: skip
+        springs=tuple(spring(s) for s in it.springs),
+        gravity=it.gravity * z,
+    )
 
 
 def _twisted(spring, by):
@@ -203,23 +212,33 @@ def with_other_axes(it: Linkage, seed: int, *, driver: bool = True) -> tuple[Lin
         },
         slides=tuple(
             replace(
-                s, through=own(s.carrier, s.through), at=own(s.runner, s.at), direction=s.direction - turns[s.carrier],
+                s,
+                through=own(s.carrier, s.through),
+                at=own(s.runner, s.at),
+                direction=s.direction - turns[s.carrier],
                 turned=s.turned + turns[s.runner] - turns[s.carrier],
             )
             for s in it.slides
         ),
-        driver=drivers[0], others=tuple(drivers[1:]), meshes=tuple(mesh(m) for m in it.meshes),
+        driver=drivers[0],
+        others=tuple(drivers[1:]),
+        meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(
-            it.sketch, at=drivers[0].at if it.driver.kind == "turn" else it.sketch.at,
+            it.sketch,
+            at=drivers[0].at if it.driver.kind == "turn" else it.sketch.at,
             angles={n: places[n] for n in it.sketch.angles},
         ),
         loads=tuple(load(x) for x in it.loads),
         springs=tuple(
-            replace(s, at_i=own(s.i, s.at_i), at_j=own(s.j, s.at_j),
-                    free=s.free + (turns[s.j] - turns[s.i] if s.turns else 0.0))
+            replace(
+                s,
+                at_i=own(s.i, s.at_i),
+                at_j=own(s.j, s.at_j),
+                free=s.free + (turns[s.j] - turns[s.i] if s.turns else 0.0),
+            )
             for s in it.springs
         ),
-    ), turns  # fmt: skip
+    ), turns
 
 
 def sized(it: Linkage, size: float) -> Linkage:
@@ -248,22 +267,26 @@ def sized(it: Linkage, size: float) -> Linkage:
         it,
         links={
             n: replace(
-                x, points={p: z * size for p, z in x.points.items()}, centre=x.centre * size,
+                x,
+                points={p: z * size for p, z in x.points.items()},
+                centre=x.centre * size,
                 inertia=x.inertia * size**2,
             )
             for n, x in it.links.items()
         },
         slides=tuple(replace(s, through=s.through * size, at=s.at * size) for s in it.slides),
-        driver=driver(it.driver), others=tuple(driver(d) for d in it.others), meshes=tuple(mesh(m) for m in it.meshes),
+        driver=driver(it.driver),
+        others=tuple(driver(d) for d in it.others),
+        meshes=tuple(mesh(m) for m in it.meshes),
         sketch=replace(
-            it.sketch, at=it.sketch.at * (size if it.driver.kind == "slide" else 1),
+            it.sketch,
+            at=it.sketch.at * (size if it.driver.kind == "slide" else 1),
             points={p: z * size for p, z in it.sketch.points.items()},
         ),
-        loads=tuple(
-            replace(x, at=x.at * size, force=x.force * size, moment=x.moment * size**2) for x in it.loads
-        ),
-        springs=tuple(spring(s) for s in it.springs), gravity=it.gravity * size,
-    )  # fmt: skip
+        loads=tuple(replace(x, at=x.at * size, force=x.force * size, moment=x.moment * size**2) for x in it.loads),
+        springs=tuple(spring(s) for s in it.springs),
+        gravity=it.gravity * size,
+    )
 
 
 def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, str]]:
@@ -293,37 +316,46 @@ def renamed(it: Linkage, seed: int) -> tuple[Linkage, dict[str, str], dict[str, 
             it.links[n], name=names[n], points={points[p]: z for p, z in shuffled(it.links[n].points.items())}
         )
         for n in (FRAME, *shuffled(it.moving))
-    }  # fmt: skip
-    return replace(
-        it, links=links,
-        hinges=tuple(
-            Hinge(points[h.point], tuple(names[n] for n in shuffled(h.links)), names.get(h.attached_to, ""))
-            for h in shuffled(it.hinges)
+    }
+    return (
+        replace(
+            it,
+            links=links,
+            hinges=tuple(
+                Hinge(points[h.point], tuple(names[n] for n in shuffled(h.links)), names.get(h.attached_to, ""))
+                for h in shuffled(it.hinges)
+            ),
+            slides=tuple(
+                replace(s, carrier=names[s.carrier], runner=names[s.runner], point=points.get(s.point, ""))
+                for s in shuffled(it.slides)
+            ),
+            driver=driver(it.driver),
+            others=tuple(driver(d) for d in shuffled(it.others)),
+            meshes=tuple(replace(m, i=names[m.i], j=names[m.j], carrier=names[m.carrier]) for m in shuffled(it.meshes)),
+            sketch=replace(
+                it.sketch,
+                points={points[p]: z for p, z in shuffled(it.sketch.points.items())},
+                angles={names[n]: a for n, a in shuffled(it.sketch.angles.items())},
+            ),
+            loads=tuple(
+                replace(
+                    x,
+                    link=names[x.link],
+                    base=names[x.base],
+                    point=points.get(x.point, ""),
+                    stroke_link=output_name(x.stroke_link),
+                    table=x.table and replace(x.table, stroke_link=output_name(x.table.stroke_link)),
+                )
+                for x in shuffled(it.loads)
+            ),
+            springs=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.springs)),
+            friction=tuple(replace(f, pair=points.get(f.pair, f.pair)) for f in shuffled(it.friction)),
+            output=it.output and output(it.output),
+            outputs=tuple(output(o) for o in it.outputs),
         ),
-        slides=tuple(
-            replace(s, carrier=names[s.carrier], runner=names[s.runner], point=points.get(s.point, ""))
-            for s in shuffled(it.slides)
-        ),
-        driver=driver(it.driver), others=tuple(driver(d) for d in shuffled(it.others)),
-        meshes=tuple(
-            replace(m, i=names[m.i], j=names[m.j], carrier=names[m.carrier]) for m in shuffled(it.meshes)
-        ),
-        sketch=replace(
-            it.sketch, points={points[p]: z for p, z in shuffled(it.sketch.points.items())},
-            angles={names[n]: a for n, a in shuffled(it.sketch.angles.items())},
-        ),
-        loads=tuple(
-            replace(
-                x, link=names[x.link], base=names[x.base], point=points.get(x.point, ""),
-                stroke_link=output_name(x.stroke_link),
-                table=x.table and replace(x.table, stroke_link=output_name(x.table.stroke_link)),
-            )
-            for x in shuffled(it.loads)
-        ),
-        springs=tuple(replace(s, i=names[s.i], j=names[s.j]) for s in shuffled(it.springs)),
-        friction=tuple(replace(f, pair=points.get(f.pair, f.pair)) for f in shuffled(it.friction)),
-        output=it.output and output(it.output), outputs=tuple(output(o) for o in it.outputs),
-    ), names, points  # fmt: skip
+        names,
+        points,
+    )
 
 
 def reversed_in_time(it: Linkage) -> Linkage:
@@ -333,7 +365,9 @@ def reversed_in_time(it: Linkage) -> Linkage:
         return replace(d, sense=-d.sense, acceleration=-d.acceleration)
 
     return replace(
-        it, driver=driver(it.driver), others=tuple(driver(d) for d in it.others),
+        it,
+        driver=driver(it.driver),
+        others=tuple(driver(d) for d in it.others),
         springs=tuple(replace(s, damping=-s.damping) for s in it.springs),
         loads=tuple(replace(x, force=-x.force, moment=-x.moment) if x.resists else x for x in it.loads),
-    )  # fmt: skip
+    )

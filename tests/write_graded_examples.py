@@ -22,14 +22,36 @@ from tmm_cli.grading.sheet import predicted, right
 from tmm_cli.problem.reader import read_file
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
-NAMES = ["Antonova", "Borisov", "Vasic", "Georgieva", "Dimitrov", "Jovanovic", "Zaitseva", "Ivanov", "Kovac",
-         "Lebedeva", "Markovic", "Novak"]  # fmt: skip
+NAMES = [
+    "Antonova",
+    "Borisov",
+    "Vasic",
+    "Georgieva",
+    "Dimitrov",
+    "Jovanovic",
+    "Zaitseva",
+    "Ivanov",
+    "Kovac",
+    "Lebedeva",
+    "Markovic",
+    "Novak",
+]
 DRAWING = 0.01  # of the largest value
 MISTAKES = {  # of the students, by number: the mistake, or of whom the sheet was copied, or what broke
-    3: "Coriolis", 4: "Rpm", 5: "WeightForMass", 6: "Sense", 7: "OppositeReaction", 8: "copy", 9: "broken", 10: "late",
-}  # fmt: skip
+    3: "Coriolis",
+    4: "Rpm",
+    5: "WeightForMass",
+    6: "Sense",
+    7: "OppositeReaction",
+    8: "copy",
+    9: "broken",
+    10: "late",
+}
 TASKS = {
-    "shaper": ("shaper", "variants: {OA: {from: 95, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}", """
+    "shaper": (
+        "shaper",
+        "variants: {OA: {from: 95, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}",
+        """
 grading:
   answers:
     - {of: class}
@@ -42,9 +64,13 @@ grading:
     - {of: R_34, at: [3, 7], points: 2}
     - {of: R_03, at: 7, points: 2}
     - {of: M_b, at: [3, 7], points: 3}
-"""),
-    "six-bar": ("six-bar", "variants: {OA: {from: 80, to: 105, step: 5}, BF: {from: 430, to: 490, step: 10}, "
-                "n1: {from: 80 rpm, to: 110 rpm, step: 5 rpm}}", """
+""",
+    ),
+    "six-bar": (
+        "six-bar",
+        "variants: {OA: {from: 80, to: 105, step: 5}, BF: {from: 430, to: 490, step: 10}, "
+        "n1: {from: 80 rpm, to: 110 rpm, step: 5 rpm}}",
+        """
 grading:
   from: either
   count: 1
@@ -59,9 +85,12 @@ grading:
     - {of: U of 5, at: [4, 9]}
     - {of: R_45, at: [4, 9], points: 2}
     - {of: M_b, at: [4, 9], points: 3}
-"""),
+""",
+    ),
     "crank-slider": (
-        "crank-slider", "variants: {r: {from: 50, to: 70, step: 5}, l: {from: 200, to: 240, step: 10}}", """
+        "crank-slider",
+        "variants: {r: {from: 50, to: 70, step: 5}, l: {from: 200, to: 240, step: 10}}",
+        """
 grading:
   drawn: false
   answers:
@@ -71,14 +100,24 @@ grading:
     - {of: a of B, at: [2, 5, 8]}
     - {of: R_12, at: [2, 5, 8], points: 2}
     - {of: M_b, at: [2, 5, 8], points: 2}
-"""),
-}  # fmt: skip
+""",
+    ),
+}
 
 
 def written(asked, value):
     """An answer as a student writes it: number and unit."""
-    units = {"H": ("mm", 1e3), "s of": ("mm", 1e3), "v of": ("m/s", 1), "omeg": ("1/s", 1), "a of": ("m/s^2", 1),
-             "epsi": ("1/s^2", 1), "U of": ("N", 1), "R_": ("N", 1), "M_b": ("N*m", 1)}  # fmt: skip
+    units = {
+        "H": ("mm", 1e3),
+        "s of": ("mm", 1e3),
+        "v of": ("m/s", 1),
+        "omeg": ("1/s", 1),
+        "a of": ("m/s^2", 1),
+        "epsi": ("1/s^2", 1),
+        "U of": ("N", 1),
+        "R_": ("N", 1),
+        "M_b": ("N*m", 1),
+    }
     unit, factor = next((u for start, u in units.items() if asked.quantity.name.startswith(start)), ("", 1))
     value = value * factor
     if asked.quantity.against == "exact":
@@ -172,10 +211,15 @@ def hand_in(task, name, folder, found):
             writer = csv.writer(file)
             writer.writerow(["student", *heads])
             for n, (student, row) in enumerate(zip(NAMES, cells, strict=True)):
-                own = [f"{value} {unit}" if " at " not in value else value.replace(" at", f" {unit} at")
-                       for value, unit in row]  # fmt: skip
-                writer.writerow([student, *(["=2+3", "n/a"] * 99)[: len(own)]] if MISTAKES.get(n) == "broken" else
-                                [student, *map(str.strip, own)])  # fmt: skip
+                own = [
+                    f"{value} {unit}" if " at " not in value else value.replace(" at", f" {unit} at")
+                    for value, unit in row
+                ]
+                writer.writerow(
+                    [student, *(["=2+3", "n/a"] * 99)[: len(own)]]
+                    if MISTAKES.get(n) == "broken"
+                    else [student, *map(str.strip, own)]
+                )
     else:  # a workbook, units in the header
         book = xlsxwriter.Workbook(str(folder / "answers.xlsx"), {"strings_to_formulas": False})
         book.set_properties({"created": datetime(2026, 1, 1)})  # the same bytes whenever it is written

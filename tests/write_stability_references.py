@@ -176,8 +176,12 @@ def dead(r, seed):
         if abs(cosine) > 0.9 or abs(b - c) < 0.1:
             continue
         turn, inward = r.choice((1, -1)), -1 if seed % 2 == 0 else 1
-        n |= {"critical": text(mp.arg(base) + turn * mp.acos(cosine)), "sense": Decimal(turn * inward),
-              "side": Decimal(r.choice((1, -1))), "back": Decimal("0.3")}  # fmt: skip
+        n |= {
+            "critical": text(mp.arg(base) + turn * mp.acos(cosine)),
+            "sense": Decimal(turn * inward),
+            "side": Decimal(r.choice((1, -1))),
+            "back": Decimal("0.3"),
+        }
         if sound(n, (Decimal("0.1"), Decimal("0.3"))):
             return n
 
@@ -198,8 +202,15 @@ def parallelogram(r, seed):
     m, a = r.choice((5, 7, 9)), r.choice((13, 17, 53, 61))
     x, y = Decimal(r.randint(-16, 16)) / 64, Decimal(r.randint(-16, 16)) / 64
     unit = Decimal(m) / 64
-    n = {"a": Decimal(a) / 64, "b": unit * length, "c": Decimal(a) / 64, "Ox": x, "Oy": y,
-         "Dx": x + unit * p, "Dy": y + unit * s}  # fmt: skip
+    n = {
+        "a": Decimal(a) / 64,
+        "b": unit * length,
+        "c": Decimal(a) / 64,
+        "Ox": x,
+        "Oy": y,
+        "Dx": x + unit * p,
+        "Dy": y + unit * s,
+    }
     turn = r.choice((1, -1))
     critical = mp.atan2(s, p) + (mp.pi if seed == 4 else 0)
     # the parallelogram has B beyond D: on the left of AD where the crank is on the left of OD
@@ -239,8 +250,13 @@ def shaped(it, q):
 def inclined(r):
     """A direction, a pivot, a place of the crank."""
     p, s, h = r.choice(UPRIGHT)
-    return {"Ox": decimals(r, -0.3, 0.3), "Oy": decimals(r, -0.3, 0.3), "ux": r.choice((1, -1)) * Decimal(p) / h,
-            "uy": r.choice((1, -1)) * Decimal(s) / h, "q": decimals(r, 0.2, 2.9)}  # fmt: skip
+    return {
+        "Ox": decimals(r, -0.3, 0.3),
+        "Oy": decimals(r, -0.3, 0.3),
+        "ux": r.choice((1, -1)) * Decimal(p) / h,
+        "uy": r.choice((1, -1)) * Decimal(s) / h,
+        "q": decimals(r, 0.2, 2.9),
+    }
 
 
 def pin(n):
@@ -275,8 +291,13 @@ def crank_rocker(r):
 
 def sized(r, seed):
     if seed % 2:
-        return {"r": decimals(r, 0.1, 0.3), "l": decimals(r, 0.5, 0.9), "Ox": decimals(r, -0.3, 0.3),
-                "Oy": decimals(r, -0.3, 0.3), "q": decimals(r, 0.3, 2.8)}  # fmt: skip
+        return {
+            "r": decimals(r, 0.1, 0.3),
+            "l": decimals(r, 0.5, 0.9),
+            "Ox": decimals(r, -0.3, 0.3),
+            "Oy": decimals(r, -0.3, 0.3),
+            "q": decimals(r, 0.3, 2.8),
+        }
     return crank_rocker(r) | {"side": Decimal(r.choice((1, -1))), "q": decimals(r, 0.3, 2.8)}
 
 
@@ -298,8 +319,16 @@ def folding(r, seed):
     """A triad like that of the bank whose crank is too long to go round."""
     while True:
         n = {"a": decimals(r, 0.06, 0.12), "leg": decimals(r, 0.1, 0.12), "at": Decimal("1.5")}
-        near = {"O": (0, 0), "C": (160, 0), "D": (130, 180), "Q": (230, 0), "R": (140, 150), "P": (43, 141),
-                "q": (256, 54), "r": (230, 227)}  # fmt: skip
+        near = {
+            "O": (0, 0),
+            "C": (160, 0),
+            "D": (130, 180),
+            "Q": (230, 0),
+            "R": (140, 150),
+            "P": (43, 141),
+            "q": (256, 54),
+            "r": (230, 227),
+        }
         for key, (x, y) in near.items():
             shake = r.randint(-9, 9), r.randint(-9, 9)
             n |= {key + "x": Decimal(x + shake[0]) / 1000, key + "y": Decimal(y + shake[1]) / 1000}
@@ -313,11 +342,17 @@ def folding(r, seed):
 
 
 NUMBERS = {
-    "dead-position": dead, "change-point": parallelogram, "outer-tangent": tangent(True),
+    "dead-position": dead,
+    "change-point": parallelogram,
+    "outer-tangent": tangent(True),
     "inner-tangent": tangent(False),
-    "stone-over-pivot": stone, "short-rod": rod, "long-rod": rod, "size": sized, "three-in-line": in_line,
+    "stone-over-pivot": stone,
+    "short-rod": rod,
+    "long-rod": rod,
+    "size": sized,
+    "three-in-line": in_line,
     "two-assemblies-lost": folding,
-}  # fmt: skip
+}
 
 
 def starts(family, n):

@@ -33,10 +33,14 @@ def long_runs():
     _, objective, seed, numbers, _ = min(runs)
     names = [parameter.name for parameter in search.task.parameters]
     return {
-        "problem": SEARCHED, "objective": objective, "numbers": dict(zip(names, numbers, strict=True)),
-        "seed": seed, "population": population, "generations": generations,
+        "problem": SEARCHED,
+        "objective": objective,
+        "numbers": dict(zip(names, numbers, strict=True)),
+        "seed": seed,
+        "population": population,
+        "generations": generations,
         "runs": [{"seed": s, "objective": f, "missed": m, "evaluations": n} for m, f, s, _, n in runs],
-    }  # fmt: skip
+    }
 
 
 if __name__ == "__main__":

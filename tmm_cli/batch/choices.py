@@ -63,9 +63,10 @@ def _choices(task: Task, blocks: Blocks) -> tuple[Choice, ...]:
     ranges = blocks.variants
     if not ranges:
         raise ProblemError(
-            _("nothing is free"), path=("variants",),
+            _("nothing is free"),
+            path=("variants",),
             allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
-        )  # fmt: skip
+        )
     found = []
     for name, own in ranges.items():
         with under("variants", name):
@@ -103,9 +104,11 @@ def _steps(
     count = (high - low) / step + SAME if step > 0 else math.inf
     if not 1 <= count < MOST:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1), path=("step",),
-            found=quote(values[2]), allowed=_("another step; or bounds without steps, [low, high]"),
-        )  # fmt: skip
+            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1),
+            path=("step",),
+            found=quote(values[2]),
+            allowed=_("another step; or bounds without steps, [low, high]"),
+        )
     return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 
 

@@ -270,10 +270,11 @@ class Marches:
             dets = {
                 f"det{k}": at.det
                 for k, at in enumerate(
-                    at for kernel, at in zip(own, states.placements, strict=True)
+                    at
+                    for kernel, at in zip(own, states.placements, strict=True)
                     if isinstance(kernel, Unrolled) and not kernel.linear
                 )
-            }  # fmt: skip
+            }
             return {**unknowns(states), **dets}
 
         self.program = record(stages, *[1] * (many + 1 + wants(kernels)))

@@ -141,9 +141,13 @@ class Batch:
 
 
 def prepare(
-    linkages: Sequence[Linkage] | Linkage, wanted: Wanted = everything, *, forces: bool = True,
-    own_places: bool = False, strokes: Strokes | None = None,
-) -> Batch:  # fmt: skip
+    linkages: Sequence[Linkage] | Linkage,
+    wanted: Wanted = everything,
+    *,
+    forces: bool = True,
+    own_places: bool = False,
+    strokes: Strokes | None = None,
+) -> Batch:
     """Linkages that differ in their numbers only, ready to be solved for what is asked.
 
     forces: whether that needs reactions. own_places: whether each variant will be solved at places of its own.
@@ -217,9 +221,17 @@ def straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...
 
 
 def solved(
-    linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: Any, wanted: Wanted, forces: bool,
-    strokes: Strokes | None, *, blank: bool = True, start: Any = None,
-) -> Mapping[str, Any]:  # fmt: skip
+    linkage: Linkage,
+    structure: Structure,
+    kernels: tuple[Kernel, ...],
+    q: Any,
+    wanted: Wanted,
+    forces: bool,
+    strokes: Strokes | None,
+    *,
+    blank: bool = True,
+    start: Any = None,
+) -> Mapping[str, Any]:
     """The stages with time as the parameter of the motion, so that no transfer function needs be scaled.
 
     start: where the driver's law begins (rad or m); in the sketch when left out.

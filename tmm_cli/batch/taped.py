@@ -229,9 +229,16 @@ class OneByOne:
         q = ranges.at(places)[0]
         with np.errstate(all="ignore"):
             found = solved(
-                linkage, mechanism.structure, mechanism.kernels, q, self.wanted, self.forces, strokes, blank=True,
+                linkage,
+                mechanism.structure,
+                mechanism.kernels,
+                q,
+                self.wanted,
+                self.forces,
+                strokes,
+                blank=True,
                 start=start,
-            )  # fmt: skip
+            )
         if variant.wanted:
             found = {**found, WANTED: ranges.wanted_at(places)[0]}
         return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}

@@ -206,9 +206,10 @@ class Task:
         values = ValueReader(self._parameters({}), self.units)
         with placed_in(self.tree):
             return tuple(
-                asked for n, rule in enumerate(rules.answers)
+                asked
+                for n, rule in enumerate(rules.answers)
                 for asked in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
-            )  # fmt: skip
+            )
 
     def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Asked]:
         quantity = self.quantities.get(rule.of)
@@ -226,15 +227,19 @@ class Task:
         if quantity.whole == bool(rule.at):
             why = _("{quantity} has no position") if quantity.whole else _("{quantity} is asked at a position")
             raise ProblemError(
-                why.format(quantity=rule.of), path=(*path, "at"), found=quote(rule.at) if rule.at else None,
+                why.format(quantity=rule.of),
+                path=(*path, "at"),
+                found=quote(rule.at) if rule.at else None,
                 allowed=None if quantity.whole else f"at: {rules.count + 3}",
-            )  # fmt: skip
+            )
         for k, number in enumerate(rule.at):
             if not rules.count <= number < last + rules.count:
                 raise ProblemError(
-                    _("there is no such position"), path=(*path, "at", k), found=str(number),
+                    _("there is no such position"),
+                    path=(*path, "at", k),
+                    found=str(number),
                     allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
-                )  # fmt: skip
+                )
         if quantity.whole:
             return [Asked(quantity, None, None, points, tolerance, drawn)]
         return [Asked(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]

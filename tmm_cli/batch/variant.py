@@ -83,9 +83,7 @@ def parts(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str
         def one(piece: int | complex) -> Any:
             return piece.real if isinstance(piece, complex) else data[piece]
 
-        return {
-            path: one(at[0]) if len(at) == 1 else one(at[0]) + 1j * one(at[1]) for path, at in places.items()
-        }  # fmt: skip
+        return {path: one(at[0]) if len(at) == 1 else one(at[0]) + 1j * one(at[1]) for path, at in places.items()}
 
     return columns, together
 
@@ -203,8 +201,9 @@ def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:
     poses = move(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
     points = {
         point: complex(poses[link].at(local)[0])
-        for link in linkage.moving for point, local in linkage.links[link].points.items()
-    }  # fmt: skip
+        for link in linkage.moving
+        for point, local in linkage.links[link].points.items()
+    }
     driven = {driver.link for driver in linkage.cranks}
     angles = {link: float(np.angle(poses[link].z)[0]) for link in linkage.moving if link not in driven}
     return Sketch(at, points, angles)

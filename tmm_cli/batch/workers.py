@@ -159,9 +159,10 @@ def _refuse_other_programs(client: Any, address: str) -> None:
         worker, (version, digest) = other
         found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or one from before this check")
         raise ProblemError(
-            _("a worker has another version of tmm than this one"), found=f"{worker}: {found}",
+            _("a worker has another version of tmm than this one"),
+            found=f"{worker}: {found}",
             allowed=_("{version} on each worker").format(version=f"tmm {here[0]} ({here[1][:8]})"),
-        )  # fmt: skip
+        )
 
 
 def _no_workers(address: str) -> ProblemError:

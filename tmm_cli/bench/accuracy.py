@@ -20,9 +20,12 @@ from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.reports.table import Table
 
 NAMED: dict[Compared, str] = {
-    "positions": "Positions", "velocities": "Velocities", "accelerations": "Accelerations",
-    "reactions": "Reactions", "balancing": "Balancing moment",
-}  # fmt: skip
+    "positions": "Positions",
+    "velocities": "Velocities",
+    "accelerations": "Accelerations",
+    "reactions": "Reactions",
+    "balancing": "Balancing moment",
+}
 COUNT = 360  # positions of a timed run
 REPEATS, REDUCED_REPEATS = 15, 3
 TARGETS: dict[Compared, float] = {quantity: 1e-14 if quantity == "positions" else 1e-13 for quantity in QUANTITIES}
@@ -61,9 +64,11 @@ class Accuracy(Measured):
         """Where the product misses its targets."""
         return tuple(
             f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
-            for row in self.rows if row.method in (OURS.name, TAPED.name)
-            for quantity in QUANTITIES if not row.errors[quantity] <= slack(self.reduced) * TARGETS[quantity]
-        )  # fmt: skip
+            for row in self.rows
+            if row.method in (OURS.name, TAPED.name)
+            for quantity in QUANTITIES
+            if not row.errors[quantity] <= slack(self.reduced) * TARGETS[quantity]
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """JSON: what is not given or not timed is null, an infinite error (the method failed) is "inf"."""
@@ -75,23 +80,41 @@ class Accuracy(Measured):
     def lines(self) -> list[Sequence[object]]:
         """A line a linkage and method."""
         header = ("linkage", "method", "family", "setting", "us_per_position", *QUANTITIES)
-        return [header, *(
-            (row.linkage, row.method, row.family, cell(row.setting), cell(row.microseconds, 4),
-             *(cell(row.errors[quantity]) for quantity in QUANTITIES)) for row in self.rows
-        )]  # fmt: skip
+        return [
+            header,
+            *(
+                (
+                    row.linkage,
+                    row.method,
+                    row.family,
+                    cell(row.setting),
+                    cell(row.microseconds, 4),
+                    *(cell(row.errors[quantity]) for quantity in QUANTITIES),
+                )
+                for row in self.rows
+            ),
+        ]
 
     @property
     def tables(self) -> tuple[Table, ...]:
         """One a linkage."""
         return tuple(
             words(
-                "accuracy", f"Errors over the largest value in the cycle: {name}",
+                "accuracy",
+                f"Errors over the largest value in the cycle: {name}",
                 ("method", "µs a position", *NAMED.values()),
-                [(row.method, "-" if row.microseconds is None else f"{row.microseconds:.3g}",
-                  *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in NAMED))
-                 for row in self.rows if row.linkage == name],
-            ) for name in self.linkages
-        )  # fmt: skip
+                [
+                    (
+                        row.method,
+                        "-" if row.microseconds is None else f"{row.microseconds:.3g}",
+                        *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in NAMED),
+                    )
+                    for row in self.rows
+                    if row.linkage == name
+                ],
+            )
+            for name in self.linkages
+        )
 
 
 def _plain(value: float) -> float | str | None:

@@ -30,7 +30,19 @@ def cross(a: Any, b: Any) -> Any:
     return a.real * b.imag - a.imag * b.real
 
 
-def crank_slider(q: Any, *, r: Any, l: Any, s: float, m1: float, m2: float, J2: float, m3: float, w: float, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501, E741
+def crank_slider(
+    q: Any,
+    *,
+    r: Any,
+    l: Any,  # noqa: E741
+    s: float,
+    m1: float,
+    m2: float,
+    J2: float,
+    m3: float,
+    w: float,
+    F: float,
+) -> dict[str, Any]:
     """Crank OA, rod AB with its centre of mass at the share s of its length, slider on the x axis; S1 at O."""
     c, sn = np.cos(q), np.sin(q)
     w2 = w * w
@@ -58,12 +70,28 @@ def crank_slider(q: Any, *, r: Any, l: Any, s: float, m1: float, m2: float, J2: 
     T = -cross(A, -RA)
     RO = RA + 1j * (m1 * G)
     return {
-        "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "S2.x": S, "S2.v": vS, "S2.a": aS,
-        "2.omega": omega, "2.epsilon": epsilon, "R.A": RA, "R.B": RB, "R.x": N, "R.O": RO, "T.1": T,
-    }  # fmt: skip
+        "A.x": A,
+        "A.v": vA,
+        "A.a": aA,
+        "B.x": B,
+        "B.v": vB,
+        "B.a": aB,
+        "S2.x": S,
+        "S2.v": vS,
+        "S2.a": aS,
+        "2.omega": omega,
+        "2.epsilon": epsilon,
+        "R.A": RA,
+        "R.B": RB,
+        "R.x": N,
+        "R.O": RO,
+        "T.1": T,
+    }
 
 
-def six_bar(q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: complex, w: float, m: Any, J: Any, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501
+def six_bar(
+    q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: complex, w: float, m: Any, J: Any, F: float
+) -> dict[str, Any]:
     """Crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider on the level y.
 
     Centres of mass: of the crank at its middle, of the coupler at S2 (its axes, as a share of b), of the rocker at 0.4
@@ -119,14 +147,36 @@ def six_bar(q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: com
     T = -cross(OS1, P1) + cross(A, RA)
     RO = RA - P1
     return {
-        "A.x": A, "A.v": vA, "A.a": aA, "B.x": B, "B.v": vB, "B.a": aB, "F.x": F5, "F.v": vF, "F.a": aF,
+        "A.x": A,
+        "A.v": vA,
+        "A.a": aA,
+        "B.x": B,
+        "B.v": vB,
+        "B.a": aB,
+        "F.x": F5,
+        "F.v": vF,
+        "F.a": aF,
         **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(4)},
-        "2.omega": omega2, "3.omega": omega3, "4.omega": omega4, "2.epsilon": epsilon2, "3.epsilon": epsilon3,
-        "4.epsilon": epsilon4, "R.A": RA, "R.B": X, "R.B''": R4, "R.D": RD, "R.F": RF, "R.x": N, "R.O": RO, "T.1": T,
-    }  # fmt: skip
+        "2.omega": omega2,
+        "3.omega": omega3,
+        "4.omega": omega4,
+        "2.epsilon": epsilon2,
+        "3.epsilon": epsilon3,
+        "4.epsilon": epsilon4,
+        "R.A": RA,
+        "R.B": X,
+        "R.B''": R4,
+        "R.D": RD,
+        "R.F": RF,
+        "R.x": N,
+        "R.O": RO,
+        "T.1": T,
+    }
 
 
-def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at: complex, w: float, m: Any, J: Any, F: float) -> dict[str, Any]:  # fmt: skip  # noqa: E501
+def shaper(
+    q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at: complex, w: float, m: Any, J: Any, F: float
+) -> dict[str, Any]:
     """Crank OA = a, OC = f down, slotted link CD = c, rod DE = e, ram on the level y; stone hinged to the crank in A.
 
     Centres of mass: crank at 0.3, slotted link and rod at their middles, stone in A, ram at S5 from E. The force F acts
@@ -176,11 +226,31 @@ def shaper(q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at:
     T = -cross(OS1, P1) + cross(A, RA)
     RO = RA - P1
     return {
-        "A.x": A, "A.v": vA, "A.a": aA, "D.x": D, "D.v": vD, "D.a": aD, "E.x": E, "E.v": vE, "E.a": aE,
+        "A.x": A,
+        "A.v": vA,
+        "A.a": aA,
+        "D.x": D,
+        "D.v": vD,
+        "D.a": aD,
+        "E.x": E,
+        "E.v": vE,
+        "E.a": aE,
         **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(5)},
-        "3.omega": omega3, "4.omega": omega4, "3.epsilon": epsilon3, "4.epsilon": epsilon4, "R.A": RA,
-        "R.A'": Q, "M.A'": couple2, "R.C": RC, "R.D": RD, "R.E": RE, "R.x": N, "M.x": couple5, "R.O": RO, "T.1": T,
-    }  # fmt: skip
+        "3.omega": omega3,
+        "4.omega": omega4,
+        "3.epsilon": epsilon3,
+        "4.epsilon": epsilon4,
+        "R.A": RA,
+        "R.A'": Q,
+        "M.A'": couple2,
+        "R.C": RC,
+        "R.D": RD,
+        "R.E": RE,
+        "R.x": N,
+        "M.x": couple5,
+        "R.O": RO,
+        "T.1": T,
+    }
 
 
 Arguments = Callable[[Linkage], dict[str, Any]]
@@ -247,9 +317,11 @@ def _masses(linkage: Linkage) -> dict[str, Any]:
     links = [linkage.links[name] for name in sorted(linkage.moving)]
     driver = linkage.driver
     return {
-        "m": [link.mass for link in links], "J": [link.inertia for link in links], "w": driver.sense * driver.rate,
+        "m": [link.mass for link in links],
+        "J": [link.inertia for link in links],
+        "w": driver.sense * driver.rate,
         "F": linkage.loads[0].force,
-    }  # fmt: skip
+    }
 
 
 def _length(linkage: Linkage, link: str, point: str) -> float:
@@ -260,25 +332,42 @@ def _crank_slider(linkage: Linkage) -> dict[str, Any]:
     all_of = _masses(linkage)
     (m1, m2, m3), rod = all_of["m"], linkage.links["2"]
     return {
-        "r": _length(linkage, "1", "A"), "l": _length(linkage, "2", "B"), "s": 0.35, "m1": m1, "m2": m2,
-        "J2": rod.inertia, "m3": m3, "w": all_of["w"], "F": all_of["F"],
-    }  # fmt: skip
+        "r": _length(linkage, "1", "A"),
+        "l": _length(linkage, "2", "B"),
+        "s": 0.35,
+        "m1": m1,
+        "m2": m2,
+        "J2": rod.inertia,
+        "m3": m3,
+        "w": all_of["w"],
+        "F": all_of["F"],
+    }
 
 
 def _six_bar(linkage: Linkage) -> dict[str, Any]:
     return {
-        "a": _length(linkage, "1", "A"), "b": _length(linkage, "2", "B"), "c": _length(linkage, "3", "B"),
-        "d": linkage.local("0", "D").real, "e": _length(linkage, "4", "F"), "y": 0.2,
-        "S2": complex(157.5, 30) / 350, **_masses(linkage),
-    }  # fmt: skip
+        "a": _length(linkage, "1", "A"),
+        "b": _length(linkage, "2", "B"),
+        "c": _length(linkage, "3", "B"),
+        "d": linkage.local("0", "D").real,
+        "e": _length(linkage, "4", "F"),
+        "y": 0.2,
+        "S2": complex(157.5, 30) / 350,
+        **_masses(linkage),
+    }
 
 
 def _shaper(linkage: Linkage) -> dict[str, Any]:
     return {
-        "a": _length(linkage, "1", "A"), "f": -linkage.local("0", "C").imag, "c": _length(linkage, "3", "D"),
-        "e": _length(linkage, "4", "E"), "y": 0.27, "S5": linkage.links["5"].centre, "at": linkage.loads[0].at,
+        "a": _length(linkage, "1", "A"),
+        "f": -linkage.local("0", "C").imag,
+        "c": _length(linkage, "3", "D"),
+        "e": _length(linkage, "4", "E"),
+        "y": 0.27,
+        "S5": linkage.links["5"].centre,
+        "at": linkage.loads[0].at,
         **_masses(linkage),
-    }  # fmt: skip
+    }
 
 
 MECHANISMS = (

@@ -83,10 +83,16 @@ def _family(axes: Any, rows: list[Row], quantity: Any) -> None:
     if there[0].family == "differences" and quantity != "positions":
         for k in (0, -1):  # the line comes down with the step and goes up again with rounding
             axes.annotate(
-                f"{there[k].setting:g}".replace("e-0", "e-"), (x[k], y[k]), (6, 0), textcoords="offset points",
-                fontsize=7, va="center", color=style["color"], zorder=7,
+                f"{there[k].setting:g}".replace("e-0", "e-"),
+                (x[k], y[k]),
+                (6, 0),
+                textcoords="offset points",
+                fontsize=7,
+                va="center",
+                color=style["color"],
+                zorder=7,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-            )  # fmt: skip
+            )
 
 
 def _legend(figure: Figure, rows: list[Row]) -> None:
@@ -94,8 +100,9 @@ def _legend(figure: Figure, rows: list[Row]) -> None:
     there = {row.family for row in rows}
     handles = [
         Line2D([], [], lw=0.9 if family in LINED else 0, label=label, **style)
-        for family, (label, style) in FAMILIES.items() if family in there
-    ]  # fmt: skip
+        for family, (label, style) in FAMILIES.items()
+        if family in there
+    ]
     for row in rows:
         if row.family == "board":
             label = f"drawing board, read to {row.setting} mm"
@@ -104,5 +111,6 @@ def _legend(figure: Figure, rows: list[Row]) -> None:
     handles.append(Line2D([], [], color=RED, lw=0.7, ls="-.", label="target of tmm"))
     axes = figure.add_subplot(2, 3, 6)
     axes.axis("off")
-    axes.legend(handles=handles, loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(-0.08, 1.02),
-                labelspacing=0.75)  # fmt: skip
+    axes.legend(
+        handles=handles, loc="upper left", fontsize=8.5, frameon=False, bbox_to_anchor=(-0.08, 1.02), labelspacing=0.75
+    )

@@ -24,8 +24,10 @@ def charts(measured: Searches) -> dict[str, Figure]:
 
 def chart(measured: Searches) -> Figure:
     """Both panels on half a sheet."""
-    caption = ("five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
-                "Python {python}, NumPy {numpy}, {system}")  # fmt: skip
+    caption = (
+        "five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
+        "Python {python}, NumPy {numpy}, {system}"
+    )
     title = "Optimal synthesis: how quickly candidates are evaluated, how near the search comes"
     figure = page(title, caption.format(**measured.machine), SHARE)
     grid = figure.add_gridspec(1, 2, left=0.065, right=0.98, top=0.8, bottom=0.12, wspace=0.2)
@@ -38,8 +40,15 @@ def _rates(axes: Any, measured: Searches) -> None:
     for name in NAMES:
         rates = [r for r in measured.rates if r.problem == name]
         label = f"{name}: {rates[0].parameters} lengths, {rates[0].constraints} constraints"
-        axes.plot([r.generation for r in rates], [r.per_second / 1e3 for r in rates], f"{MARKS[name]}-", ms=5.5, lw=1.3,
-                  color=COLOURS[name], label=label)  # fmt: skip
+        axes.plot(
+            [r.generation for r in rates],
+            [r.per_second / 1e3 for r in rates],
+            f"{MARKS[name]}-",
+            ms=5.5,
+            lw=1.3,
+            color=COLOURS[name],
+            label=label,
+        )
     aimed = [(r.generation, r.target / 1e3) for r in measured.rates if r.target is not None]
     label = "target, at the size that the search uses"
     axes.plot(*zip(*aimed, strict=True), "_", ms=18, mew=1.8, color=DARK, label=label)
@@ -58,8 +67,16 @@ def _found(axes: Any, measured: Searches) -> None:
     last = max(f.evaluations for f in measured.found) / 1e3
     for n, f in enumerate(f for f in measured.found if f.history):
         x, off = np.array([at for at, __ in f.history]) / 1e3, 100 * np.array([off for __, off in f.history])
-        axes.plot(x, np.maximum(off, FLOOR), "-", lw=0.9, alpha=0.6, color=colour, drawstyle="steps-post",
-                  label="search, seed by seed, from 72 positions" if n == 0 else None)  # fmt: skip
+        axes.plot(
+            x,
+            np.maximum(off, FLOOR),
+            "-",
+            lw=0.9,
+            alpha=0.6,
+            color=colour,
+            drawstyle="steps-post",
+            label="search, seed by seed, from 72 positions" if n == 0 else None,
+        )
         end, low = f.evaluations / 1e3, max(100 * f.off, FLOOR)
         axes.plot([end, 1.06 * last], [max(off[-1], FLOOR), low], ":", lw=0.8, color=colour)
         polished = "polished on exact peaks, 1e-7 % and nearer" if n == 0 else None

@@ -37,10 +37,10 @@ def _times(axes: Any, speed: Speed) -> None:
     for name, colour in COLOURS.items():
         races = [r for r in speed.races if r.mechanism == name and r.variants == 1]
         x = [r.positions for r in races]
-        axes.plot(x, [r.ours for r in races], "o-", ms=5, lw=1.3, color=colour,
-                  label=f"{name}, tmm")  # fmt: skip
-        axes.plot(x, [r.by_hand for r in races], "s--", ms=4.5, lw=1, mfc="white", color=colour,
-                  label=f"{name}, by hand")  # fmt: skip
+        axes.plot(x, [r.ours for r in races], "o-", ms=5, lw=1.3, color=colour, label=f"{name}, tmm")
+        axes.plot(
+            x, [r.by_hand for r in races], "s--", ms=4.5, lw=1, mfc="white", color=colour, label=f"{name}, by hand"
+        )
     decades(axes)
     axes.legend(fontsize=8, frameon=False)
     bare(axes, "Time a position", "positions", "ns a position")

@@ -31,13 +31,16 @@ METHODS: dict[str, tuple[str, dict[str, Any]]] = {
     "freudenstein": ("Freudenstein, tan of half the angle", {"marker": "X", "color": "#5d4037"}),
 }
 VERDICTS = {
-    "right": ("right", "#ffffff"), "said": ("no answer, or a bound as wide as it is off", "#9aa0a6"),
+    "right": ("right", "#ffffff"),
+    "said": ("no answer, or a bound as wide as it is off", "#9aa0a6"),
     "wrong": ("wrong, and it does not say so", "#d93025"),
-}  # fmt: skip
+}
 DISTANCES = {
-    "rad": "distance of the driver, rad", "share": "distance as a share of the length", "ratio": "l / r",
+    "rad": "distance of the driver, rad",
+    "share": "distance as a share of the length",
+    "ratio": "l / r",
     "m": "size, m",
-}  # fmt: skip
+}
 
 
 def charts(stability: Stability) -> dict[str, Figure]:
@@ -129,5 +132,6 @@ def _key(figure: Figure, shown: list[str]) -> None:
     handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="the bound that tmm prints"))
     for label, colour in VERDICTS.values():
         handles.append(Patch(facecolor=colour, edgecolor="#808080", lw=0.5, label=label))
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.7, 0.46), fontsize=7.5, frameon=False,
-                  labelspacing=0.7)  # fmt: skip
+    figure.legend(
+        handles=handles, loc="upper left", bbox_to_anchor=(0.7, 0.46), fontsize=7.5, frameon=False, labelspacing=0.7
+    )

@@ -101,9 +101,12 @@ class Group:
         rows: whose they are, all students when left out.
         """
         scale = self.right.scale if rows is None else self.right.scale[rows]
-        vector, exact = (np.array(found) for found in zip(*(
-            (asked.quantity.vector, asked.quantity.against == "exact") for asked in self.right.asked
-        ), strict=True))  # fmt: skip
+        vector, exact = (
+            np.array(found)
+            for found in zip(
+                *((asked.quantity.vector, asked.quantity.against == "exact") for asked in self.right.asked), strict=True
+            )
+        )
         off = self.random.uniform(-DRAWING, DRAWING, value.shape)
         aside = self.random.uniform(-DRAWING, DRAWING, value.shape) * vector
         size = np.maximum(scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
@@ -217,10 +220,14 @@ class Grades(Measured):
         title = "Grading a group of a six-bar with forces, 12 answers each, drawn to 1 %"
         signs = {"most": "≤", "least": "≥"}
         rows = [
-            (one.what, str(one.of), f"{one.found:.4g}",
-             "" if one.target is None else f"{signs[one.bound]} {one.target:.4g}")
+            (
+                one.what,
+                str(one.of),
+                f"{one.found:.4g}",
+                "" if one.target is None else f"{signs[one.bound]} {one.target:.4g}",
+            )
             for one in self.figures
-        ]  # fmt: skip
+        ]
         return (words("grading", title, ("figure", "of", "found", "target"), rows),)
 
 
@@ -274,9 +281,10 @@ def followed(group: Group) -> Figure:
     drawn, source = group.drawn(right.value), np.full(count, -1)
     motion = solve(group.family).motion
     begins = [
-        k for k, one in enumerate(right.asked)
+        k
+        for k, one in enumerate(right.asked)
         if own_answer(one.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
-    ]  # fmt: skip
+    ]
     for k, rows in zip(begins, np.array_split(np.arange(count), len(begins)), strict=True):
         asked, part = right.asked[k], group.family.take(rows)
         turn = np.exp(2j * np.pi * chance.random(len(rows)))
@@ -293,7 +301,7 @@ def followed(group: Group) -> Figure:
     alone = sum(
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
         for n in range(count)
-    )  # fmt: skip
+    )
     told = "chains that lose the points of one answer alone, %"
     return Figure(told, count, 100 * alone / count, 100.0, "least")
 

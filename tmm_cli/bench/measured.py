@@ -28,9 +28,11 @@ Name = TypeVar("Name")
 def machine() -> dict[str, str]:
     """What it was measured on."""
     return {
-        "tmm": __version__, "python": platform.python_version(), "numpy": np.__version__,
+        "tmm": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
         "system": f"{platform.system()} {platform.machine()}",
-    }  # fmt: skip
+    }
 
 
 def slack(reduced: bool) -> float:

@@ -73,9 +73,12 @@ def exact(written: Sequence[Any]) -> Any:
 
 
 KEYS: dict[Compared, str] = {
-    "positions": "position", "velocities": "velocity", "accelerations": "acceleration", "reactions": "reaction",
+    "positions": "position",
+    "velocities": "velocity",
+    "accelerations": "acceleration",
+    "reactions": "reaction",
     "balancing": "balancing",
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,14 @@ REPEATS, FEW = 7, 3
 PLACES, FEW_PLACES = 3601, 721  # over the cycle, for what grows with their number
 
 NAMED = {
-    "structure": "structure alone is counted", "groups": "groups on the way only",
-    "positions": "positions asked for only", "orders": "accelerations where needed",
-    "massless": "massless links carry nothing", "closed": "closed form where there is one",
+    "structure": "structure alone is counted",
+    "groups": "groups on the way only",
+    "positions": "positions asked for only",
+    "orders": "accelerations where needed",
+    "massless": "massless links carry nothing",
+    "closed": "closed form where there is one",
     "drawings": "drawings when asked for",
-}  # fmt: skip
+}
 COUNTED = {"solutions": "solutions", "loads": "loads", "pictures": "pictures"}
 
 Work = Callable[[], Any]
@@ -59,9 +62,14 @@ class Saving:
     def to_dict(self) -> dict[str, Any]:
         """Plain data, times in s."""
         return {
-            "name": self.name, "counts": self.counts, "with": self.with_, "without": self.without,
-            "seconds_with": self.seconds[0], "seconds_without": self.seconds[1], "holds": self.holds,
-        }  # fmt: skip
+            "name": self.name,
+            "counts": self.counts,
+            "with": self.with_,
+            "without": self.without,
+            "seconds_with": self.seconds[0],
+            "seconds_without": self.seconds[1],
+            "holds": self.holds,
+        }
 
 
 @dataclass(frozen=True)
@@ -80,26 +88,36 @@ class Savings(Measured):
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
         return {
-            "problem": self.problem, "savings": [saving.to_dict() for saving in self.found],
+            "problem": self.problem,
+            "savings": [saving.to_dict() for saving in self.found],
             "holds": not self.failures,
-        }  # fmt: skip
+        }
 
     @property
     def tables(self) -> tuple[Table, ...]:
         """A row a saving: what was counted and how long it took, with it and without."""
         found = self.found
-        note = ("A solution is a group at one place of the driver, or a round of Newton's method there; "
-                 "its velocities and its accelerations are one more each.")  # fmt: skip
-        return (Table("savings", "What is saved by computing no more than what is asked for", (
-            Column("saving", [NAMED[s.name] for s in found]),
-            Column("counted", [COUNTED[s.counts] for s in found]),
-            Column("with it", [str(s.with_) for s in found]),
-            Column("without", [str(s.without) for s in found]),
-            Column("with it, ms", [s.seconds[0] * 1e3 for s in found], NUMBER, digits=3),
-            Column("without, ms", [s.seconds[1] * 1e3 for s in found], NUMBER, digits=3),
-            Column("times faster", [s.seconds[1] / s.seconds[0] for s in found], NUMBER, digits=3),
-            Column("remark", ["" if s.holds else "saves nothing" for s in found]),
-        ), notes=(note,)),)  # fmt: skip
+        note = (
+            "A solution is a group at one place of the driver, or a round of Newton's method there; "
+            "its velocities and its accelerations are one more each."
+        )
+        return (
+            Table(
+                "savings",
+                "What is saved by computing no more than what is asked for",
+                (
+                    Column("saving", [NAMED[s.name] for s in found]),
+                    Column("counted", [COUNTED[s.counts] for s in found]),
+                    Column("with it", [str(s.with_) for s in found]),
+                    Column("without", [str(s.without) for s in found]),
+                    Column("with it, ms", [s.seconds[0] * 1e3 for s in found], NUMBER, digits=3),
+                    Column("without, ms", [s.seconds[1] * 1e3 for s in found], NUMBER, digits=3),
+                    Column("times faster", [s.seconds[1] / s.seconds[0] for s in found], NUMBER, digits=3),
+                    Column("remark", ["" if s.holds else "saves nothing" for s in found]),
+                ),
+                notes=(note,),
+            ),
+        )
 
 
 def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:

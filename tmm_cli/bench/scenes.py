@@ -37,9 +37,12 @@ def chain(dyads: int) -> Linkage:
         links[FRAME].points[f"D{k}"] = d  # type: ignore[index]
         links[coupler] = Link(coupler, {f"P{k - 1}": 0j, f"B{k}": COUPLER + 0j}, 1.0, 0.01, COUPLER / 2 + 0j)
         links[rocker] = Link(
-            rocker, {f"D{k}": 0j, f"B{k}": ROCKER + 0j, f"P{k}": BEYOND * ROCKER * cmath.exp(-0.2j)}, 1.0, 0.01,
+            rocker,
+            {f"D{k}": 0j, f"B{k}": ROCKER + 0j, f"P{k}": BEYOND * ROCKER * cmath.exp(-0.2j)},
+            1.0,
+            0.01,
             ROCKER / 2 + 0j,
-        )  # fmt: skip
+        )
         hinges += [
             Hinge(f"P{k - 1}", (before, coupler)),
             Hinge(f"B{k}", (coupler, rocker)),
@@ -123,12 +126,17 @@ def four_bar(a: Decimal, b: Decimal, c: Decimal, pivots: tuple[Place, Place], si
     o, d = (_point(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
     links = {
-        FRAME: Link(FRAME, {"O": o, "D": d}), "1": _bar("1", ("O", "A"), la, 1.0), "2": _bar("2", ("A", "B"), lb, 3.0),
+        FRAME: Link(FRAME, {"O": o, "D": d}),
+        "1": _bar("1", ("O", "A"), la, 1.0),
+        "2": _bar("2", ("A", "B"), lb, 3.0),
         "3": _bar("3", ("D", "B"), lc, 2.0),
-    }  # fmt: skip
+    }
     hinges = (
-        Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")), Hinge("D", (FRAME, "3")),
-    )  # fmt: skip
+        Hinge("O", (FRAME, "1")),
+        Hinge("A", ("1", "2")),
+        Hinge("B", ("2", "3")),
+        Hinge("D", (FRAME, "3")),
+    )
     sketch = Sketch(at, {"A": A, "B": meeting(A, lb, d, lc, side)})
     return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "3", moment=-40 * lc),))
 
@@ -140,9 +148,11 @@ def slider(r: Decimal, length: Decimal, pivot: Place, at: float) -> Linkage:
     A = o + lr * complex(math.cos(at), math.sin(at))
     B = o + (A - o).real + math.sqrt(ll * ll - (A - o).imag ** 2)
     links = {
-        FRAME: Link(FRAME, {"O": o}), "1": _bar("1", ("O", "A"), lr, 1.0), "2": _bar("2", ("A", "B"), ll, 3.0),
+        FRAME: Link(FRAME, {"O": o}),
+        "1": _bar("1", ("O", "A"), lr, 1.0),
+        "2": _bar("2", ("A", "B"), ll, 3.0),
         "3": Link("3", {"B": 0j}, 2.0),
-    }  # fmt: skip
+    }
     hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")))
     slide = Slide("x", FRAME, "3", o, 0.0, 0j, 0.0, "B")
     load = Load("F", "3", force=-200 + 0j)
@@ -156,9 +166,11 @@ def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) ->
     A = o + la * complex(math.cos(at), math.sin(at))
     u = (A - c) / abs(A - c)
     links = {
-        FRAME: Link(FRAME, {"O": o, "C": c}), "1": _bar("1", ("O", "A"), la, 1.0), "2": Link("2", {"A": 0j}, 0.5, 1e-3),
+        FRAME: Link(FRAME, {"O": o, "C": c}),
+        "1": _bar("1", ("O", "A"), la, 1.0),
+        "2": Link("2", {"A": 0j}, 0.5, 1e-3),
         "3": _bar("3", ("C", "K"), lk, 3.0),
-    }  # fmt: skip
+    }
     hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("C", (FRAME, "3")))
     slide = Slide("s", "3", "2", 0j, 0.0, 0j, 0.0, "A")
     sketch = Sketch(at, {"A": A, "K": c + lk * u}, {"3": math.atan2(u.imag, u.real)})
@@ -175,12 +187,18 @@ def triad(n: Numbers) -> Linkage:
         "1": _bar("1", ("O", "A"), la, 0.8),
         "2": Link("2", {"P": 0j, "Q": z["Q"], "R": z["R"]}, 4.0, 0.02, complex(0.123, 0.05)),
         "3": _bar("3", ("A", "P"), leg, 1.1),
-        "4": _bar("4", ("C", "Q"), leg, 1.1), "5": _bar("5", ("D", "R"), leg, 1.1),
-    }  # fmt: skip
+        "4": _bar("4", ("C", "Q"), leg, 1.1),
+        "5": _bar("5", ("D", "R"), leg, 1.1),
+    }
     hinges = (
-        Hinge("O", (FRAME, "1")), Hinge("A", ("1", "3")), Hinge("P", ("2", "3")), Hinge("C", (FRAME, "4")),
-        Hinge("Q", ("2", "4")), Hinge("D", (FRAME, "5")), Hinge("R", ("2", "5")),
-    )  # fmt: skip
+        Hinge("O", (FRAME, "1")),
+        Hinge("A", ("1", "3")),
+        Hinge("P", ("2", "3")),
+        Hinge("C", (FRAME, "4")),
+        Hinge("Q", ("2", "4")),
+        Hinge("D", (FRAME, "5")),
+        Hinge("R", ("2", "5")),
+    )
     A = z["O"] + la * complex(math.cos(at), math.sin(at))
     sketch = Sketch(at, {"A": A, "P": z["P"], "Q": z["q"], "R": z["r"]})
     return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "4", moment=-20.0),))

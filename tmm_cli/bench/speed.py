@@ -135,23 +135,46 @@ class Speed(Measured):
     @property
     def tables(self) -> tuple[Table, ...]:
         races = words(
-            "races", "Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism",
-            ("mechanism", "variants", "positions", "tmm", "by hand", "ratio", "at most",
-             "preparing once, ms"),
-            [(r.mechanism, str(r.variants), str(r.positions), f"{r.ours:.0f}", f"{r.by_hand:.0f}", f"{r.ratio:.2f}",
-              "" if r.target is None else f"{r.target:g}", f"{r.preparing:.0f}") for r in self.races],
-        )  # fmt: skip
+            "races",
+            "Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism",
+            ("mechanism", "variants", "positions", "tmm", "by hand", "ratio", "at most", "preparing once, ms"),
+            [
+                (
+                    r.mechanism,
+                    str(r.variants),
+                    str(r.positions),
+                    f"{r.ours:.0f}",
+                    f"{r.by_hand:.0f}",
+                    f"{r.ratio:.2f}",
+                    "" if r.target is None else f"{r.target:g}",
+                    f"{r.preparing:.0f}",
+                )
+                for r in self.races
+            ],
+        )
         growths = words(
-            "growths", "How time grows: t0 + c n^exponent", ("with", "n", "ms", "exponent"),
-            [(GROWING[g.what][0], f"{g.numbers[0]} ... {g.numbers[-1]}",
-              f"{1e3 * g.seconds[0]:.2f} ... {1e3 * g.seconds[-1]:.2f}", f"{g.exponent:.3f}") for g in self.growths],
-        )  # fmt: skip
+            "growths",
+            "How time grows: t0 + c n^exponent",
+            ("with", "n", "ms", "exponent"),
+            [
+                (
+                    GROWING[g.what][0],
+                    f"{g.numbers[0]} ... {g.numbers[-1]}",
+                    f"{1e3 * g.seconds[0]:.2f} ... {1e3 * g.seconds[-1]:.2f}",
+                    f"{g.exponent:.3f}",
+                )
+                for g in self.growths
+            ],
+        )
         rivals = words(
-            "rivals", "Other programs, nanoseconds a position of 360",
+            "rivals",
+            "Other programs, nanoseconds a position of 360",
             ("program", "mechanism", "its time", "tmm", "times as long", "at least"),
-            [(r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
-             for r in self.rivals],
-        )  # fmt: skip
+            [
+                (r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
+                for r in self.rivals
+            ],
+        )
         found = (races, speed_of_iterated.table(self.iterated), speed_of_sweeps.table(self.sweeps), growths)
         return (*found, rivals) if self.rivals else found
 

@@ -82,8 +82,19 @@ def _linkage(name: str) -> Linkage:
 def table(rows: Sequence[Iterated]) -> Table:
     """What a terminal shows."""
     return words(
-        "iterated", "Groups of class III, nanoseconds a position with all reactions, against the six-bar",
+        "iterated",
+        "Groups of class III, nanoseconds a position with all reactions, against the six-bar",
         ("mechanism", "positions", "tmm", "six-bar", "ratio", "at most", "left to the stages"),
-        [(r.mechanism, str(r.positions), f"{r.ours:.0f}", f"{r.six_bar:.0f}", f"{r.ratio:.1f}", f"{r.target:.1f}",
-          f"{100 * r.rest:.1f} %") for r in rows],
-    )  # fmt: skip
+        [
+            (
+                r.mechanism,
+                str(r.positions),
+                f"{r.ours:.0f}",
+                f"{r.six_bar:.0f}",
+                f"{r.ratio:.1f}",
+                f"{r.target:.1f}",
+                f"{100 * r.rest:.1f} %",
+            )
+            for r in rows
+        ],
+    )

@@ -65,8 +65,18 @@ def sweeping(name: str, reduced: bool) -> Sweeping:
 def table(rows: Sequence[Sweeping]) -> Table:
     """What a terminal shows."""
     return words(
-        "sweeps", f"Mechanisms that a sweep goes through in a minute on one core, with {SHOWN[0]}",
+        "sweeps",
+        f"Mechanisms that a sweep goes through in a minute on one core, with {SHOWN[0]}",
         ("mechanism", "mechanisms", "positions of each", "a minute", "at least", "preparing once, ms"),
-        [(r.mechanism, str(r.mechanisms), str(r.positions), f"{r.a_minute:.0f}", f"{r.target:.0f}",
-          f"{r.preparing:.0f}") for r in rows],
-    )  # fmt: skip
+        [
+            (
+                r.mechanism,
+                str(r.mechanisms),
+                str(r.positions),
+                f"{r.a_minute:.0f}",
+                f"{r.target:.0f}",
+                f"{r.preparing:.0f}",
+            )
+            for r in rows
+        ],
+    )

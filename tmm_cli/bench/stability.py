@@ -34,8 +34,9 @@ TRUE = 1e-40  # of the largest value: what is not known of the truth
 SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
 WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
 NAIVE = (
-    Method("cosines", "cosines", textbook.cosines), Method("freudenstein", "freudenstein", textbook.freudenstein),
-)  # fmt: skip
+    Method("cosines", "cosines", textbook.cosines),
+    Method("freudenstein", "freudenstein", textbook.freudenstein),
+)
 RIVALS: tuple[Method, ...] = (*METHODS, *NAIVE)
 
 Verdict = Literal["right", "said", "wrong"]
@@ -117,8 +118,9 @@ class Stability(Measured):
         """Where the product misses its targets."""
         lies = [
             f"{row.family}: {row.wrong} of {row.scenes} outside their bounds at {row.distance:g}"
-            for row in self.rows if row.method == OURS and row.wrong
-        ]  # fmt: skip
+            for row in self.rows
+            if row.method == OURS and row.wrong
+        ]
         if self.widths and not self.sharp >= TARGET:
             lies.append(f"{self.sharp:.1%} of the bounds are within {WIDE:g} times the true error, target {TARGET:.0%}")
         return tuple(lies)
@@ -131,9 +133,14 @@ class Stability(Measured):
         ]
         lies = {f: {m: self.lies(f, m) for m in self.methods if self.of(f, m)} for f in self.families}
         return {
-            "rows": rows, "first_lie": lies, "bounds": len(self.widths), "sharp": _plain(self.sharp),
-            "reduced": self.reduced, "absent": list(self.absent), "failures": list(self.failures),
-        }  # fmt: skip
+            "rows": rows,
+            "first_lie": lies,
+            "bounds": len(self.widths),
+            "sharp": _plain(self.sharp),
+            "reduced": self.reduced,
+            "absent": list(self.absent),
+            "failures": list(self.failures),
+        }
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -250,9 +257,12 @@ def ours(case: Case, at: Known) -> Shot:
     reaction = results.reactions.of(at.scene.pair)
     sense = 1 if reaction.on == reaction.pair.j else -1
     keys: dict[Compared, tuple[str, str]] = {
-        "positions": ("x", at.scene.point), "velocities": ("v", at.scene.point), "accelerations": ("a", at.scene.point),
-        "reactions": ("force", at.scene.pair), "balancing": ("balancing", case.linkage.driver.link),
-    }  # fmt: skip
+        "positions": ("x", at.scene.point),
+        "velocities": ("v", at.scene.point),
+        "accelerations": ("a", at.scene.point),
+        "reactions": ("force", at.scene.pair),
+        "balancing": ("balancing", case.linkage.driver.link),
+    }
     errors: dict[Compared, float] = {}
     widths: list[float] = []
     within, given, widest = True, True, 0.0

@@ -84,9 +84,13 @@ def console() -> Console:
 
 
 def each(
-    files: Sequence[str], work: Callable[[str], int], *, as_json: bool = False, headed: bool = True,
+    files: Sequence[str],
+    work: Callable[[str], int],
+    *,
+    as_json: bool = False,
+    headed: bool = True,
     out: Path | None = None,
-) -> NoReturn:  # fmt: skip
+) -> NoReturn:
     """Do the work on every file, with a progress bar when there are several; exit with the worst code.
 
     out: where each of them has a folder of its name, so that no two may have the same. headed: the tables of each of

@@ -28,9 +28,10 @@ def dynamics(
         problem = opened(file, variant_settings(file, variants, variant, settings), position, digits).whole
         if problem.dynamics is None and problem.balancing is None:
             missing = ProblemError(
-                _("nothing is asked of the law of motion or of balancing"), path=("dynamics",),
+                _("nothing is asked of the law of motion or of balancing"),
+                path=("dynamics",),
                 allowed="dynamics: {delta: 1/30}, balancing: {counterweights: {1: {}}}",
-            )  # fmt: skip
+            )
             raise missing.located(problem.file, problem.source)
         return report(solve(problem, "forces", position), SHOWN, as_json, out, digits)
 

@@ -52,10 +52,16 @@ Template = Annotated[
 
 
 def grade(
-    file: File, variants: Variants = None, submissions: Submissions = None, out: Folder = Path("marks"),
-    reveal: Reveal = False, formats: Formats = None, jobs: Jobs = None, scheduler: Scheduler = None,
+    file: File,
+    variants: Variants = None,
+    submissions: Submissions = None,
+    out: Folder = Path("marks"),
+    reveal: Reveal = False,
+    formats: Formats = None,
+    jobs: Jobs = None,
+    scheduler: Scheduler = None,
     template: Template = None,
-) -> None:  # fmt: skip
+) -> None:
     """Mark what the students of a group handed in; a second run marks only what has changed.
 
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
@@ -74,9 +80,15 @@ def grade(
 
 
 def _graded(
-    task: Task, variants: str, submissions: str, out: Path, reveal: bool, formats: str | None, jobs: int | None,
+    task: Task,
+    variants: str,
+    submissions: str,
+    out: Path,
+    reveal: bool,
+    formats: str | None,
+    jobs: int | None,
     scheduler: str | None,
-) -> int:  # fmt: skip
+) -> int:
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
     reason = _("there is no such format of the gradebook")
     names = list(EXPORTS) if formats is None else chosen_names(formats, EXPORTS, "--formats", reason)

@@ -29,9 +29,10 @@ def new(
     with refusing():
         if template not in known:
             raise ProblemError(
-                _("there is no template '{template}'").format(template=template), allowed=", ".join(known),
+                _("there is no template '{template}'").format(template=template),
+                allowed=", ".join(known),
                 near=nearest(template, known),
-            )  # fmt: skip
+            )
         file = out or Path(f"{template}.yaml")
         named = None if str(file) == "-" else printable(file)
         if new_file(file, template_text(template, language(), named)):

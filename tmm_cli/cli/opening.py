@@ -63,9 +63,15 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
 
 
 def afford(
-    problem: Problem, positions: Sequence[int] | None, *, digits: bool = False, detail: int | None = None,
-    large: bool = False, plans: int = 0, centres: int = 0,
-) -> None:  # fmt: skip
+    problem: Problem,
+    positions: Sequence[int] | None,
+    *,
+    digits: bool = False,
+    detail: int | None = None,
+    large: bool = False,
+    plans: int = 0,
+    centres: int = 0,
+) -> None:
     """Refuse more work than the budget holds, before it starts: as budget.refuse_options. Raises ProblemError."""
     request = problem.request
     count = len(positions or request.places) or request.count

@@ -71,9 +71,13 @@ def bounds_of(results: Results | ChainResults, digits: bool, shown: Collection[s
 
 
 def report(
-    results: Results | ChainResults, names: Collection[str], as_json: bool, out: Path | None, digits: bool = False,
+    results: Results | ChainResults,
+    names: Collection[str],
+    as_json: bool,
+    out: Path | None,
+    digits: bool = False,
     people: Kind | None = None,
-) -> int:  # fmt: skip
+) -> int:
     """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
 
     digits: show bounds and sensitivities beside the values; people: write tables for spreadsheets too.

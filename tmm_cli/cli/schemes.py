@@ -90,9 +90,11 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     """
     if len(found) > MOST_FILES:
         raise ProblemError(
-            _("these are too many files"), path=("--out",), found=_("{count} schemes").format(count=len(found)),
+            _("these are too many files"),
+            path=("--out",),
+            found=_("{count} schemes").format(count=len(found)),
             allowed=_("at most {most}: fewer links, or fewer types of groups (--groups)").format(most=MOST_FILES),
-        )  # fmt: skip
+        )
     digits = max(2, len(str(len(found))))
     texts: dict[Path, str] = {}
     written: list[tuple[Path, bool] | None] = []
@@ -105,9 +107,11 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     for path, text in texts.items():
         if path.exists() and path.read_bytes() != text.encode():
             raise ProblemError(
-                _("there is another file of that name, perhaps your own work"), path=("--out",), found=str(path),
+                _("there is another file of that name, perhaps your own work"),
+                path=("--out",),
+                found=str(path),
                 allowed=_("another folder"),
-            )  # fmt: skip
+            )
     for path, text in texts.items():
         write_whole(path, text.encode())
     return written
@@ -132,9 +136,11 @@ def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[S
         return all_schemes(links, mobility, types)
     except TooManySchemes:
         raise ProblemError(
-            _("these are too many schemes: more than {most}").format(most=MOST_SCHEMES), path=("--links",),
-            found=str(links), allowed=_("fewer links, or fewer types of groups (--groups)"),
-        ) from None  # fmt: skip
+            _("these are too many schemes: more than {most}").format(most=MOST_SCHEMES),
+            path=("--links",),
+            found=str(links),
+            allowed=_("fewer links, or fewer types of groups (--groups)"),
+        ) from None
 
 
 def wanted_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
@@ -147,15 +153,18 @@ def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: 
     """Refuse a mobility above the most, and numbers of links that no structure of this mobility has."""
     if not 1 <= mobility <= most:
         raise ProblemError(
-            _("structures of this mobility are not built"), path=("--mobility",), found=str(mobility),
+            _("structures of this mobility are not built"),
+            path=("--mobility",),
+            found=str(mobility),
             allowed=_("1 to {most}").format(most=most),
-        )  # fmt: skip
+        )
     if links not in allowed:
         raise ProblemError(
-            _("no structure of mobility {mobility} has so many links").format(mobility=mobility), path=(option,),
+            _("no structure of mobility {mobility} has so many links").format(mobility=mobility),
+            path=(option,),
             found=str(links),
             allowed=_("for W = {mobility}: {links}").format(mobility=mobility, links=", ".join(map(str, allowed))),
-        )  # fmt: skip
+        )
 
 
 # `tmm schemes`.

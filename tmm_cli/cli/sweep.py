@@ -44,9 +44,15 @@ Folder = Annotated[
 
 
 def sweep(
-    file: File, over: Over, show: Show = None, settings: Settings = None, out: Folder = None, jobs: Jobs = None,
-    scheduler: Scheduler = None, as_json: Json = False,
-) -> None:  # fmt: skip
+    file: File,
+    over: Over,
+    show: Show = None,
+    settings: Settings = None,
+    out: Folder = None,
+    jobs: Jobs = None,
+    scheduler: Scheduler = None,
+    as_json: Json = False,
+) -> None:
     """Show quantities over one parameter or two, and where the mechanism stops to assemble, to turn, to keep limits.
 
     Each point is a variant with the assembly of the file's own one.

@@ -73,8 +73,11 @@ def _place_of(error: Exception) -> str:
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
     home = Path(tmm_cli.__file__).parent
-    own = [f"{Path(file).relative_to(home.parent).as_posix()}:{line}" for file, line in frames
-           if home in Path(file).parents]  # fmt: skip
+    own = [
+        f"{Path(file).relative_to(home.parent).as_posix()}:{line}"
+        for file, line in frames
+        if home in Path(file).parents
+    ]
     return own[-1] if own else "?"
 
 

@@ -40,9 +40,13 @@ Vary = Annotated[
 
 
 def variants(
-    file: File, count: Count = 25, seed: Seed = 1, out: Folder = Path("variants"), students: Students = None,
+    file: File,
+    count: Count = 25,
+    seed: Seed = 1,
+    out: Folder = Path("variants"),
+    students: Students = None,
     vary: Vary = None,
-) -> None:  # fmt: skip
+) -> None:
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with refusing():
         refuse_place(out, folder=True)
@@ -64,8 +68,10 @@ def variants(
                 _("there are only {found} variants that are sound and unlike one another").format(
                     found=len(table.rows)
                 ),
-                found=_("{count} are wanted").format(count=count), allowed=_("wider ranges, smaller steps"), file=file,
-            )  # fmt: skip
+                found=_("{count} are wanted").format(count=count),
+                allowed=_("wider ranges, smaller steps"),
+                file=file,
+            )
         _write(task, Path(file).read_text(encoding="utf-8-sig"), table, out)
 
 

@@ -98,9 +98,14 @@ def _chosen(results: Results, k: int) -> str:
     units, dimension = results.problem.units, MOMENT if turns else FORCE
     told = f"{numeral(units.from_si(size, dimension), '.4g')} {units.spelt(dimension)}"
     return (
-        _("note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing moment: "
-          "{size}")
+        _(
+            "note: no positions.detail in the file, drawn in full is position {number}, of the largest "
+            "balancing moment: "
+            "{size}"
+        )
         if turns
-        else _("note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing "
-               "force: {size}")
-    ).format(number=number, size=told)  # fmt: skip
+        else _(
+            "note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing "
+            "force: {size}"
+        )
+    ).format(number=number, size=told)

@@ -68,10 +68,15 @@ def answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
         own = right(family, task.asked)
         for n, row in enumerate(rows.tolist()):
             found[row] = [
-                KeyLine(students[row], asked, complex(own.value[n, k]), float(own.allowed[n, k] * own.scale[n, k]),
-                        float(own.allowed[n, k]))
+                KeyLine(
+                    students[row],
+                    asked,
+                    complex(own.value[n, k]),
+                    float(own.allowed[n, k] * own.scale[n, k]),
+                    float(own.allowed[n, k]),
+                )
                 for k, asked in enumerate(task.asked)
-            ]  # fmt: skip
+            ]
     for row in range(len(students)):
         yield from found.get(row, ())
 

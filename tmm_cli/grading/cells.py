@@ -273,17 +273,19 @@ def _refuse_announced(content: bytes, whole: int) -> None:
         most = len(content) // SHORTEST_TEXT if kind == b"uniqueC" else whole
         if len(digits) > 12 or int(digits) > most:
             raise ProblemError(
-                _("it announces more than it holds"), found=quote(digits[:20].decode()),
+                _("it announces more than it holds"),
+                found=quote(digits[:20].decode()),
                 allowed=_("a file that a spreadsheet has saved"),
-            )  # fmt: skip
+            )
     for cells in DIMENSION.findall(content):
         for corner in cells.split(b":"):
             match = CORNER.fullmatch(corner)
             if match is None or int(match[2]) > SHEET[0] or _column(match[1]) > SHEET[1]:
                 raise ProblemError(
-                    _("it announces more than it holds"), found=quote(cells[:40].decode(errors="replace")),
+                    _("it announces more than it holds"),
+                    found=quote(cells[:40].decode(errors="replace")),
                     allowed=_("a file that a spreadsheet has saved"),
-                )  # fmt: skip
+                )
 
 
 def _column(letters: bytes) -> int:
@@ -301,9 +303,10 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
     for letters, digits in set(places):
         if len(digits) > 8 or int(digits) > most or _column(letters) > MOST_COLUMNS:
             raise ProblemError(
-                _("a cell is too far out"), found=quote((letters + digits).decode()),
+                _("a cell is too far out"),
+                found=quote((letters + digits).decode()),
                 allowed=_("{rows} rows, {columns} columns").format(rows=most, columns=MOST_COLUMNS),
-            )  # fmt: skip
+            )
 
 
 def _text(cell: Any) -> str:

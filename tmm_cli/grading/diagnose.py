@@ -72,10 +72,12 @@ class _Sheets:
         plain = solve(family)
         asked = right.asked
         with np.errstate(all="ignore"):
-            self.values = np.stack([
-                predicted(family, asked, [case]) if case.solves else written_down(plain, asked, [case])
-                for case in self.cases
-            ])  # fmt: skip
+            self.values = np.stack(
+                [
+                    predicted(family, asked, [case]) if case.solves else written_down(plain, asked, [case])
+                    for case in self.cases
+                ]
+            )
         self.price = np.array([case.price for case in self.cases])
         self.costs = np.stack([self.cost(value) for value in self.values]) + self.price[:, None]
         self.none = self.cost(right.value)

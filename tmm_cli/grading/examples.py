@@ -37,10 +37,13 @@ def _plain(found: Sequence[StudentMarks]) -> dict[str, Any]:
             "problems": list(marks.problems),
             "marks": {
                 mark.key[0] if mark.key[1] is None else f"{mark.key[0]} at {mark.key[1]}": {
-                    "state": mark.state, "error": mark.error, "allowed": mark.allowed, "mistakes": list(mark.mistakes),
+                    "state": mark.state,
+                    "error": mark.error,
+                    "allowed": mark.allowed,
+                    "mistakes": list(mark.mistakes),
                 }
                 for mark in marks.marks
             },
         }
         for marks in found
-    }  # fmt: skip
+    }

@@ -28,9 +28,11 @@ LEFT = 16.0  # mm for the numbers of students
 UPPER, LOWER, GAP = 55.0, 75.0, 12.0  # mm: heights of the panels, and between them
 BLUE, ORANGE, PALE, BAD = "#4a6fa5", "#c77700", "#f9ecd6", "#c4574b"
 STATES: dict[State, tuple[str, str]] = {
-    "right": (N_("right"), "#4c9a68"), "follows": (N_("right given own"), "#a9d6b8"), "wrong": (N_("wrong"), BAD),
+    "right": (N_("right"), "#4c9a68"),
+    "follows": (N_("right given own"), "#a9d6b8"),
+    "wrong": (N_("wrong"), BAD),
     "missing": (N_("missing"), "#d0d0d0"),
-}  # fmt: skip
+}
 
 
 def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
@@ -38,9 +40,11 @@ def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     own = percents(marks)
     told = _("{students} students, {there} handed in; median {median:.0f} %, mean {mean:.0f} % of the points")
     caption = told.format(
-        students=len(marks), there=len(handed_in(marks)),
-        median=np.median(own) if own.size else 0, mean=own.mean() if own.size else 0,
-    )  # fmt: skip
+        students=len(marks),
+        there=len(handed_in(marks)),
+        median=np.median(own) if own.size else 0,
+        mean=own.mean() if own.size else 0,
+    )
     sheet = Sheet(task.problem.title, caption, paper=LANDSCAPE)
     difficulties, mistakes = hardest(task, marks)[:MOST], commonest(marks)[:MOST]
     rows = max(len(difficulties), len(mistakes), FEWEST)

@@ -261,9 +261,13 @@ def _by_mistake(right: Right, wrong: Real, claims: dict[int, list[Claim]]) -> di
 
 
 def _fitting(
-    family: Family, right: Right, written: Written, whole: Real, wanted: dict[tuple[int, ...], list[Cell]],
+    family: Family,
+    right: Right,
+    written: Written,
+    whole: Real,
+    wanted: dict[tuple[int, ...], list[Cell]],
     known: dict[Cell, tuple[int, ...]],
-) -> dict[Cell, tuple[int, ...]]:  # fmt: skip
+) -> dict[Cell, tuple[int, ...]]:
     """Those of the wanted answers that fit the sources under which they stand."""
     found: dict[Cell, tuple[int, ...]] = {}
     for sources, cells in wanted.items():

@@ -136,9 +136,9 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
     said = [next((v.dimension for v in column if v.dimension), None) for column in zip(*found, strict=True)]
     own = task.dimensions(table.names)
     dimensions = tuple(first or then for first, then in zip(said or own, own, strict=True))
-    columns = np.array([
-        [task.number(value, dimension) for value, dimension in zip(row, dimensions, strict=True)] for row in found
-    ]).reshape(len(students), len(table.names))  # fmt: skip
+    columns = np.array(
+        [[task.number(value, dimension) for value, dimension in zip(row, dimensions, strict=True)] for row in found]
+    ).reshape(len(students), len(table.names))
     return dimensions, columns
 
 
@@ -222,13 +222,24 @@ def _marks_of(
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
                 reasons = [_("It is right given your own {sources}.").format(sources=sources)]
-            marks.append(Mark(
-                asked.key, state, asked.points if state in ("right", "follows") else 0.0, asked.points,
-                complex(written.value[n, k]) if there else None, complex(wanted.value[n, k]),
-                bool(written.size[n, k]), float(wanted.scale[n, k]), float(error[n, k]) if there else 0.0,
-                float(wanted.allowed[n, k]), how.get((n, k), ""), tuple(reasons),
-                tuple(claim.called for claim in named), given.text if given else "",
-            ))  # fmt: skip
+            marks.append(
+                Mark(
+                    asked.key,
+                    state,
+                    asked.points if state in ("right", "follows") else 0.0,
+                    asked.points,
+                    complex(written.value[n, k]) if there else None,
+                    complex(wanted.value[n, k]),
+                    bool(written.size[n, k]),
+                    float(wanted.scale[n, k]),
+                    float(error[n, k]) if there else 0.0,
+                    float(wanted.allowed[n, k]),
+                    how.get((n, k), ""),
+                    tuple(reasons),
+                    tuple(claim.called for claim in named),
+                    given.text if given else "",
+                )
+            )
         found.append(StudentMarks(submission.student, tuple(marks), submission.problems))
     return found
 
@@ -264,9 +275,14 @@ class Chunk:
 
 
 def graded(
-    task: Task, table: VariantTable, submissions: Sequence[Submission], way: Way = here, kept: Path | None = None,
-    seen: Callable[[int], None] = lambda count: None, stopped: Callable[[], bool] = lambda: False,
-) -> list[StudentMarks]:  # fmt: skip
+    task: Task,
+    table: VariantTable,
+    submissions: Sequence[Submission],
+    way: Way = here,
+    kept: Path | None = None,
+    seen: Callable[[int], None] = lambda count: None,
+    stopped: Callable[[], bool] = lambda: False,
+) -> list[StudentMarks]:
     """Marks of all students in the order of the submissions; when it was stopped, of those that are graded.
 
     kept: the file of marks of earlier runs. seen: is told of so many more students. Raises ProblemError, OSError.

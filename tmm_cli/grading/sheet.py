@@ -113,9 +113,10 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
     there = [replace(one, position=places.index(one.position or 0)) for one in asked]
     close = family.changed(family.linkage, family.q[:, places])
-    change = np.abs(np.concatenate([
-        predicted(other, there).reshape(-1, *value.shape) - value for other in _nearby(close)
-    ])) / STEP  # fmt: skip
+    change = (
+        np.abs(np.concatenate([predicted(other, there).reshape(-1, *value.shape) - value for other in _nearby(close)]))
+        / STEP
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         response = np.sqrt(np.sum(change**2, axis=0)) / scale
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
@@ -144,9 +145,16 @@ def _usual(solution: Solution) -> dict[Dimension, Real]:
     force = np.maximum(sum(np.nanmax(np.abs(load.force), axis=1) for load in loads), NOTHING)
     moment = size * force + sum(np.nanmax(np.abs(load.moment), axis=1) for load in loads)
     return {
-        LENGTH: size, SPEED: size * turn, ACCELERATION: size * turn**2, ANGULAR_SPEED: turn,
-        ANGULAR_ACCELERATION: turn**2, FORCE: force, MOMENT: moment, NUMBER: np.ones(1), ANGLE: np.ones(1),
-    }  # fmt: skip
+        LENGTH: size,
+        SPEED: size * turn,
+        ACCELERATION: size * turn**2,
+        ANGULAR_SPEED: turn,
+        ANGULAR_ACCELERATION: turn**2,
+        FORCE: force,
+        MOMENT: moment,
+        NUMBER: np.ones(1),
+        ANGLE: np.ones(1),
+    }
 
 
 def _scale(quantity: Quantity, solution: Solution) -> Real:
@@ -165,10 +173,13 @@ def _nearby(family: Family) -> Iterator[Family]:
     All of them as one family, the variants again and again; each alone where a group is not plain.
     """
     of = {
-        link: [path for path, value in numbers(family.linkage)
-               if path.startswith(f"links.{link}.points.") and np.any(value != 0)]
+        link: [
+            path
+            for path, value in numbers(family.linkage)
+            if path.startswith(f"links.{link}.points.") and np.any(value != 0)
+        ]
         for link in family.linkage.links
-    }  # fmt: skip
+    }
     links = [link for link, paths in of.items() if paths]
     if all(not isinstance(kernel, Closed) or kernel.plain for kernel in family.kernels):
         which = np.repeat(np.arange(len(links) + 1), len(family))[:, None]
@@ -177,7 +188,8 @@ def _nearby(family: Family) -> Iterator[Family]:
         parts = [(np.array(k), family) for k in range(len(links) + 1)]
     for which, part in parts:
         found = dict(numbers(part.linkage))
-        lengths = {path: found[path] * np.where(which == k, 1 + STEP, 1.0)
-                   for k, link in enumerate(links) for path in of[link]}  # fmt: skip
+        lengths = {
+            path: found[path] * np.where(which == k, 1 + STEP, 1.0) for k, link in enumerate(links) for path in of[link]
+        }
         q = part.q + np.where(which == len(links), STEP, 0.0)
         yield part.changed(changed(part.linkage, lengths), q)

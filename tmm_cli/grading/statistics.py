@@ -84,9 +84,13 @@ def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
     notes += [_("without an answer, and not counted: {count}").format(count=absent)] if absent else []
     if own.size:
         rows = {
-            _("best"): own.max(), _("upper quartile"): np.quantile(own, 0.75), _("median"): np.median(own),
-            _("mean"): own.mean(), _("lower quartile"): np.quantile(own, 0.25), _("lowest"): own.min(),
-        }  # fmt: skip
+            _("best"): own.max(),
+            _("upper quartile"): np.quantile(own, 0.75),
+            _("median"): np.median(own),
+            _("mean"): own.mean(),
+            _("lower quartile"): np.quantile(own, 0.25),
+            _("lowest"): own.min(),
+        }
         shares = _numbers(_("points, %"), np.round(list(rows.values()), 1))
         yield Table("group", _("Group"), (Column(_("of those who handed in"), list(rows)), shares), notes=tuple(notes))
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
@@ -107,8 +111,11 @@ def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
 
 def _difficulties(found: Sequence[Difficulty]) -> Table:
     states: dict[str, State] = {
-        _("right, %"): "right", _("given own, %"): "follows", _("wrong, %"): "wrong", _("missing, %"): "missing"
-    }  # fmt: skip
+        _("right, %"): "right",
+        _("given own, %"): "follows",
+        _("wrong, %"): "wrong",
+        _("missing, %"): "missing",
+    }
     columns = [
         Column(_("quantity"), [own.name for own in found]),
         _numbers(_("points earned, %"), [round(100 * own.share, 1) for own in found]),

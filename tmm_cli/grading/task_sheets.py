@@ -198,8 +198,12 @@ def _asked(task: Task) -> Iterator[Table]:
     headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("what it is"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
-        notes.append(_("Vectors are answered with size and direction, counterclockwise from x, or with components: "
-                       "3.6 at 34 deg; (1.2; -3.4)."))  # fmt: skip
+        notes.append(
+            _(
+                "Vectors are answered with size and direction, counterclockwise from x, or with components: "
+                "3.6 at 34 deg; (1.2; -3.4)."
+            )
+        )
     yield table_of_words("asked", _("What is asked"), headers, rows, notes)
 
 

@@ -134,14 +134,25 @@ KINDS: Final[Mapping[str, Kind]] = {
 
 
 ARTICLED: Final[Mapping[str, str]] = {
-    "number": N_("a number"), "length": N_("a length"), "angle": N_("an angle"), "time": N_("a time"),
-    "mass": N_("a mass"), "force": N_("a force"), "moment of force": N_("a moment of force"),
-    "moment of inertia": N_("a moment of inertia"), "speed": N_("a speed"), "acceleration": N_("an acceleration"),
-    "pressure": N_("a pressure"), "angular speed": N_("an angular speed"),
+    "number": N_("a number"),
+    "length": N_("a length"),
+    "angle": N_("an angle"),
+    "time": N_("a time"),
+    "mass": N_("a mass"),
+    "force": N_("a force"),
+    "moment of force": N_("a moment of force"),
+    "moment of inertia": N_("a moment of inertia"),
+    "speed": N_("a speed"),
+    "acceleration": N_("an acceleration"),
+    "pressure": N_("a pressure"),
+    "angular speed": N_("an angular speed"),
     "angular acceleration": N_("an angular acceleration"),
-    "stiffness": N_("a stiffness"), "torsional stiffness": N_("a torsional stiffness"), "damping": N_("a damping"),
-    "torsional damping": N_("a torsional damping"), "density": N_("a density"),
-}  # fmt: skip
+    "stiffness": N_("a stiffness"),
+    "torsional stiffness": N_("a torsional stiffness"),
+    "damping": N_("a damping"),
+    "torsional damping": N_("a torsional damping"),
+    "density": N_("a density"),
+}
 
 
 def product_text(powers: Mapping[str, int]) -> str:
@@ -217,10 +228,16 @@ POINT: Final = (
     Quantity("x", "place", "m", LENGTH, (N_("x"), N_("y")), vector=True, leading=True),
     Quantity("v", "velocity", "m/s", SPEED, (N_("vx"), N_("vy"), N_("v")), vector=True, leading=True),
     Quantity("a", "acceleration", "m/s^2", ACCELERATION, (N_("ax"), N_("ay"), N_("a")), vector=True, leading=True),
-    Quantity("first", "derivative of its place by the driver's", PER_UNIT, NUMBER,
-             (N_("dx/dq, SI"), N_("dy/dq, SI")), vector=True),
+    Quantity(
+        "first",
+        "derivative of its place by the driver's",
+        PER_UNIT,
+        NUMBER,
+        (N_("dx/dq, SI"), N_("dy/dq, SI")),
+        vector=True,
+    ),
     Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("d2x/dq2, SI"), N_("d2y/dq2, SI")), vector=True),
-)  # fmt: skip
+)
 
 LINK: Final = (
     Quantity("angle", "of its x axis", "rad", ANGLE, (N_("angle"),), leading=True),
@@ -234,11 +251,17 @@ SLIDE: Final = (
     Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (N_("s"),)),
     Quantity("v", "relative velocity", "m/s", SPEED, (N_("v relative"),)),
     Quantity("a", "relative acceleration", "m/s^2", ACCELERATION, (N_("a relative"),)),
-    Quantity("coriolis", "Coriolis acceleration", "m/s^2", ACCELERATION,
-             (N_("Coriolis x"), N_("Coriolis y"), N_("Coriolis")), vector=True),
+    Quantity(
+        "coriolis",
+        "Coriolis acceleration",
+        "m/s^2",
+        ACCELERATION,
+        (N_("Coriolis x"), N_("Coriolis y"), N_("Coriolis")),
+        vector=True,
+    ),
     Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (N_("first transfer function, SI"),)),
     Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("second transfer function, SI"),)),
-)  # fmt: skip
+)
 
 REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (N_("F"),), read=lambda r: np.abs(r.force))
 REACTION: Final = (
@@ -246,15 +269,36 @@ REACTION: Final = (
     REACTION_SIZE,
     Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (N_("angle"),)),
     Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
-    Quantity("tangential", "part across the link, outer hinges", "N", FORCE, (N_("R tangential"),), vector=True,
-             goes_with="normal"),
+    Quantity(
+        "tangential",
+        "part across the link, outer hinges",
+        "N",
+        FORCE,
+        (N_("R tangential"),),
+        vector=True,
+        goes_with="normal",
+    ),
     Quantity("normal", "part along it", "N", FORCE, (N_("R normal"),), vector=True, goes_with="tangential"),
     Quantity("signed", "guides: force along the guide's left normal", "N", FORCE, goes_with="couple"),
-    Quantity("couple", "guides: couple, reduced to the running point", "N*m", MOMENT, (N_("couple"),), leading=True,
-             symbol="M", goes_with="couple"),
-    Quantity("arm", "guides: where the force acts, along the guide from the running point", "m", LENGTH,
-             (N_("acts at"),), goes_with="couple"),
-)  # fmt: skip
+    Quantity(
+        "couple",
+        "guides: couple, reduced to the running point",
+        "N*m",
+        MOMENT,
+        (N_("couple"),),
+        leading=True,
+        symbol="M",
+        goes_with="couple",
+    ),
+    Quantity(
+        "arm",
+        "guides: where the force acts, along the guide from the running point",
+        "m",
+        LENGTH,
+        (N_("acts at"),),
+        goes_with="couple",
+    ),
+)
 
 LOAD: Final = (
     Quantity("force", "force", "N", FORCE, (N_("Fx"), N_("Fy"), N_("F")), vector=True),
@@ -273,9 +317,16 @@ BALANCE: Final = (
     Quantity("at", "where it acts", "m", LENGTH, vector=True),
 )
 BALANCING: Final = Quantity(
-    "balancing", "what works with the driver's place: moment or force", "N*m or N", MOMENT, (N_("M_b"),),
-    of_slider=(N_("F_b"), FORCE), leading=True, symbol="T", read=lambda balance: balance.generalized,
-)  # fmt: skip
+    "balancing",
+    "what works with the driver's place: moment or force",
+    "N*m or N",
+    MOMENT,
+    (N_("M_b"),),
+    of_slider=(N_("F_b"), FORCE),
+    leading=True,
+    symbol="T",
+    read=lambda balance: balance.generalized,
+)
 
 LEVER_FORCE: Final = (
     Quantity("size", "force", "N", FORCE, (N_("force"),)),
@@ -285,16 +336,30 @@ LEVER_COUPLE: Final = (
     Quantity("size", "couple", "N*m", MOMENT, (N_("couple"),)),
     Quantity("arm", "omega / omega_1", "", NUMBER, (N_("omega / omega_1"),)),
 )
-LEVER_MOMENT: Final = Quantity("moment", "about the pole", "N*m or N", MOMENT, (N_("moment"),),
-                               of_slider=(N_("moment"), FORCE))  # fmt: skip
+LEVER_MOMENT: Final = Quantity(
+    "moment", "about the pole", "N*m or N", MOMENT, (N_("moment"),), of_slider=(N_("moment"), FORCE)
+)
 
 ENERGY: Final = (
-    Quantity("inertia", "reduced moment of inertia, or mass", "kg*m^2 or kg", INERTIA, (N_("J reduced"),),
-             of_slider=(N_("m reduced"), MASS)),
-    Quantity("slope", "its derivative by the driver", "SI", NUMBER, (N_("dJ/dphi, SI"),),
-             of_slider=(N_("dm/ds, SI"), NUMBER)),
-    Quantity("moment", "reduced moment of all loads but inertia, or force", "N*m or N", MOMENT, (N_("M reduced"),),
-             of_slider=(N_("F reduced"), FORCE)),
+    Quantity(
+        "inertia",
+        "reduced moment of inertia, or mass",
+        "kg*m^2 or kg",
+        INERTIA,
+        (N_("J reduced"),),
+        of_slider=(N_("m reduced"), MASS),
+    ),
+    Quantity(
+        "slope", "its derivative by the driver", "SI", NUMBER, (N_("dJ/dphi, SI"),), of_slider=(N_("dm/ds, SI"), NUMBER)
+    ),
+    Quantity(
+        "moment",
+        "reduced moment of all loads but inertia, or force",
+        "N*m or N",
+        MOMENT,
+        (N_("M reduced"),),
+        of_slider=(N_("F reduced"), FORCE),
+    ),
     Quantity("kinetic", "kinetic energy", "J", NUMBER, (N_("kinetic energy, J"),)),
     Quantity("rate", "its rate", "W", NUMBER, (N_("its rate, W"),)),
     Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("drivers, W"),)),
@@ -302,4 +367,4 @@ ENERGY: Final = (
     Quantity("loads", "power of loads", "W", NUMBER, (N_("loads, W"),)),
     Quantity("friction", "power of friction", "W", NUMBER, (N_("friction, W"),)),
     Quantity("balance", "what is left of all powers, against the largest", "", NUMBER),
-)  # fmt: skip
+)

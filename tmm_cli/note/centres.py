@@ -26,23 +26,28 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Instantaneous centres"))
     yield said(
-        _("Two links have an instantaneous centre: the point in which both move alike. {k} links, the frame among "
-          "them, have this number of centres:"),
+        _(
+            "Two links have an instantaneous centre: the point in which both move alike. {k} links, the frame among "
+            "them, have this number of centres:"
+        ),
         k=LINKS,
-    )  # fmt: skip
+    )
     count = len(results.linkage.links)
     own = Leaf(LINKS, float(count))
     yield Found(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
     yield said(
-        _("The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
-          "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
-          "line, so that every other centre is where two such lines cross; the table says which.")
-    )  # fmt: skip
+        _(
+            "The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
+            "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
+            "line, so that every other centre is where two such lines cross; the table says which."
+        )
+    )
     yield from (rows_of(subject, table) for table in walk(results, ("centres",)))
     yield from subject.figures(
-        "centres", _("The centres of a position are shown in figure {figure}."),
+        "centres",
+        _("The centres of a position are shown in figure {figure}."),
         further=_("Those of another position are shown in figure {figure}."),
-    )  # fmt: skip
+    )
     if results.linkage.driver.kind == "turn" and not results.linkage.others:
         yield from _speeds(subject)
 
@@ -50,9 +55,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
 def _speeds(subject: Subject) -> Iterable[Block]:
     results = subject.results
     assert results.centres is not None
-    text = _("The centre of a link and the driving one has the same velocity on both, so that distances between "
-             "centres give the angular velocities of links, and the velocities of those that do not turn. "
-             "Position {number}:")  # fmt: skip
+    text = _(
+        "The centre of a link and the driving one has the same velocity on both, so that distances between "
+        "centres give the angular velocities of links, and the velocities of those that do not turn. "
+        "Position {number}:"
+    )
     for k, found in results.centres.items():
         told = list(_of_position(subject, k, {centre.links: centre for centre in found}))
         if told:

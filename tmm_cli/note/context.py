@@ -43,15 +43,25 @@ WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawin
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (whole_scheme, 100), "groups": (all_groups, 45), "synthesis": (synthesised, 110),
-    "positions": (all_positions, 130), "diagrams": (diagrams, 170),
-    "law": (law_of_motion.over_cycle, 225), "energy-mass": (law_of_motion.diagram, 190),
-    "run": (single_run, 225), "centres": (centres.sheets, 130), "shaking": (hodographs.balancing, 110),
-}  # fmt: skip
+    "structure": (whole_scheme, 100),
+    "groups": (all_groups, 45),
+    "synthesis": (synthesised, 110),
+    "positions": (all_positions, 130),
+    "diagrams": (diagrams, 170),
+    "law": (law_of_motion.over_cycle, 225),
+    "energy-mass": (law_of_motion.diagram, 190),
+    "run": (single_run, 225),
+    "centres": (centres.sheets, 130),
+    "shaking": (hodographs.balancing, 110),
+}
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
-    "position": (position, 120), "velocity": (motion_plans, 120), "acceleration": (motion_plans, 120),
-    "group-loads": (group_loads, 90), "forces": (forces, 100), "lever": (lever, 110),
-}  # fmt: skip
+    "position": (position, 120),
+    "velocity": (motion_plans, 120),
+    "acceleration": (motion_plans, 120),
+    "group-loads": (group_loads, 90),
+    "forces": (forces, 100),
+    "lever": (lever, 110),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,9 +207,18 @@ def with_degrees(text: str) -> str:
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 GREEK = {
-    "alpha": "α", "beta": "β", "delta": "δ", "epsilon": "ε", "theta": "θ", "lambda": "λ", "nu": "ν", "pi": "π",
-    "phi": "φ", "psi": "ψ", "omega": "ω",
-}  # fmt: skip
+    "alpha": "α",
+    "beta": "β",
+    "delta": "δ",
+    "epsilon": "ε",
+    "theta": "θ",
+    "lambda": "λ",
+    "nu": "ν",
+    "pi": "π",
+    "phi": "φ",
+    "psi": "ψ",
+    "omega": "ω",
+}
 
 
 def by_hand(text: str) -> str:

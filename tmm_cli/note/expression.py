@@ -121,8 +121,11 @@ class Function(Joined):
 
 Expression = Leaf | Constant | Sum | Product | Quotient | Raised | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
-    "cos": math.cos, "sin": math.sin, "abs": abs, "sqrt": lambda value: math.sqrt(max(value, 0.0)),
-}  # fmt: skip
+    "cos": math.cos,
+    "sin": math.sin,
+    "abs": abs,
+    "sqrt": lambda value: math.sqrt(max(value, 0.0)),
+}
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,19 @@ from tmm_cli.note.blocks import Note
 from tmm_cli.note.context import Subject
 
 CHAPTERS = (
-    "title", "task", "synthesis", "structure", "kinematics", "centres", "law_of_motion", "single_run", "forces",
-    "balancing", "checks", "literature",
-)  # fmt: skip
+    "title",
+    "task",
+    "synthesis",
+    "structure",
+    "kinematics",
+    "centres",
+    "law_of_motion",
+    "single_run",
+    "forces",
+    "balancing",
+    "checks",
+    "literature",
+)
 # the part of Results that a chapter needs, where it is not there for every file: without it the chapter is not imported
 PARTS = {"law_of_motion": "steady", "single_run": "single", "balancing": "balancing"}
 

@@ -56,8 +56,9 @@ def blocks(subject: Subject) -> Iterable[Block]:
     )
     yield said(
         _("The moving links are listed in table {links}, the kinematic pairs in table {pairs}."),
-        links=Ref("links"), pairs=Ref("pairs"),
-    )  # fmt: skip
+        links=Ref("links"),
+        pairs=Ref("pairs"),
+    )
     yield _links(subject)
     yield _pairs(structure)
     yield from _mobility(structure)
@@ -100,12 +101,19 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     n, lower = len(structure.links), len(structure.pairs) - structure.higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     yield said(
-        _("The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
-          "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
-          "higher pairs:"),
-        source=Link("artobolevskii"), w=W, n=N, lower=LOWER, higher=HIGHER,
-        turning=str(turning), sliding=str(lower - turning),
-    )  # fmt: skip
+        _(
+            "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
+            "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
+            "higher pairs:"
+        ),
+        source=Link("artobolevskii"),
+        w=W,
+        n=N,
+        lower=LOWER,
+        higher=HIGHER,
+        turning=str(turning),
+        sliding=str(lower - turning),
+    )
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
     classes = _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.")
     yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
@@ -119,17 +127,21 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         yield paragraph(typeset(text))
     if structure.passive:
         yield said(
-            _("The rank of the equations shows passive constraints (in number {count}, in {pairs}), which only repeat "
-              "others by the special sizes of the mechanism; its true mobility is {w} = {true}."),
-            count=str(structure.redundant), w=W,
+            _(
+                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which "
+                "only repeat "
+                "others by the special sizes of the mechanism; its true mobility is {w} = {true}."
+            ),
+            count=str(structure.redundant),
+            w=W,
             pairs=", ".join(_("pair {name}").format(name=p.pair) for p in structure.passive),
             true=str(structure.mobility + structure.redundant),
-        )  # fmt: skip
+        )
     if structure.reduction:
         yield said(
             _("For the structural formula: {what}. The links and pairs that are left give:"),
             what="; ".join(left_out(structure)),
-        )  # fmt: skip
+        )
         yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
 
 
@@ -145,10 +157,12 @@ def _groups(subject: Subject) -> Iterable[Block]:
         head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
         rows = tuple(_group(group) for group in structure.groups)
         yield from tabled(
-            _("When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
-              "mobility of each of them is zero."),
+            _(
+                "When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
+                "mobility of each of them is zero."
+            ),
             Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups"),
-        )  # fmt: skip
+        )
     yield paragraph(_("The formula of structure of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     if len(structure.drivers) > 1:
@@ -172,7 +186,7 @@ def _apart(subject: Subject) -> Iterable[Block]:
             _("The parts of the mechanism are shown in figures {first} and {last}."),
             _("The parts of the mechanism are shown in figures {first} to {last}."),
             list(drawn),
-        )  # fmt: skip
+        )
     for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
         text = _("Redundant link {title}") if part.redundant else text

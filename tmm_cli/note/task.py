@@ -45,26 +45,33 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
         yield from tabled(
-            _("Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres of mass "
-              "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
-              "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
-              "the link on which it slides."),
-            _masses(subject), m=Symbol("m"), J=Symbol("J", "S"), sizes=Ref("sizes"),
-        )  # fmt: skip
+            _(
+                "Table {table} gives the masses {m} of the links, their moments of inertia {J} about the "
+                "centres of mass "
+                "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
+                "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
+                "the link on which it slides."
+            ),
+            _masses(subject),
+            m=Symbol("m"),
+            J=Symbol("J", "S"),
+            sizes=Ref("sizes"),
+        )
         yield from _gravity(subject)
     if linkage.loads:
         yield from tabled(_("The loads are given in table {table}."), _loads(subject))
     further = [
-        table for table in given(problem)
+        table
+        for table in given(problem)
         if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
-    ]  # fmt: skip
+    ]
     if further:
         yield several(
             _("Further data are given in table {first}."),
             _("Further data are given in tables {first} and {last}."),
             _("Further data are given in tables {first} to {last}."),
             [table.name for table in further],
-        )  # fmt: skip
+        )
         for table in further:
             yield rows_of(subject, table, key=table.name)
             yield from (paragraph(with_degrees(note)) for note in table.notes)
@@ -80,16 +87,19 @@ def _gravity(subject: Subject) -> Iterable[Block]:
         return
     yield said(
         _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the axis x."),
-        g=Symbol("g"), size=subject.text(size), angle=subject.value(float(np.angle(pull)), ANGLE, 4),
-    )  # fmt: skip
+        g=Symbol("g"),
+        size=subject.text(size),
+        angle=subject.value(float(np.angle(pull)), ANGLE, 4),
+    )
 
 
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
         cells(name, called(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
-        for name, link in linkage.links.items() if name != FRAME
-    )  # fmt: skip
+        for name, link in linkage.links.items()
+        if name != FRAME
+    )
     return Rows(_("Links and their sizes"), cells(_("link"), _("is called"), _("sizes")), rows, "sizes")
 
 
@@ -141,8 +151,11 @@ def _masses(subject: Subject) -> Rows:
         own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
         rows.append(cells(name, *own, *_place(subject, link.centre)))
     quantities = (
-        (Symbol("m"), MASS), (Symbol("J", "S"), INERTIA), (Symbol("x", "S"), LENGTH), (Symbol("y", "S"), LENGTH),
-    )  # fmt: skip
+        (Symbol("m"), MASS),
+        (Symbol("J", "S"), INERTIA),
+        (Symbol("x", "S"), LENGTH),
+        (Symbol("y", "S"), LENGTH),
+    )
     head = cells(_("link"), *((symbol, f", {unit(dimension)}") for symbol, dimension in quantities))
     caption = _("Masses, moments of inertia, and centres of mass in the axes of each link")
     return Rows(caption, head, tuple(rows), "masses")
@@ -187,9 +200,10 @@ def _wanted(subject: Subject) -> Iterable[str]:
         return
     count = len(results.numbers)
     yield (
-        _("positions, velocities and accelerations of points and links;") if count == 1
+        _("positions, velocities and accelerations of points and links;")
+        if count == 1
         else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
-    )  # fmt: skip
+    )
     if subject.acts:
         yield _(
             "the reactions in the pairs and the balancing load of the driving link, checked by the Zhukovsky lever."

@@ -15,7 +15,10 @@ def blocks(subject: Subject) -> Iterable[Block]:
     people = ((_("Student"), texts.student), (_("Group"), texts.group), (_("Teacher"), texts.teacher))
     above = "\n".join(text for text in (texts.institution, texts.department) if text)
     yield Title(
-        above, _("Explanatory note to the course project in the theory of mechanisms and machines"),
-        subject.results.problem.title, people, texts.code,
-    )  # fmt: skip
+        above,
+        _("Explanatory note to the course project in the theory of mechanisms and machines"),
+        subject.results.problem.title,
+        people,
+        texts.code,
+    )
     yield Contents()

@@ -328,9 +328,11 @@ def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: Uni
 
 
 def _missing_unit(
-    source: str, parameters: Mapping[str, PhysicalValue], units: UnitSystem,
+    source: str,
+    parameters: Mapping[str, PhysicalValue],
+    units: UnitSystem,
     fits: Callable[[Mapping[str, PhysicalValue]], bool],
-) -> ProblemError | None:  # fmt: skip
+) -> ProblemError | None:
     """The refusal of a value whose dimensions do not fit because a parameter in it has no unit, unlike others.
 
     Each kind of unit is tried on each parameter without one. None if no unit mends the value.
@@ -384,9 +386,10 @@ def evaluate_quantity(
         return PhysicalValue(units.number(source.written if isinstance(source, WrittenNumber) else source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError(
-            _("this is too long"), found=quote(source),
+            _("this is too long"),
+            found=quote(source),
             allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
-        )  # fmt: skip
+        )
     return Parser(plain_text(source), parameters, units, pi).whole()
 
 
@@ -394,9 +397,12 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
     """Refuse what cannot be the name of a parameter."""
     if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
         raise ProblemError(
-            _("this cannot be the name of a parameter"), path=path, found=quote(name),
-            allowed=_("letters, figures and _, a letter first"), key=key,
-        )  # fmt: skip
+            _("this cannot be the name of a parameter"),
+            path=path,
+            found=quote(name),
+            allowed=_("letters, figures and _, a letter first"),
+            key=key,
+        )
     if name in FUNCTIONS or name == "pi":
         raise ProblemError(_("this name is taken by arithmetic"), path=path, found=quote(name), key=key)
 

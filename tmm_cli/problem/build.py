@@ -58,21 +58,31 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
     if most < 1:
         whole = BUDGET // (_searched(linkage) + 1)
         raise ProblemError(
-            _("this linkage is too large"), path=("links",), found=_told(linkage),
-            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole), key=True,
-        )  # fmt: skip
+            _("this linkage is too large"),
+            path=("links",),
+            found=_told(linkage),
+            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole),
+            key=True,
+        )
     if count > most:
         raise ProblemError(
-            _("too many positions for so many links, points and loads"), path=("positions", "count"),
+            _("too many positions for so many links, points and loads"),
+            path=("positions", "count"),
             found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
             allowed=_("at most {most}").format(most=most),
-        )  # fmt: skip
+        )
 
 
 def refuse_options(
-    linkage: Linkage, count: int, *, digits: bool, detail: int | None, large: bool = False, plans: int = 0,
+    linkage: Linkage,
+    count: int,
+    *,
+    digits: bool,
+    detail: int | None,
+    large: bool = False,
+    plans: int = 0,
     centres: int = 0,
-) -> None:  # fmt: skip
+) -> None:
     """Refuse what the options of a command add to the work at so many positions, before it starts.
 
     detail: positions that are drawn in detail; None where nothing is drawn. large: on large sheets, which are drawn
@@ -89,36 +99,43 @@ def refuse_options(
             few = (left + count + each * min(count, LONG)) / (1 + each)
             most = int(few if few < LONG else left + count)
             raise ProblemError(
-                _("too many positions and too large a linkage for all digits to be judged"), path=("--digits",),
+                _("too many positions and too large a linkage for all digits to be judged"),
+                path=("--digits",),
                 found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
-                allowed=_("without --digits") if most < 1
+                allowed=_("without --digits")
+                if most < 1
                 else _("at most {most} positions, or without --digits").format(most=most),
-            )  # fmt: skip
+            )
     each = SHEET + CENTRES * len(linkage.moving) ** 2
     if each * centres > left:
         most = int(left // each)
         raise ProblemError(
-            _("these are too many instantaneous centres for so many links and positions"), path=("--centres",),
+            _("these are too many instantaneous centres for so many links and positions"),
+            path=("--centres",),
             found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_told(linkage)),
-            allowed=_("without centres") if most < 1
+            allowed=_("without centres")
+            if most < 1
             else _("at most {most} in detail, or without centres").format(most=most),
-        )  # fmt: skip
+        )
     if detail is not None and SHEET * (_sheets(detail, large) + PLANS * plans) > left >= SHEET * _sheets(detail, large):
         raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"), path=("--positions",),
+            _("these are too many drawings for so many links, points and positions"),
+            path=("--positions",),
             found=_("{count} positions; {linkage}").format(count=plans, linkage=_told(linkage)),
             allowed=_("plans of at most {most}, or --positions detail").format(
                 most=int((left / SHEET - _sheets(detail, large)) / PLANS)
             ),
-        )  # fmt: skip
+        )
     if detail is not None and SHEET * _sheets(detail, large) > left:
         most = max((few for few in range(detail) if SHEET * _sheets(few, large) <= left), default=-1)
         raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"), path=("positions", "detail"),
+            _("these are too many drawings for so many links, points and positions"),
+            path=("positions", "detail"),
             found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_told(linkage)),
-            allowed=_("without drawings") if most < 0
+            allowed=_("without drawings")
+            if most < 0
             else _("at most {most} in detail, or without drawings").format(most=most),
-        )  # fmt: skip
+        )
 
 
 def _sheets(detail: int, large: bool) -> float:
@@ -170,9 +187,11 @@ def checked_shape(tree: Tree) -> schema.File:
     """The file in the shape of a linkage. Raises ProblemError."""
     if is_chain(tree):
         raise ProblemError(
-            _("a chain given by pairs alone has no dimensions: there is only its structure"), path=("structure",),
-            allowed=_("tmm structure, tmm run, tmm check"), key=True,
-        ).located(tree.file, tree)  # fmt: skip
+            _("a chain given by pairs alone has no dimensions: there is only its structure"),
+            path=("structure",),
+            allowed=_("tmm structure, tmm run, tmm check"),
+            key=True,
+        ).located(tree.file, tree)
     return validated(schema.File, tree)
 
 
@@ -204,9 +223,11 @@ def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> No
     if shape.frame != FRAME and shape.frame in taken:
         free = next(number for number in count(1) if str(number) not in taken)
         raise ProblemError(
-            _("a link has this number already"), found=shape.frame, path=("frame",),
+            _("a link has this number already"),
+            found=shape.frame,
+            path=("frame",),
             allowed=_("a number of no link, such as {number}").format(number=free),
-        )  # fmt: skip
+        )
 
 
 def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
@@ -221,10 +242,18 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         meshes = build_meshes(shape, members, first.sense, values)
     outputs = _outputs(shape, links, values)
     linkage = Linkage(
-        links, members.hinges, members.slides, first, build_sketch(shape, links, first, values),
-        output=outputs[0] if outputs else None, others=tuple(others), meshes=meshes, outputs=outputs,
-        keep_side=shape.change_points == "keep side", turns=build_cycle(shape, first, values),
-    )  # fmt: skip
+        links,
+        members.hinges,
+        members.slides,
+        first,
+        build_sketch(shape, links, first, values),
+        output=outputs[0] if outputs else None,
+        others=tuple(others),
+        meshes=meshes,
+        outputs=outputs,
+        keep_side=shape.change_points == "keep side",
+        turns=build_cycle(shape, first, values),
+    )
     refuse_attachments(linkage, shape, values)
     linkage = with_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
@@ -241,12 +270,27 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     refuse_work(linkage, request)
     first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
     return Problem(
-        name, shape.title or name, linkage, request, values.units, limit, shape.description,
-        tree.file, (angles[0], angles[1]), (said[0], said[1]), bare_speed(first_driver, values),
-        shape.sheet, shape.note, _task("dynamics", shape, linkage, values),
-        _task("balancing", shape, linkage, values), shape.reference, shape.shows, values, tree,
+        name,
+        shape.title or name,
+        linkage,
+        request,
+        values.units,
+        limit,
+        shape.description,
+        tree.file,
+        (angles[0], angles[1]),
+        (said[0], said[1]),
+        bare_speed(first_driver, values),
+        shape.sheet,
+        shape.note,
+        _task("dynamics", shape, linkage, values),
+        _task("balancing", shape, linkage, values),
+        shape.reference,
+        shape.shows,
+        values,
+        tree,
         wheels=_wheels(shape, tree, linkage, values),
-    )  # fmt: skip
+    )
 
 
 def bare_speed(driver: schema.Driver, values: ValueReader) -> bool:
@@ -260,9 +304,11 @@ def refuse_tables(shape: schema.File) -> None:
     by_table = isinstance(shape.driver, schema.Driver) and isinstance(shape.driver.speed, schema.Speeds)
     if by_table and shape.dynamics is not None:
         raise ProblemError(
-            _("a law of motion is found, or it is given by a table"), path=("driver", "speed"), key=True,
+            _("a law of motion is found, or it is given by a table"),
+            path=("driver", "speed"),
+            key=True,
             allowed=_("one speed beside dynamics"),
-        )  # fmt: skip
+        )
     searched = isinstance(shape.synthesis, dict) and shape.synthesis.get("task") == "optimal"
     if searched or shape.grading is not None or shape.variants is not None:
         refuse_law(by_table, shape.dynamics is not None)
@@ -272,9 +318,11 @@ def refuse_law(by_table: bool, dynamics: bool) -> None:
     """Refuse tables of speeds and the block dynamics where they are not known. Raises ProblemError."""
     if by_table or dynamics:
         raise ProblemError(
-            _("variants and searches know drivers of one speed and one acceleration only"), key=True,
-            path=("driver", "speed") if by_table else ("dynamics",), allowed=_("speed: 82 rpm"),
-        )  # fmt: skip
+            _("variants and searches know drivers of one speed and one acceleration only"),
+            key=True,
+            path=("driver", "speed") if by_table else ("dynamics",),
+            allowed=_("speed: 82 rpm"),
+        )
 
 
 def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:

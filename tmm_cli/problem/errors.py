@@ -248,15 +248,26 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
 
 
 def unknown_name(
-    name: str, known: Iterable[str], message: str, allowed: str | None = None, *, path: Path = (),
-    file: str | None = None, key: bool = False,
-) -> ProblemError:  # fmt: skip
+    name: str,
+    known: Iterable[str],
+    message: str,
+    allowed: str | None = None,
+    *,
+    path: Path = (),
+    file: str | None = None,
+    key: bool = False,
+) -> ProblemError:
     """Of a name that is none of those known, with the nearest of them; allowed: where they are not told one by one."""
     names = list(known)
     return ProblemError(
-        message, path=path, found=quote(name), allowed=allowed or ", ".join(names) or None, near=nearest(name, names),
-        file=file, key=key,
-    )  # fmt: skip
+        message,
+        path=path,
+        found=quote(name),
+        allowed=allowed or ", ".join(names) or None,
+        near=nearest(name, names),
+        file=file,
+        key=key,
+    )
 
 
 def no_position(number: int, count: int, *path: str | int) -> ProblemError:

@@ -38,7 +38,9 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
     quoted = _("a quote is not closed"), _("text between two equal quotes"), opened
     table = {  # PyYAML's words (of both its parsers): what is wrong, what is allowed, and where
         "mapping values are not": (
-            _("a ':' where none can be"), _("one 'key: value' in a line; text with ': ' in quotes"), shown
+            _("a ':' where none can be"),
+            _("one 'key: value' in a line; text with ': ' in quotes"),
+            shown,
         ),
         "expected ',' or ']'": (_("'[' is not closed"), _("'[1, 2]', items separated by commas"), opened),
         "expected ',' or '}'": (_("'{' is not closed"), _("'{a: 1, b: 2}', items separated by commas"), opened),
@@ -49,11 +51,13 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
         "expected <block end>": (_("this does not fit the lines above"), indent, shown),
         "did not find expected key": (_("this does not fit the lines above"), indent, shown),
         "entries are not allowed": (
-            _("a list item '-' where none can be"), _("each '- item' in a line of its own"), shown
+            _("a list item '-' where none can be"),
+            _("each '- item' in a line of its own"),
+            shown,
         ),
         "node content": (_("a value is missing"), _("a value"), shown),
         "nesting depth": (_("nested too deeply"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
-    }  # fmt: skip
+    }
     problem = f"{error.problem} {error.context}"
     plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
     message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
@@ -144,9 +148,12 @@ class Composer:
             raise ProblemError(_("the file is empty"), allowed=_("a mapping such as 'tmm: 1'"), file=self.file)
         if not isinstance(top, dict):
             raise ProblemError(
-                _("the top level is not a mapping"), found=quote(top), allowed=_("lines 'key: value'"),
-                file=self.file, mark=self.marks[()],
-            )  # fmt: skip
+                _("the top level is not a mapping"),
+                found=quote(top),
+                allowed=_("lines 'key: value'"),
+                file=self.file,
+                mark=self.marks[()],
+            )
         return top
 
     def parsed(self) -> Iterator[Any]:
@@ -212,9 +219,11 @@ class Composer:
             self.refuse(event, path[:3], _("nested too deeply"), allowed=allowed)
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
             self.refuse(
-                event, path, _("aliases are not part of a problem file"),
+                event,
+                path,
+                _("aliases are not part of a problem file"),
                 allowed=_("the value written out, or a parameter; text that starts with * or & in quotes"),
-            )  # fmt: skip
+            )
         if event.tag is not None:
             self.refuse(event, path, _("tags are not part of a problem file"), quote(event.tag), _("plain values"))
 
@@ -360,9 +369,12 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
         raise _too_large(file, f"{len(text)} characters")
     if hidden := HIDDEN.search(text):
         raise ProblemError(
-            _("a control or invisible character"), found=f"U+{ord(hidden[0]):04X}", allowed=_("printable text"),
-            file=file, mark=_mark_at(text, hidden.start()),
-        )  # fmt: skip
+            _("a control or invisible character"),
+            found=f"U+{ord(hidden[0]):04X}",
+            allowed=_("printable text"),
+            file=file,
+            mark=_mark_at(text, hidden.start()),
+        )
     if tab := _TAB.search(text):
         raise tab_error(file, _mark_at(text, text.index("\t", tab.start())))
     composer = composed_by(text, file)

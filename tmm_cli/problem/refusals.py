@@ -77,8 +77,10 @@ def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
         _("group {group} cannot be assembled with the driver at {place}").format(
             group=error.group.title, place=_driver_at(problem)
         ),
-        path=("sketch", "at"), found=short, allowed=_("lengths that reach, or another place of the driver"),
-    )  # fmt: skip
+        path=("sketch", "at"),
+        found=short,
+        allowed=_("lengths that reach, or another place of the driver"),
+    )
 
 
 @worded.register
@@ -87,36 +89,44 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
     if not error.choices:
         return ProblemError(
             _("group {group} is in a dead position in the sketch").format(group=group),
-            path=("sketch", "at"), found=place, allowed=_("another place of the driver"),
-        )  # fmt: skip
+            path=("sketch", "at"),
+            found=place,
+            allowed=_("another place of the driver"),
+        )
     told = list(error.choices.items())[:MOST_CHOICES]
     ways = "; ".join(f"{name}: {shown(a, units)} or {shown(b, units)}" for name, (a, b) in told)
     undecided = _(
         "the sketch does not say how group {group} is assembled; see tmm kinematics {file} --assemblies"
     ).format(group=group, file=problem.file or "FILE")
     return ProblemError(
-        undecided, path=("sketch",), key=True,
+        undecided,
+        path=("sketch",),
+        key=True,
         allowed=_("with the driver at {place}, {ways}").format(place=place, ways=ways),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _no_such_assembly(error: SketchMismatchError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the sketch fits no assembly"), path=("sketch", error.name), found=shown(error.sketched, problem.units),
+        _("the sketch fits no assembly"),
+        path=("sketch", error.name),
+        found=shown(error.sketched, problem.units),
         allowed=_("about {value} with the driver at {place}").format(
             value=shown(error.found, problem.units), place=_driver_at(problem)
         ),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("a group of so many links is not solved: {title}").format(title=error.group.title), path=("links",),
+        _("a group of so many links is not solved: {title}").format(title=error.group.title),
+        path=("links",),
         found=str(len(error.group.links)),
-        allowed=_("at most {most} in one group; any number of groups").format(most=error.most), key=True,
-    )  # fmt: skip
+        allowed=_("at most {most} in one group; any number of groups").format(most=error.most),
+        key=True,
+    )
 
 
 @worded.register
@@ -125,10 +135,11 @@ def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> Probl
         _("the change points of group {title} take too long to find: so many groups lie before it").format(
             title=error.group.title
         ),
-        path=("links",), key=True,
+        path=("links",),
+        key=True,
         found=_("{groups} groups over {turns} turns of the driver").format(groups=error.groups, turns=error.turns),
         allowed=_("groups times turns: at most {most}").format(most=error.most),
-    )  # fmt: skip
+    )
 
 
 @worded.register
@@ -171,22 +182,24 @@ def mobility(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
             path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
             found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(held)),
             allowed=f"W = {wanted}",
-        )  # fmt: skip
+        )
     if loose:
         return ProblemError(
             _("mobility is not {wanted}: these links are loose: {links}").format(wanted=wanted, links=", ".join(loose)),
-            path=("links", loose[0]), found=count,
+            path=("links", loose[0]),
+            found=count,
             allowed="; ".join([_("W = {wanted}, as many as there are drivers").format(wanted=wanted), *hints]),
             key=True,
-        )  # fmt: skip
+        )
     name, bodies = redundant[0]
     links = tuple(b for b in bodies if b in structure.links)
     return ProblemError(
         _("mobility is not {wanted}: pair {name} holds what is held already").format(wanted=wanted, name=name),
-        path=("links", links[0]) if links else ("links",), key=True,
+        path=("links", links[0]) if links else ("links",),
+        key=True,
         found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(bodies)),
         allowed=f"W = {wanted}",
-    )  # fmt: skip
+    )
 
 
 # Refusals of what hangs on strokes, on the turns of a cycle, or on how far the driver comes.
@@ -197,9 +210,11 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     block, *__, key = error.path
     if block == "intermittent" and key == "moves_with":
         return ProblemError(
-            _("this link never turns back: the wheel would not stand"), path=error.path, found=quote(error.link),
+            _("this link never turns back: the wheel would not stand"),
+            path=error.path,
+            found=quote(error.link),
             allowed=_("a link that swings"),
-        )  # fmt: skip
+        )
     text = _("there is no working stroke")
     if block == "intermittent":
         return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output that has strokes"))
@@ -207,9 +222,10 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
         first, last = (shown(limit, problem.units) for limit in error.limits)
         return ProblemError(
             _("a table against the stroke needs a driver that turns fully, so that the output makes whole strokes"),
-            path=error.path, found=_("the driver moves from {first} to {last}").format(first=first, last=last),
+            path=error.path,
+            found=_("the driver moves from {first} to {last}").format(first=first, last=last),
             allowed=_("against: crank angle"),
-        )  # fmt: skip
+        )
     found = _("no output is joined to the frame")
     if error.link is not None:
         found = _("link {link} has no ends of its stroke").format(link=error.link)
@@ -224,9 +240,12 @@ def _speeds_end(error: SpeedsEndError, problem: Problem) -> ProblemError:
         ends = _("{ends}, a position is at {place}").format(ends=ends, place=shown(error.at, problem.units))
     closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
     return ProblemError(
-        _("the table of speeds does not reach over all positions"), path=("driver", "speed", "table"), key=True,
-        found=ends, allowed=closing.format(end=end),
-    )  # fmt: skip
+        _("the table of speeds does not reach over all positions"),
+        path=("driver", "speed", "table"),
+        key=True,
+        found=ends,
+        allowed=closing.format(end=end),
+    )
 
 
 @worded.register
@@ -252,9 +271,11 @@ def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
 def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
     first, last = shown(error.start, problem.units), shown(error.end, problem.units)
     return ProblemError(
-        _("the run goes where the driver does not come"), path=("dynamics", "run"), key=True,
+        _("the run goes where the driver does not come"),
+        path=("dynamics", "run"),
+        key=True,
         allowed=_("{first} to {last}").format(first=first, last=last),
-    )  # fmt: skip
+    )
 
 
 @worded.register
@@ -264,9 +285,10 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
     if turns == 1:
         text = _("this row is never reached: all repeats after 1 turn of the driver")
     allowed = _("0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns").format(
-        end=f"{units.from_si(error.cycle, ANGLE):.6g}", unit=units.spelt(ANGLE),
+        end=f"{units.from_si(error.cycle, ANGLE):.6g}",
+        unit=units.spelt(ANGLE),
         turns=max(2, math.ceil(error.argument / math.tau)),
-    )  # fmt: skip
+    )
     return ProblemError(text.format(turns=turns), path=error.path, found=shown(error.argument, units), allowed=allowed)
 
 
@@ -277,63 +299,75 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
 def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
-        path=("balancing", "counterweights"), key=True, allowed=_("larger radii, or other points of the links"),
-    )  # fmt: skip
+        path=("balancing", "counterweights"),
+        key=True,
+        allowed=_("larger radii, or other points of the links"),
+    )
 
 
 @worded.register
 def _by_speed(error: BySpeedError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("a law of motion is not found where forces hang on reactions or on speeds"), path=error.path, key=True,
+        _("a law of motion is not found where forces hang on reactions or on speeds"),
+        path=error.path,
+        key=True,
         allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
     reason = _("the run is not computed to its end: after {count} evaluations it has come to {time} s")
     return ProblemError(
-        reason.format(count=error.count, time=f"{error.time:.4g}"), path=("dynamics", "run"),
+        reason.format(count=error.count, time=f"{error.time:.4g}"),
+        path=("dynamics", "run"),
         allowed=_("a shorter run, or inertias that differ less on the way"),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
     if problem.dynamics is not None and not problem.dynamics.cyclic:
         return ProblemError(
-            _("the run does not start: what drives is no more than the loads"), path=("dynamics", "run"), key=True,
+            _("the run does not start: what drives is no more than the loads"),
+            path=("dynamics", "run"),
+            key=True,
             allowed=_("a larger drive (positive along the guide or counterclockwise), or a speed at the beginning"),
-        )  # fmt: skip
+        )
     return ProblemError(
         _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),
-        path=("dynamics",), key=True,
+        path=("dynamics",),
+        key=True,
         found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
         allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("there is no law of motion: nothing that moves with the driver there has mass or inertia"),
-        path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",), key=True,
+        path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",),
+        key=True,
         found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
         allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
-    )  # fmt: skip
+    )
 
 
 @worded.register
 def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the law of motion is lost in rounding: the links and the flywheel are too heavy for the motor to change "
-          "their speed"),
-        path=("dynamics",), key=True,
+        _(
+            "the law of motion is lost in rounding: the links and the flywheel are too heavy for the motor to change "
+            "their speed"
+        ),
+        path=("dynamics",),
+        key=True,
         found=_("in a cycle the motor makes up for {share} of a difference of speed").format(
             share=numeral(error.share, ".1g")
         ),
         allowed=_("masses and inertias that fit the motor: are their units right?"),
-    )  # fmt: skip
+    )
 
 
 @worded.register
@@ -352,12 +386,18 @@ def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
         wanted = _("a heavier flywheel, a stronger motor, smaller loads")
     return ProblemError(
         _("the loads push the machine on, and its motor does not hold it: it runs away"),
-        path=("dynamics", "motor"), key=True, allowed=wanted,
-        found=found.format(moment=f"{units.from_si(error.pushing, MOMENT):.4g}", unit=unit,
-                           most=f"{units.from_si(error.most, MOMENT):.4g}", place=shown(error.place, units),
-                           speed=units.told(error.speed, ANGULAR_SPEED, 4),
-                           idle=units.told(error.idle, ANGULAR_SPEED, 4)),
-    )  # fmt: skip
+        path=("dynamics", "motor"),
+        key=True,
+        allowed=wanted,
+        found=found.format(
+            moment=f"{units.from_si(error.pushing, MOMENT):.4g}",
+            unit=unit,
+            most=f"{units.from_si(error.most, MOMENT):.4g}",
+            place=shown(error.place, units),
+            speed=units.told(error.speed, ANGULAR_SPEED, 4),
+            idle=units.told(error.idle, ANGULAR_SPEED, 4),
+        ),
+    )
 
 
 @worded.register
@@ -365,12 +405,15 @@ def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
     return ProblemError(
         _("the motor cannot carry the load: over the cycle this wants more than it gives at its best"),
-        path=("dynamics", "motor"), key=True,
-        found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way")
-        .format(moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=shown(error.place, units)),
-        allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio")
-        .format(moment=f"{units.from_si(error.wanted, MOMENT):.4g}", unit=unit),
-    )  # fmt: skip
+        path=("dynamics", "motor"),
+        key=True,
+        found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way").format(
+            moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=shown(error.place, units)
+        ),
+        allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio").format(
+            moment=f"{units.from_si(error.wanted, MOMENT):.4g}", unit=unit
+        ),
+    )
 
 
 @worded.register

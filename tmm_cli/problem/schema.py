@@ -109,9 +109,18 @@ MAX_PAIRS = 300
 MAX_MOBILITY = 6 * MAX_LINKS
 
 Kind = Literal[
-    "turning", "sliding", "screw", "cylindrical", "spherical with a pin", "universal", "spherical", "planar",
-    "sphere in cylinder", "cylinder on plane", "sphere on plane",
-]  # fmt: skip
+    "turning",
+    "sliding",
+    "screw",
+    "cylindrical",
+    "spherical with a pin",
+    "universal",
+    "spherical",
+    "planar",
+    "sphere in cylinder",
+    "cylinder on plane",
+    "sphere on plane",
+]
 
 
 Freedoms = Annotated[int, Field(ge=0, le=MAX_MOBILITY)]

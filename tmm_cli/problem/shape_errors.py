@@ -150,9 +150,13 @@ def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
 
 
 def _refusal(
-    kind: str, path: Path, value: Any, context: dict[str, Any], fields: tuple[dict[str, FieldInfo], FieldInfo | None],
+    kind: str,
+    path: Path,
+    value: Any,
+    context: dict[str, Any],
+    fields: tuple[dict[str, FieldInfo], FieldInfo | None],
     hint: str | None,
-) -> ProblemError:  # fmt: skip
+) -> ProblemError:
     known, field = fields
     described = _(field.description) if field and field.description else None
     if kind == "extra_forbidden":
@@ -169,10 +173,12 @@ def _refusal(
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
         return ProblemError(
-            _("this word is not known here"), path=path, found=quote(value),
+            _("this word is not known here"),
+            path=path,
+            found=quote(value),
             allowed=described if described and "[" in described else words,  # a list may stand here too
             near=nearest(str(value), words.split(", ")),
-        )  # fmt: skip
+        )
     if kind in ("model_type", "model_attributes_type") and field and (shape := _inside([field.annotation])):
         described = ", ".join(inner.alias or name for name, inner in shape.model_fields.items())
     if kind == "too_short" and context["min_length"] == 1:

@@ -294,10 +294,19 @@ def on_paper(unit: str) -> str:
 
 
 FUNCTIONS = {
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2, "hypot": np.hypot, "sqrt": np.sqrt, "min": partial(reduce, np.minimum),
-    "max": partial(reduce, np.maximum), "abs": abs,
-}  # fmt: skip
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "hypot": np.hypot,
+    "sqrt": np.sqrt,
+    "min": partial(reduce, np.minimum),
+    "max": partial(reduce, np.maximum),
+    "abs": abs,
+}
 
 
 class ExtendedUnits(UnitSystem):

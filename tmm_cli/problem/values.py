@@ -83,9 +83,11 @@ class ValueReader:
         if number < 0 or (number == 0 and not zero):
             message = _("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")
             raise ProblemError(
-                message.format(want=want), path=path, found=quote(value) if isinstance(value, str) else str(value),
+                message.format(want=want),
+                path=path,
+                found=quote(value) if isinstance(value, str) else str(value),
                 allowed=_("zero or more") if zero else _("more than zero"),
-            )  # fmt: skip
+            )
         if 0 < number < SMALLEST and not (zero and want == NUMBER):  # a share that may be zero divides nothing
             raise self.too_small(value, SMALLEST, want, path)
         return number
@@ -102,9 +104,11 @@ class ValueReader:
         """Of a value below the least (SI) that a mechanism can have."""
         shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
-            _("this is too small for a mechanism"), path=path, found=quote(value),
+            _("this is too small for a mechanism"),
+            path=path,
+            found=quote(value),
             allowed=_("{least} or more").format(least=shown),
-        )  # fmt: skip
+        )
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
         """Two coordinates."""
@@ -136,11 +140,12 @@ class ValueReader:
             number, (first, second) = f"{share:.6g}", points
             raise ProblemError(
                 _("a share of the way from {first} to {second} is wanted here").format(first=first, second=second),
-                path=path, found=quote(value),
+                path=path,
+                found=quote(value),
                 allowed=_("e.g. 0.5; with its unit {number} %, or {number} {unit} for a distance from {first}").format(
                     number=number, unit=self.units.spelt(LENGTH), first=first
                 ),
-            )  # fmt: skip
+            )
         return share
 
     @staticmethod
@@ -174,9 +179,12 @@ class ValueReader:
             message = _("two points of one link are wanted")
             near = nearest(text, [a + b for a in points for b in points if a != b])
         raise ProblemError(
-            message, path=path, found=quote(text), allowed=_("two of {points}").format(points=", ".join(points)),
+            message,
+            path=path,
+            found=quote(text),
+            allowed=_("two of {points}").format(points=", ".join(points)),
             near=near,
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True)
@@ -230,8 +238,9 @@ class Part:
 
     def two_links(self, links: Iterable[str]) -> tuple[str, str]:
         """The two links it is between, which are not the same."""
-        i, j = (self.values.known(n, links, (*self.path, "between", k), "link")
-                for k, n in enumerate(self.given.between))  # fmt: skip
+        i, j = (
+            self.values.known(n, links, (*self.path, "between", k), "link") for k, n in enumerate(self.given.between)
+        )
         self.values.different((i, j), (*self.path, "between"))
         return i, j
 
@@ -262,10 +271,14 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
     pattern = LINK_NAME if what == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
-            translated(UNFIT[what]), path=path, found=quote(name),
-            allowed=_("letters and figures, at most 16") if what == "link"
-            else _("letters and figures, at most 16, a letter first"), key=True,
-        )  # fmt: skip
+            translated(UNFIT[what]),
+            path=path,
+            found=quote(name),
+            allowed=_("letters and figures, at most 16")
+            if what == "link"
+            else _("letters and figures, at most 16, a letter first"),
+            key=True,
+        )
     if name in taken:
         raise ProblemError(_("this name is taken"), path=path, found=quote(name), key=True)
 

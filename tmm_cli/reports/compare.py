@@ -83,10 +83,17 @@ def difference_table(different: Mapping[str, Sequence[Difference]]) -> Table:
     """Differences by problem."""
     headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("found"), _("relative"))
     rows = [
-        (name, d.quantity, "" if d.position is None else str(d.position), brief(d.expected), brief(d.found),
-         "" if d.size is None else f"{d.size:.2g}")
-        for name, here in different.items() for d in here
-    ]  # fmt: skip
+        (
+            name,
+            d.quantity,
+            "" if d.position is None else str(d.position),
+            brief(d.expected),
+            brief(d.found),
+            "" if d.size is None else f"{d.size:.2g}",
+        )
+        for name, here in different.items()
+        for d in here
+    ]
     return table_of_words("check", _("What differs from the expected values"), headers, rows)
 
 

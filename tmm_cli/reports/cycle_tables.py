@@ -164,9 +164,13 @@ def states(results: Results) -> list[str]:
 
 
 def long_table(
-    results: Results, name: str, title: str, words: Mapping[Phrase, Sequence[str]],
-    things: Sequence[Sequence[NamedValues]], note: str = "",
-) -> Table:  # fmt: skip
+    results: Results,
+    name: str,
+    title: str,
+    words: Mapping[Phrase, Sequence[str]],
+    things: Sequence[Sequence[NamedValues]],
+    note: str = "",
+) -> Table:
     """Position by position, a row for each thing. words: what tells the things apart, by header.
 
     things: their columns (quantities.columns), which have the same headers.
@@ -241,10 +245,16 @@ def extremes_tables(results: Results) -> Iterable[Table]:
     driver, units = results.linkage.driver, results.problem.units
     place, full = place_dimension(driver.kind), results.turns > 0
     words = {
-        "x": _("x of {name}"), "y": _("y of {name}"), "angle": _("angle of link {name}"), "s": _("s in {name}"),
-        "R": _("R in {name}"), "M": _("couple in {name}"), "R pin": _("force of the pin on the link, {name}"),
-        "M_b": _("M_b of {name}"), "F_b": _("F_b of {name}"),
-    }  # fmt: skip
+        "x": _("x of {name}"),
+        "y": _("y of {name}"),
+        "angle": _("angle of link {name}"),
+        "s": _("s in {name}"),
+        "R": _("R in {name}"),
+        "M": _("couple in {name}"),
+        "R pin": _("force of the pin on the link, {name}"),
+        "M_b": _("M_b of {name}"),
+        "F_b": _("F_b of {name}"),
+    }
 
     def shown(values: Sequence[float]) -> list[float]:
         return [units.from_si(value, one.dimension) for value, one in zip(values, found or (), strict=True)]

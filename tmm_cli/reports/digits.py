@@ -244,8 +244,12 @@ class AccuracyReport:
     def summary(self, rows: Sequence[tuple[str | float, ...]]) -> Table:
         """Table by table and column by column: the largest bound, digits to be trusted, sensitivities."""
         words = (_("table"), _("column"))
-        figures = (_("bound by rounding"), _("true digits"), _("change by 0.1 % of lengths, %"),
-                   _("change by 0.5 mm on paper, %"))  # fmt: skip
+        figures = (
+            _("bound by rounding"),
+            _("true digits"),
+            _("change by 0.1 % of lengths, %"),
+            _("change by 0.5 mm on paper, %"),
+        )
         columns = [Column(header, [row[k] for row in rows]) for k, header in enumerate(words)]
         for k, header in enumerate(figures, len(words)):
             columns.append(Column(header, [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2))
@@ -337,11 +341,15 @@ def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
     if not share[3] > 0:
         return _("Rounding: at most {bound} of the largest value of a column.").format(bound=numeral(bound[1], ".1e"))
     return _(
-"Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to "
-"{lengths} % ({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper})."
-).format(bound=numeral(bound[1], ".1e"), lengths=numeral(share[3], ".2g"), by_lengths=share[0],
-        paper=numeral(paper[4], ".2g"), by_paper=paper[0],
-    )  # fmt: skip
+        "Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to "
+        "{lengths} % ({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper})."
+    ).format(
+        bound=numeral(bound[1], ".1e"),
+        lengths=numeral(share[3], ".2g"),
+        by_lengths=share[0],
+        paper=numeral(paper[4], ".2g"),
+        by_paper=paper[0],
+    )
 
 
 def _scale(mu: float) -> str:

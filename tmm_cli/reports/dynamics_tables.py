@@ -95,7 +95,8 @@ def _law(results: Results) -> Table:
     resists = running.steady.moment < 0 and running.task.motor is None
     notes = (_("The loads do work; the driving moment is that of the resistance which takes it."),) if resists else ()
     return Table(
-        "law-of-motion", _("Law of motion of the driver"),
+        "law-of-motion",
+        _("Law of motion of the driver"),
         (
             *driver_columns(results),
             Column(N_("t, s"), motion.time, NUMBER),
@@ -105,7 +106,7 @@ def _law(results: Results) -> Table:
             Column(N_("work of all moments, J"), work, NUMBER),
         ),
         notes=notes,
-    )  # fmt: skip
+    )
 
 
 def _single(results: Results, single: SingleRun) -> Iterable[Table]:
@@ -134,7 +135,8 @@ def _single(results: Results, single: SingleRun) -> Iterable[Table]:
     rate = single.speed(at)
     acceleration = ANGULAR_ACCELERATION if turns else ACCELERATION
     yield Table(
-        "law-of-motion", _("Law of motion of the driver"),
+        "law-of-motion",
+        _("Law of motion of the driver"),
         (
             Column(N_("t, s"), single.time(at), NUMBER),
             Column(N_("driver"), at, place),
@@ -142,7 +144,7 @@ def _single(results: Results, single: SingleRun) -> Iterable[Table]:
             Column(N_("acceleration"), single.accelerated(at), acceleration),
             Column(N_("kinetic energy, J"), single.kinetic(at), NUMBER),
         ),
-    )  # fmt: skip
+    )
 
 
 # Balancing: counterweights, what shakes the frame before and after, and masses on a shaft.
@@ -299,9 +301,11 @@ def _course(wheels: Iterable[Intermittent], place: Dimension) -> Table:
     every = [(wheel.task.name, part) for wheel in wheels for part in wheel.parts]
     columns = [Column(N_("wheel"), [name for name, part in every for __ in part.ways])]
     told = (
-        (N_("way of the driver"), "ways", place), (N_("angle"), "angles", ANGLE),
-        (N_("omega"), "omegas", ANGULAR_SPEED), (N_("epsilon"), "epsilons", ANGULAR_ACCELERATION),
-    )  # fmt: skip
+        (N_("way of the driver"), "ways", place),
+        (N_("angle"), "angles", ANGLE),
+        (N_("omega"), "omegas", ANGULAR_SPEED),
+        (N_("epsilon"), "epsilons", ANGULAR_ACCELERATION),
+    )
     for header, name, dimension in told:
         values = np.concatenate([getattr(part, name) for __, part in every])
         columns.append(Column(header, values, dimension))

@@ -70,9 +70,12 @@ def in_words(results: Results) -> Iterable[str]:
         text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
         kind = f"{group.type} ({group.letters}, {group.type_number})" if group.type_number else group.type
         yield text.format(
-            group=group.title, number=group.roman, order=group.order, type=kind,
+            group=group.title,
+            number=group.roman,
+            order=group.order,
+            type=kind,
             outer=_outer(group),
-        )  # fmt: skip
+        )
         yield _("For the group {group}, 3n - 2 p1 - p2 = {count}.").format(
             group=group.title, count=counted_mobility(group.count)
         )

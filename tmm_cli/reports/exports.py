@@ -38,9 +38,11 @@ def pylinkage(results: Results) -> tuple[str, list[str]]:
         link: dict[str, Any] = {"id": name, "type": "link", "joints": list(linkage.links[name].points)}
         if name == driver.link:
             link |= {
-                "type": "driver", "angular_velocity": driver.sense * driver.rate,
-                "initial_angle": float(linkage.sketch.at), "motor_joint": pivot,
-            }  # fmt: skip
+                "type": "driver",
+                "angular_velocity": driver.sense * driver.rate,
+                "initial_angle": float(linkage.sketch.at),
+                "motor_joint": pivot,
+            }
         made.append(link)
     data = {"name": results.problem.title, "joints": joints, "links": made, "ground": "ground"}
     left = [_("masses and loads")] if linkage.acting or any(np.any(x.mass) for x in linkage.links.values()) else []

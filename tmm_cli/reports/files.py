@@ -246,9 +246,13 @@ class Written(NamedTuple):
 
 
 def write_results(
-    results: Results | ChainResults, out: Path, drawings: Iterable[tuple[str, bytes]] | None = None,
-    digits: AccuracyReport | None = None, people: Kind | None = None, part: str = "",
-) -> Written:  # fmt: skip
+    results: Results | ChainResults,
+    out: Path,
+    drawings: Iterable[tuple[str, bytes]] | None = None,
+    digits: AccuracyReport | None = None,
+    people: Kind | None = None,
+    part: str = "",
+) -> Written:
     """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
 
     Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or

@@ -145,9 +145,10 @@ def lever_tables(results: Results) -> Iterable[Table]:
 def _columns(item: Item, slider: bool) -> list[NamedValues]:
     force, couple = (item, None) if item.end is not None else (None, item)
     return [
-        *columns(LEVER_FORCE, force, slider), *columns(LEVER_COUPLE, couple, slider),
+        *columns(LEVER_FORCE, force, slider),
+        *columns(LEVER_COUPLE, couple, slider),
         *LEVER_MOMENT.columns(item, slider),
-    ]  # fmt: skip
+    ]
 
 
 # What balances the driver as a student draws it: the force plan beside the Zhukovsky lever, in positions in detail.
@@ -213,7 +214,8 @@ def _friction(results: Results) -> Table:
         notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
     notes += [_("locks itself {range}").format(range=text) for text in locked_ranges(results)]
     return Table(
-        "friction", _("Friction"),
+        "friction",
+        _("Friction"),
         (
             Column(N_("pair"), [f.pair for f in given]),
             Column(N_("mu"), [f.coefficient for f in given], NUMBER),
@@ -221,7 +223,7 @@ def _friction(results: Results) -> Table:
             Column(N_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
-    )  # fmt: skip
+    )
 
 
 def locked_ranges(results: Results) -> list[str]:
@@ -251,8 +253,15 @@ def locked_ranges(results: Results) -> list[str]:
             text = _(
                 "from {start} to {end} {unit} (positions {numbers}), most of all in pair {pair} of links {i} and {j}"
             )
-        found.append(text.format(
-            start=start, end=end, unit=units.spelt(measure), numbers=", ".join(numbers), pair=locked.pair, i=pair.i,
-            j=pair.j,
-        ))  # fmt: skip
+        found.append(
+            text.format(
+                start=start,
+                end=end,
+                unit=units.spelt(measure),
+                numbers=", ".join(numbers),
+                pair=locked.pair,
+                i=pair.i,
+                j=pair.j,
+            )
+        )
     return found

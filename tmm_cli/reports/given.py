@@ -59,18 +59,32 @@ def _points(problem: Problem) -> Table:
     ]
     note = _("Lengths in {unit}. A point on two links is a hinge; on three and more, a compound hinge.")
     return table_of_words(
-        "points", _("Points, each in the axes of its link"), (_("link"), _("point"), _("place")), rows,
+        "points",
+        _("Points, each in the axes of its link"),
+        (_("link"), _("point"), _("place")),
+        rows,
         (note.format(unit=problem.units.spelt(LENGTH)),),
-    )  # fmt: skip
+    )
 
 
 def _slides(problem: Problem) -> Table:
     return table_of_words(
-        "slides", _("Sliding pairs"),
+        "slides",
+        _("Sliding pairs"),
         (_("pair"), _("link"), _("point"), _("slides on"), _("guide through"), _("guide's angle"), _("turned by")),
-        [(s.name, s.runner, s.point, link_name(s.carrier), show_vector(problem, s.through),
-          show(problem, s.direction, ANGLE), show(problem, s.turned, ANGLE)) for s in problem.linkage.slides],
-    )  # fmt: skip
+        [
+            (
+                s.name,
+                s.runner,
+                s.point,
+                link_name(s.carrier),
+                show_vector(problem, s.through),
+                show(problem, s.direction, ANGLE),
+                show(problem, s.turned, ANGLE),
+            )
+            for s in problem.linkage.slides
+        ],
+    )
 
 
 def _facts(problem: Problem) -> Iterable[tuple[str, str]]:

@@ -20,18 +20,24 @@ def masses(problem: Problem) -> Table:
     """Masses of links, with their centres."""
     links = [problem.linkage.links[name] for name in heavy(problem.linkage)]
     return table_of_words(
-        "masses", _("Masses"), (_("link"), _("mass"), _("inertia about S"), _("S in the link's axes")),
-        [(x.name, show(problem, x.mass, MASS), show(problem, x.inertia, INERTIA), show_vector(problem, x.centre))
-         for x in links],
-    )  # fmt: skip
+        "masses",
+        _("Masses"),
+        (_("link"), _("mass"), _("inertia about S"), _("S in the link's axes")),
+        [
+            (x.name, show(problem, x.mass, MASS), show(problem, x.inertia, INERTIA), show_vector(problem, x.centre))
+            for x in links
+        ],
+    )
 
 
 def loads(problem: Problem) -> Iterable[Table]:
     """All loads, then the rows of those by table."""
     yield table_of_words(
-        "loads", _("Loads"), (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
+        "loads",
+        _("Loads"),
+        (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
         [_load(problem, load) for load in problem.linkage.loads],
-    )  # fmt: skip
+    )
     for load in problem.linkage.loads:
         if load.table is not None:
             yield _tabulated(problem, load, load.table)

@@ -30,10 +30,13 @@ from tmm_cli.reports.table import Table, table_of_words, with_unit
 from tmm_cli.reports.understood import between_rows
 
 FILE_WORDS: Final = {  # that a file may say, where they are shown
-    "always": N_("always"), "working stroke": N_("working stroke"),
-    "stroke": N_("stroke"), "share of stroke": N_("share of the stroke"),
-    "crank angle": N_("crank angle"), "crank turn": N_("crank turn"),
-}  # fmt: skip
+    "always": N_("always"),
+    "working stroke": N_("working stroke"),
+    "stroke": N_("stroke"),
+    "share of stroke": N_("share of the stroke"),
+    "crank angle": N_("crank angle"),
+    "crank turn": N_("crank turn"),
+}
 
 
 def show(problem: Problem, value: float, dimension: Dimension) -> str:
@@ -82,10 +85,11 @@ def parts(problem: Problem) -> Iterable[Table]:
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
         yield table_of_words(
-            "drivers", _("Drivers; they pass through the places of the sketch together"),
+            "drivers",
+            _("Drivers; they pass through the places of the sketch together"),
             (_("link"), _("driven from"), _("in pair"), _("it"), _("speed"), _("sense"), _("in the sketch at")),
             [_driver(problem, driver) for driver in linkage.drivers],
-        )  # fmt: skip
+        )
     wheels = [_mesh(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
         note, title = _("Angles are those of the wheels from the link that holds them."), _("Toothed wheels")
@@ -96,10 +100,12 @@ def parts(problem: Problem) -> Iterable[Table]:
                 "for an angle in rad."
             )
         yield table_of_words(
-            "meshes", title,
+            "meshes",
+            title,
             (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
-            wheels, (note.format(unit=problem.units.spelt(LENGTH)),),
-        )  # fmt: skip
+            wheels,
+            (note.format(unit=problem.units.spelt(LENGTH)),),
+        )
     cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam(problem, mesh)]
     if cams:
         note = _(
@@ -107,34 +113,58 @@ def parts(problem: Problem) -> Iterable[Table]:
             "from the cam's axis. A swinging one is loaded by a couple."
         )
         yield table_of_words(
-            "cams", _("Cams, by the law of the follower"),
-            (_("pair"), _("cam"), _("follower"), _("piece"), _("cam from"), _("to"), _("rise"), _("law"),
-             _("follower then at")),
-            cams, (note,),
-        )  # fmt: skip
+            "cams",
+            _("Cams, by the law of the follower"),
+            (
+                _("pair"),
+                _("cam"),
+                _("follower"),
+                _("piece"),
+                _("cam from"),
+                _("to"),
+                _("rise"),
+                _("law"),
+                _("follower then at"),
+            ),
+            cams,
+            (note,),
+        )
     if linkage.springs:
         yield table_of_words(
-            "springs", _("Springs"),
+            "springs",
+            _("Springs"),
             (_("name"), _("between"), _("ends"), _("stiffness"), _("free at"), _("preload"), _("damping")),
             [_spring(problem, spring) for spring in linkage.springs],
-        )  # fmt: skip
+        )
     if linkage.friction:
         slides = {slide.name for slide in linkage.slides}
         yield table_of_words(
-            "friction", _("Friction"), (_("pair"), _("coefficient"), _("journal's radius")),
-            [(f.pair, numeral(f.coefficient, ".6g"),
-              _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH))
-             for f in linkage.friction],
-        )  # fmt: skip
+            "friction",
+            _("Friction"),
+            (_("pair"), _("coefficient"), _("journal's radius")),
+            [
+                (
+                    f.pair,
+                    numeral(f.coefficient, ".6g"),
+                    _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH),
+                )
+                for f in linkage.friction
+            ],
+        )
 
 
 def _driver(problem: Problem, driver: Driver) -> tuple[str, ...]:
     senses = {"turn": (_("clockwise"), _("counterclockwise")), "slide": (_("in"), _("out"))}
     at = problem.linkage.sketch.at if driver is problem.linkage.driver else driver.at
     return (
-        driver.link, link_name(driver.base), driver.joint, _("turns") if driver.kind == "turn" else _("slides"),
-        speed(driver), senses[driver.kind][driver.sense > 0], show(problem, at, place_dimension(driver.kind)),
-    )  # fmt: skip
+        driver.link,
+        link_name(driver.base),
+        driver.joint,
+        _("turns") if driver.kind == "turn" else _("slides"),
+        speed(driver),
+        senses[driver.kind][driver.sense > 0],
+        show(problem, at, place_dimension(driver.kind)),
+    )
 
 
 def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
@@ -155,9 +185,14 @@ def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
     if mesh.offset:
         law += f" + {offset}"
     return (
-        mesh.name, kind, f"{link_name(mesh.i)}, {link_name(mesh.j)}", link_name(mesh.carrier), law, radii,
+        mesh.name,
+        kind,
+        f"{link_name(mesh.i)}, {link_name(mesh.j)}",
+        link_name(mesh.carrier),
+        law,
+        radii,
         show(problem, mesh.pressure, ANGLE),
-    )  # fmt: skip
+    )
 
 
 def _cam(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
@@ -170,9 +205,14 @@ def _cam(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
         end, run = at + piece.over, run + piece.rise
         law = piece.shape if piece.rise else _("dwell")
         yield (
-            *name, str(number + 1), show(problem, at, ANGLE), show(problem, end, ANGLE),
-            show(problem, piece.rise, measure), law, show(problem, run, measure),
-        )  # fmt: skip
+            *name,
+            str(number + 1),
+            show(problem, at, ANGLE),
+            show(problem, end, ANGLE),
+            show(problem, piece.rise, measure),
+            law,
+            show(problem, run, measure),
+        )
         at = end
 
 

@@ -61,10 +61,14 @@ BALANCING = record(
     Field("counterweights", list_of(COUNTERWEIGHT), "that leave the least force", "cycle.counterweights"),
     Field("after", SHAKING, "at the positions, with counterweights"),
     Field("left", NUMBER, "largest force over the cycle with counterweights, over that without", "cycle.left"),
-    Field("rotor", list_of(CORRECTION), "masses on the shaft",
-          lambda found: zip(found.task.rotor.planes, found.corrections.tolist(), strict=True),
-          lambda found: found.task.rotor is not None),
-)  # fmt: skip
+    Field(
+        "rotor",
+        list_of(CORRECTION),
+        "masses on the shaft",
+        lambda found: zip(found.task.rotor.planes, found.corrections.tolist(), strict=True),
+        lambda found: found.task.rotor is not None,
+    ),
+)
 
 
 def _at_start(results: Results, name: str) -> float:
@@ -84,13 +88,15 @@ DRIVER = record(
     Field("kind", TEXT, "turn or slide", "linkage.driver.kind"),
     Field("sense", NUMBER, "+1 or -1", "linkage.driver.sense"),
     Field("rate", NUMBER, "rad/s or m/s, at position 0, in its sense", lambda r: _at_start(r, "rate")),
-    Field("acceleration", NUMBER, "rad/s^2 or m/s^2, at position 0, in its sense",
-          lambda r: _at_start(r, "acceleration")),
+    Field(
+        "acceleration", NUMBER, "rad/s^2 or m/s^2, at position 0, in its sense", lambda r: _at_start(r, "acceleration")
+    ),
     Field("full_turn", FLAG, "whether the crank can turn fully", "driver_range.full"),
-    Field("range", list_of(NUMBER), "from, to: places of the driver",
-          lambda r: (r.driver_range.start, r.driver_range.end)),
+    Field(
+        "range", list_of(NUMBER), "from, to: places of the driver", lambda r: (r.driver_range.start, r.driver_range.end)
+    ),
     Field("limits", list_of(LIMIT), "where it is stopped", "driver_range.limits"),
-)  # fmt: skip
+)
 
 PRESSURE = record(
     "where and how a link is driven",
@@ -121,9 +127,13 @@ STROKE = record(
     Field("from", NUMBER, "place of the output at its start", "low"),
     Field("run", NUMBER, "of the output, signed"),
     Field("working", FLAG, "working stroke"),
-    Field("rest", NUMBER, "how far the driver goes in the dwell after it, if there is one",
-          there=lambda stroke: stroke.rest),
-)  # fmt: skip
+    Field(
+        "rest",
+        NUMBER,
+        "how far the driver goes in the dwell after it, if there is one",
+        there=lambda stroke: stroke.rest,
+    ),
+)
 OUTPUT = record(
     "strokes of an output",
     Field("link", TEXT, "output link, or coordinate of a point, K.x or K.y"),
@@ -184,15 +194,27 @@ SLIDE_MOTION = record(
 KINEMATICS = record(
     "motion",
     Field("output", optional(TEXT), "output link or coordinate", "mechanism.output"),
-    Field("points", map_of(POINT_MOTION), "every named point that moves",
-          lambda r: moving_points(r.linkage, r.motion, r.of)),
-    Field("centres", map_of(POINT_MOTION), "centres of mass, S and the link",
-          lambda r: moving_centres(r.linkage, r.motion, r.of)),
-    Field("links", map_of(record("a link", *fields_of(LINK))), "turning of every link",
-          lambda r: {name: r.motion.link(name) for name in links(r.linkage, r.of)}),
+    Field(
+        "points",
+        map_of(POINT_MOTION),
+        "every named point that moves",
+        lambda r: moving_points(r.linkage, r.motion, r.of),
+    ),
+    Field(
+        "centres",
+        map_of(POINT_MOTION),
+        "centres of mass, S and the link",
+        lambda r: moving_centres(r.linkage, r.motion, r.of),
+    ),
+    Field(
+        "links",
+        map_of(record("a link", *fields_of(LINK))),
+        "turning of every link",
+        lambda r: {name: r.motion.link(name) for name in links(r.linkage, r.of)},
+    ),
     Field("slides", map_of(SLIDE_MOTION), "sliding pairs", _slides),
     Field("margins", map_of(SERIES), "distance of each group from its dead position: 1 at best, 0 there", _margins),
-)  # fmt: skip
+)
 
 
 def _pins(results: Results) -> dict[str, dict[str, Vector]]:
@@ -225,9 +247,13 @@ FORCES = record(
     Field("reactions", map_of(PAIR_REACTION), "by pair", lambda r: {x.pair.name: x for x in r.reactions.directed}),
     Field("compound_hinges", map_of(map_of(VECTOR)), "force of the pin on each link, by link, N", _pins),
     Field("balancing", DRIVER_BALANCE, "what balances the first driver", "reactions.balance"),
-    Field("drivers", map_of(DRIVER_BALANCE), "what balances each driver, by its link",
-          lambda r: {balance.driver.link: balance for balance in r.reactions.balances}),
-)  # fmt: skip
+    Field(
+        "drivers",
+        map_of(DRIVER_BALANCE),
+        "what balances each driver, by its link",
+        lambda r: {balance.driver.link: balance for balance in r.reactions.balances},
+    ),
+)
 
 LEVER_ITEM = record(
     "one of them",
@@ -252,7 +278,7 @@ MECHANISM_ENERGY = record(
     Field("locked", FLAGS, "locked by friction", "friction.locked", "friction"),
     Field("efficiency", NUMBER, "with friction: over the cycle", "losses.efficiency", "losses"),
     Field("friction_work", map_of(NUMBER), "work of friction over the cycle, J, by pair", "losses.pairs", "losses"),
-)  # fmt: skip
+)
 
 
 def _whole(results: Results) -> bool:
@@ -276,12 +302,22 @@ SINGLE = record(
     Field("driven", NUMBER, "work of what drives, J", lambda r: r.run.driven[-1]),
     Field("loaded", NUMBER, "work of the loads, J", lambda r: r.run.loaded[-1]),
     Field("braked", NUMBER, "work of the brake, J", lambda r: r.run.braked[-1]),
-    Field("place", list_of(NUMBER), "of the driver, in even steps from the beginning to the end of the run",
-          lambda r: r.evenly(RUN_STEPS)),
-    *(Field(key, list_of(NUMBER), text, partial(_along_run, key)) for key, text in (
-        ("time", "there, s"), ("speed", "of the driver there"), ("accelerated", "its acceleration there"),
-        ("kinetic", "kinetic energy there, J"))),
-)  # fmt: skip
+    Field(
+        "place",
+        list_of(NUMBER),
+        "of the driver, in even steps from the beginning to the end of the run",
+        lambda r: r.evenly(RUN_STEPS),
+    ),
+    *(
+        Field(key, list_of(NUMBER), text, partial(_along_run, key))
+        for key, text in (
+            ("time", "there, s"),
+            ("speed", "of the driver there"),
+            ("accelerated", "its acceleration there"),
+            ("kinetic", "kinetic energy there, J"),
+        )
+    ),
+)
 
 
 TANGENT = record(
@@ -294,42 +330,64 @@ TANGENT = record(
 )
 STEADY = record(
     "steady running; ways, works and moments begin at position 0 and go in the sense of the driver",
-    *inside("running", (
-        Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
-        Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
-        Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
-        Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
-        Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
-        Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
-        Field("own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"),
-        Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
-        Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
-        Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
-        Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
-        Field("first_group", NUMBER, "by Mertsalov, the flywheel with the links of constant speed ratio, kg*m^2",
-              "steady.first_group"),
-        Field("constant", NUMBER, "reduced inertia of the links of constant speed ratio, kg*m^2",
-              "steady.machine.constant"),
-        Field("errors", list_of(NUMBER), "of both, shares of the exact one", lambda r: r.steady.errors),
-        Field("diameter", NUMBER, "of the flywheel, m", "steady.diameter"),
-        Field("width", NUMBER, "of the flywheel, m", "steady.width"),
-        Field("mass", NUMBER, "of the flywheel, kg", "steady.mass"),
-        Field("tangents", list_of(TANGENT), "of the largest and of the least speed", "steady.tangents"),
-    )),
+    *inside(
+        "running",
+        (
+            Field("work", NUMBER, "of the loads in a cycle, J", "steady.machine.work_of_cycle"),
+            Field("moment", NUMBER, "mean driving moment, N*m", "steady.moment"),
+            Field("slowest", NUMBER, "least speed of the driver, rad/s", lambda r: r.steady.speeds[0]),
+            Field("fastest", NUMBER, "largest speed, rad/s", lambda r: r.steady.speeds[1]),
+            Field("period", NUMBER, "of a cycle, s", "steady.law.period"),
+            Field("delta", NUMBER, "fluctuation of speed", "steady.delta"),
+            Field(
+                "own", NUMBER, "fluctuation with the given flywheel alone; null where the machine stops", "steady.own"
+            ),
+            Field("flywheel", NUMBER, "its inertia, reduced to the driver, kg*m^2", "steady.law.flywheel"),
+            Field("on_shaft", NUMBER, "its inertia on its own shaft, kg*m^2", "steady.on_shaft"),
+            Field("wittenbauer", NUMBER, "flywheel by Wittenbauer's tangents, kg*m^2", "steady.wittenbauer"),
+            Field("mertsalov", NUMBER, "flywheel by Mertsalov, kg*m^2", "steady.mertsalov"),
+            Field(
+                "first_group",
+                NUMBER,
+                "by Mertsalov, the flywheel with the links of constant speed ratio, kg*m^2",
+                "steady.first_group",
+            ),
+            Field(
+                "constant",
+                NUMBER,
+                "reduced inertia of the links of constant speed ratio, kg*m^2",
+                "steady.machine.constant",
+            ),
+            Field("errors", list_of(NUMBER), "of both, shares of the exact one", lambda r: r.steady.errors),
+            Field("diameter", NUMBER, "of the flywheel, m", "steady.diameter"),
+            Field("width", NUMBER, "of the flywheel, m", "steady.width"),
+            Field("mass", NUMBER, "of the flywheel, kg", "steady.mass"),
+            Field("tangents", list_of(TANGENT), "of the largest and of the least speed", "steady.tangents"),
+        ),
+    ),
     Field("driving", SERIES, "driving moment, N*m", lambda r: r.steady.driving(r.motion.q)),
     Field("excess", SERIES, "work of all moments, J", lambda r: r.steady.work(r.motion.q)),
-)  # fmt: skip
+)
 
 MOTION_PARTS = (
     Field("driver", DRIVER, "the input", lambda r: r, "motion"),
     Field("turns", NUMBER, "turns of the driver after which everything repeats", "driver_range.turns", "motion"),
     Field("pressure", list_of(PRESSURE), "driven links of the groups", there=_whole),
     Field("dead_positions", list_of(DEAD), "inside the range of the driver", "dead", _whole),
-    Field("output", optional(OUTPUT), "strokes of the output; null when none is named or found on the frame",
-          "strokes", _whole),
+    Field(
+        "output",
+        optional(OUTPUT),
+        "strokes of the output; null when none is named or found on the frame",
+        "strokes",
+        _whole,
+    ),
     Field("further_outputs", list_of(OUTPUT), "of the others, as the first one", "further", _whole),
-    Field("travels", list_of(TRAVEL), "outputs where the driver does not turn fully, over the positions asked",
-          there=_whole),
+    Field(
+        "travels",
+        list_of(TRAVEL),
+        "outputs where the driver does not turn fully, over the positions asked",
+        there=_whole,
+    ),
     Field("positions", POSITIONS, "which positions", lambda r: r, "motion"),
     Field("kinematics", KINEMATICS, "motion", lambda r: r, "motion"),
     Field("forces", FORCES, "force plan", lambda r: r, "lever"),
@@ -337,9 +395,14 @@ MOTION_PARTS = (
     Field("dynamics", STEADY, "steady running; its cycle begins at position 0", lambda r: r, "steady"),
     Field("run", SINGLE, "a single run", there="single", read="single"),
     Field("balancing", BALANCING, "what shakes the frame at constant speed of the driver", there="balancing"),
-    Field("energy", MECHANISM_ENERGY, "power balance, and the mechanism reduced to its first driver", lambda r: r,
-          "energy"),
-)  # fmt: skip
+    Field(
+        "energy",
+        MECHANISM_ENERGY,
+        "power balance, and the mechanism reduced to its first driver",
+        lambda r: r,
+        "energy",
+    ),
+)
 
 
 # The part of result.json that comes from intermittent motion.
@@ -362,8 +425,12 @@ WHEEL = record(
     Field("name", TEXT, "of the wheel", "task.name"),
     Field("link", TEXT, "that moves it", "task.link"),
     Field("when", TEXT, "as the file says", "task.when"),
-    Field("settings", list_of(map_of(TEXT)), "values of parameters as the file writes them",
-          lambda wheel: [setting.values for setting in wheel.task.settings]),
+    Field(
+        "settings",
+        list_of(map_of(TEXT)),
+        "values of parameters as the file writes them",
+        lambda wheel: [setting.values for setting in wheel.task.settings],
+    ),
     Field("turn", NUMBER, "in a cycle, rad"),
     Field("way", NUMBER, "of the driver in a cycle, there and back"),
     Field("standing", NUMBER, "share of that way on which it stands"),
@@ -372,4 +439,4 @@ WHEEL = record(
     Field("epsilon", NUMBER, "largest angular acceleration while it is driven, rad/s^2"),
     Field("shock", NUMBER, "largest jump of angular speed, rad/s; zero where it is taken up and let go without shock"),
     Field("parts", list_of(PART), "one after another"),
-)  # fmt: skip
+)

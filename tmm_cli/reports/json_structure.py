@@ -12,9 +12,11 @@ from tmm_cli.reports.shapes import FLAG, INTEGER, NAMES, NUMBER, TEXT, Field, in
 from tmm_cli.reports.structure_tables import motion_of_link
 
 PROBLEM = record(
-    "what was computed", Field("name", TEXT, "of the file"), Field("title", TEXT, "title"),
+    "what was computed",
+    Field("name", TEXT, "of the file"),
+    Field("title", TEXT, "title"),
     Field("description", TEXT, "description"),
-)  # fmt: skip
+)
 
 
 class LinkInRole(NamedTuple):
@@ -90,31 +92,58 @@ REDUCTION = record(
 STRUCTURE = record(
     "links, pairs and Assur groups",
     Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
-    Field("links", list_of(LINK), "moving links",
-          lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], motion_of_link(r, n)) for n in r.structure.links]),
+    Field(
+        "links",
+        list_of(LINK),
+        "moving links",
+        lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], motion_of_link(r, n)) for n in r.structure.links],
+    ),
     Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
-    Field("true_mobility", NUMBER, "by rank, where dimensions leave more than the count",
-          lambda results: results.structure.mobility + results.structure.redundant),
+    Field(
+        "true_mobility",
+        NUMBER,
+        "by rank, where dimensions leave more than the count",
+        lambda results: results.structure.mobility + results.structure.redundant,
+    ),
     Field("passive", list_of(PASSIVE), "passive constraints", "structure.passive"),
     Field("n", NUMBER, "moving links", lambda results: len(results.structure.links)),
     Field("p1", NUMBER, "lower pairs", lambda results: len(results.structure.pairs) - results.structure.higher),
     Field("p2", NUMBER, "higher pairs", "structure.higher"),
     Field("contours", NUMBER, "independent contours K = p - n", "structure.contours"),
-    Field("classification", NAMES, "closed or open; elementary, simple, complex; of one type or several",
-          lambda results: classification(results.structure)),
-    Field("dependent_contours", NUMBER, "contours closed by redundant links or pairs",
-          lambda r: sum(is_dependent(c, r.structure) for c in contours(r.structure.pairs, r.structure.links)),
-          lambda r: bool(r.structure.reduction)),
-    Field("six_bar", NAMES, "Watt I, II or Stephenson I, II, III; several where a compound hinge can be drawn in "
-          "several ways", lambda r: six_bar_schemes(r.structure), lambda r: bool(six_bar_schemes(r.structure))),
-    Field("basic_schemes", map_of(TEXT), "of the contours of four links, by contour",
-          lambda r: basic_schemes(r.structure)),
+    Field(
+        "classification",
+        NAMES,
+        "closed or open; elementary, simple, complex; of one type or several",
+        lambda results: classification(results.structure),
+    ),
+    Field(
+        "dependent_contours",
+        NUMBER,
+        "contours closed by redundant links or pairs",
+        lambda r: sum(is_dependent(c, r.structure) for c in contours(r.structure.pairs, r.structure.links)),
+        lambda r: bool(r.structure.reduction),
+    ),
+    Field(
+        "six_bar",
+        NAMES,
+        "Watt I, II or Stephenson I, II, III; several where a compound hinge can be drawn in several ways",
+        lambda r: six_bar_schemes(r.structure),
+        lambda r: bool(six_bar_schemes(r.structure)),
+    ),
+    Field(
+        "basic_schemes", map_of(TEXT), "of the contours of four links, by contour", lambda r: basic_schemes(r.structure)
+    ),
     Field("formula", TEXT, "formula of structure", "structure.formula"),
     Field("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
     Field("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),
-    Field("reduction", REDUCTION, "what the groups and the formula leave out", "structure.reduction",
-          lambda results: bool(results.structure.reduction)),
-)  # fmt: skip
+    Field(
+        "reduction",
+        REDUCTION,
+        "what the groups and the formula leave out",
+        "structure.reduction",
+        lambda results: bool(results.structure.reduction),
+    ),
+)
 
 CONTOUR = record(
     "a contour",
@@ -150,13 +179,22 @@ SPACE = record(
     Field("wanted", NUMBER, "mobility Wo"),
     Field("local", NUMBER, "local mobility Wm"),
     Field("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
-    Field("contours", list_of(CONTOUR), "independent contours",
-          lambda space: contours(space.chain.pairs, space.chain.links)),
-    Field("replacements", optional(list_of(REPLACEMENT)),
-          "pairs to give more freedoms, so that q = 0; null: none found"),
-    Field("proposed", optional(PROPOSED), "the same count with them",
-          lambda space: None if space.replacements is None else space),
-)  # fmt: skip
+    Field(
+        "contours",
+        list_of(CONTOUR),
+        "independent contours",
+        lambda space: contours(space.chain.pairs, space.chain.links),
+    ),
+    Field(
+        "replacements", optional(list_of(REPLACEMENT)), "pairs to give more freedoms, so that q = 0; null: none found"
+    ),
+    Field(
+        "proposed",
+        optional(PROPOSED),
+        "the same count with them",
+        lambda space: None if space.replacements is None else space,
+    ),
+)
 
 CHAIN_PAIR = record(
     "a pair",
@@ -208,8 +246,12 @@ ASSEMBLIES = record(
     "a place",
     Field("position", optional(INTEGER), "its number; null: the place of the sketch", "number"),
     Field("driver", NUMBER, "rad or m", "q"),
-    Field("undecided", optional(TEXT), "group that the sketch does not decide",
-          lambda here: here.undecided and here.undecided.title),
+    Field(
+        "undecided",
+        optional(TEXT),
+        "group that the sketch does not decide",
+        lambda here: here.undecided and here.undecided.title,
+    ),
     Field("lost", NAMES, "groups whose neighbours cannot be placed", lambda here: [g.title for g in here.lost]),
     Field("groups", list_of(GROUP_ASSEMBLIES), "in solving order, links before placed as in the sketch"),
-)  # fmt: skip
+)

@@ -95,8 +95,10 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         results = _broken(task.without, results)
     linkage = results.linkage
     known = {
-        **quantities(linkage, results.structure), **of_wheels(results.inputs.wheels), **relative_angles(linkage),
-    }  # fmt: skip
+        **quantities(linkage, results.structure),
+        **of_wheels(results.inputs.wheels),
+        **relative_angles(linkage),
+    }
     if task.of not in known:
         raise unknown_name(task.of, known, _("there is no quantity of that name"), path=("of",))
     quantity = known[task.of]
@@ -195,9 +197,11 @@ def _one(quantity: Quantity, task: Shown, results: Results, per: Quantity | None
     read = partial(_read, quantity, results) if per is None else partial(_ratio, quantity, per, results)
     if task.over is not None:
         return _over(read, task.over, results, quantity.dimension == ANGLE)
-    numbers = [(task.at, ("at",))] if task.at is not None else [
-        (number, ("between", k)) for k, number in enumerate(task.between or [])
-    ]  # fmt: skip
+    numbers = (
+        [(task.at, ("at",))]
+        if task.at is not None
+        else [(number, ("between", k)) for k, number in enumerate(task.between or [])]
+    )
     places = [_place(number, path, results) for number, path in numbers]
     if task.within is not None:
         most = results.problem.values.positive(task.within, quantity.dimension, ("within",))

@@ -167,7 +167,8 @@ def pressure_tables(results: Results) -> Iterable[Table]:
         else _("Allowed where the file says nothing: 30 deg on a sliding link, 45 deg on a turning one.")
     )
     yield Table(
-        "pressure", _("Pressure angles"),
+        "pressure",
+        _("Pressure angles"),
         (
             Column(N_("group"), [p.group for p in found]),
             Column(N_("driven link"), [p.link for p in found]),
@@ -183,7 +184,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
         ),
         notes=(note,),
-    )  # fmt: skip
+    )
 
 
 # Properties that the file shows, beside what it expects.

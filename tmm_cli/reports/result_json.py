@@ -52,9 +52,14 @@ def _synthesis(results: Results) -> dict[str, Any]:
 FIRST = (
     Field("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
     Field("space", SPACE, "the planar linkage counted in space", lambda r: space(r.linkage, r.structure)),
-    Field("synthesis", JsonType({"type": "object"}), "what the file's synthesis asked, found and measured", _synthesis,
-          lambda r: r.problem.synthesis is not None and r.motion is not None),
-)  # fmt: skip
+    Field(
+        "synthesis",
+        JsonType({"type": "object"}),
+        "what the file's synthesis asked, found and measured",
+        _synthesis,
+        lambda r: r.problem.synthesis is not None and r.motion is not None,
+    ),
+)
 PROPERTY = record(
     "a property that the file shows",
     Field("property", TEXT, "in its words", "name"),
@@ -68,20 +73,28 @@ CHECK = record(
     Field("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
     Field("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
     Field("at", NUMBER, "place of the driver, rad or m; null where there is none"),
-    Field("value", NUMBER, "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
-          "of the group, difference of the lever"),
+    Field(
+        "value",
+        NUMBER,
+        "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
+        "of the group, difference of the lever",
+    ),
     Field("limit", NUMBER, "the most, of margins the least"),
     Field("holds", FLAG, "within its limit"),
-)  # fmt: skip
+)
 CENTRE = record(
     "of two links",
     Field("links", NAMES, "the two"),
     Field("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
     Field("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
-    Field("direction", optional(NUMBER), "in which it is at infinity, rad; null elsewhere",
-          lambda c: None if c.direction is None else cmath.phase(c.direction)),
+    Field(
+        "direction",
+        optional(NUMBER),
+        "in which it is at infinity, rad; null elsewhere",
+        lambda c: None if c.direction is None else cmath.phase(c.direction),
+    ),
     Field("pair", TEXT, "that shows it; empty where there is none"),
-)  # fmt: skip
+)
 EXTREME = record(
     "a quantity",
     Field("kind", TEXT, "x, y of a point; angle of a link; s of a slide; R, M in a pair; R pin; M_b, F_b of a driver"),
@@ -92,17 +105,31 @@ EXTREME = record(
     Field("high_at", NUMBER, "driver's place there"),
 )
 LAST = (
-    Field("intermittent", list_of(WHEEL), "wheels that a link takes along on some strokes, over a cycle", "wheels",
-          "wheels"),
-    Field("centres", map_of(list_of(CENTRE)), "asked for: instantaneous centres, by the numbers of positions",
-          lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()}, "centres"),
+    Field(
+        "intermittent",
+        list_of(WHEEL),
+        "wheels that a link takes along on some strokes, over a cycle",
+        "wheels",
+        "wheels",
+    ),
+    Field(
+        "centres",
+        map_of(list_of(CENTRE)),
+        "asked for: instantaneous centres, by the numbers of positions",
+        lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()},
+        "centres",
+    ),
     Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
-    Field("assemblies", list_of(ASSEMBLIES),
-          "with --assemblies: real assemblies of the groups, by places of the driver", there="assemblies"),
+    Field(
+        "assemblies",
+        list_of(ASSEMBLIES),
+        "with --assemblies: real assemblies of the groups, by places of the driver",
+        there="assemblies",
+    ),
     Field("properties", list_of(PROPERTY), "what the file shows", properties_shown, lambda r: r.problem.shows),
     Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
     Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
-)  # fmt: skip
+)
 LARGE = ("positions", "kinematics", "forces", "lever", "energy")
 
 
@@ -138,25 +165,33 @@ def schema() -> dict[str, Any]:
     """A JSON Schema (draft 2020-12). SI and radians throughout; forces of pairs act on link `on`."""
     computed = {"type": "object", "properties": properties(MOTION_PARTS)}
     digits = record(
-        "", Field("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
+        "",
+        Field("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
         Field("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
-        Field("bound", JsonType(computed),
-              "how far each number may be from the truth by rounding; null: it is not known at all"),
-        Field("lengths", JsonType(computed),
-              "its change when every length changes by 0.1 %, worst case to first order"),
+        Field(
+            "bound",
+            JsonType(computed),
+            "how far each number may be from the truth by rounding; null: it is not known at all",
+        ),
+        Field(
+            "lengths", JsonType(computed), "its change when every length changes by 0.1 %, worst case to first order"
+        ),
         Field("paper", JsonType(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
-    )  # fmt: skip
+    )
     parts = (
         Field("problem", PROBLEM, "what was computed"),
         *FIRST,
         Field("chain", SPATIAL, "a chain given by pairs alone"),
         *MOTION_PARTS,
-        Field("digits", digits, "how far the numbers of this file, which are float64 in full, are to be trusted: in "
-              "their places and units"),
+        Field(
+            "digits",
+            digits,
+            "how far the numbers of this file, which are float64 in full, are to be trusted: in their places and units",
+        ),
         *LAST,
         Field("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
         Field("files", NAMES, "written beside this file"),
-    )  # fmt: skip
+    )
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "result.json of tmm",

@@ -28,9 +28,11 @@ def space_tables(results: Results) -> Iterable[Table]:
     found = space(results.linkage, structure)
     facts = [
         (_("W by Somov-Malyshev"), found.chain.count),
-        (_("redundant constraints q = Wo + Wm - W"),
-         redundancy(found.wanted, found.local, found.chain.mobility, found.redundant)),
-    ]  # fmt: skip
+        (
+            _("redundant constraints q = Wo + Wm - W"),
+            redundancy(found.wanted, found.local, found.chain.mobility, found.redundant),
+        ),
+    ]
     if found.replacements:
         q = redundancy(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
         facts += [(_("W by Somov-Malyshev, with the pairs below"), found.proposed.count)]
@@ -40,9 +42,12 @@ def space_tables(results: Results) -> Iterable[Table]:
         "by cylindrical or planar ones was found that leaves q = 0."
     )
     yield table_of_words(
-        "space", _("The same pairs in space: redundant constraints"), (_("what"), _("value")), facts,
+        "space",
+        _("The same pairs in space: redundant constraints"),
+        (_("what"), _("value")),
+        facts,
         () if found.replacements is not None else (note,),
-    )  # fmt: skip
+    )
     if found.replacements:
         note = _(
             "Pairs on the frame stay, they position shafts and guides. Out of the plane, the "
@@ -53,12 +58,15 @@ def space_tables(results: Results) -> Iterable[Table]:
             title = _("Pairs that leave no redundant constraints out of the plane")
             notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(left_out(structure))))
         yield table_of_words(
-            "replacements", title,
+            "replacements",
+            title,
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
-            [(r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
-             for r in found.replacements],
+            [
+                (r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
+                for r in found.replacements
+            ],
             tuple(notes),
-        )  # fmt: skip
+        )
 
 
 def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
@@ -86,17 +94,20 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
     found = results.chain
     yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(found), _notes(found))
     yield table_of_words(
-        "pairs", _("Kinematic pairs"), (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
-        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class])
-         for p in found.chain.pairs],
-    )  # fmt: skip
+        "pairs",
+        _("Kinematic pairs"),
+        (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
+        [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class]) for p in found.chain.pairs],
+    )
     if found.contours:
         yield contour_table(found.contours)
     if found.local:
         yield table_of_words(
-            "local", _("Local freedoms"), (_("links"), _("freedoms"), _("between pairs"), _("what it does")),
+            "local",
+            _("Local freedoms"),
+            (_("links"), _("freedoms"), _("between pairs"), _("what it does")),
             [(", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _how(x)) for x in found.local],
-        )  # fmt: skip
+        )
 
 
 def _facts(found: Findings) -> Iterable[tuple[str, str]]:
@@ -236,12 +247,16 @@ def schemes_json(
             "formula": scheme.formula,
             "mobility": scheme.mobility,
             "groups": [
-                {"class": ROMAN[g.type.grade], "type": g.type.name, "links": list(g.links),
-                 "attached_to": [known for known, *__ in g.outer]}
+                {
+                    "class": ROMAN[g.type.grade],
+                    "type": g.type.name,
+                    "links": list(g.links),
+                    "attached_to": [known for known, *__ in g.outer],
+                }
                 for g in scheme.groups
             ],
             "pairs": [{"links": [i, j], "kind": kind} for i, j, kind in scheme.joints],
-        }  # fmt: skip
+        }
         if written is not None:
             file, solved = written[k] or (None, False)
             row |= {"file": file and str(file), "solved": solved}

@@ -21,8 +21,12 @@ from tmm_cli.reports.terminal import figures
 
 INSTALL: Final = "pip install 'tmm-cli[excel]'"
 WRITTEN: Final = datetime(2000, 1, 1)  # the same tables give the same bytes
-PLAIN: Final = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False,
-                "strings_to_numbers": False}  # fmt: skip
+PLAIN: Final = {
+    "constant_memory": True,
+    "strings_to_formulas": False,
+    "strings_to_urls": False,
+    "strings_to_numbers": False,
+}
 
 
 def empty_workbook(file: str, stream: BytesIO, options: Mapping[str, bool] = PLAIN, allowed: str = INSTALL) -> Any:

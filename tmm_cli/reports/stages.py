@@ -42,9 +42,12 @@ def steps(results: Results) -> Table:
         "from velocities alone."
     )
     return table_of_words(
-        "way", _("What is computed, in this order; forces in the opposite one"),
-        (_("step"), _("group"), _("hangs on"), _("assembly"), _("solved")), rows, (note,),
-    )  # fmt: skip
+        "way",
+        _("What is computed, in this order; forces in the opposite one"),
+        (_("step"), _("group"), _("hangs on"), _("assembly"), _("solved")),
+        rows,
+        (note,),
+    )
 
 
 def link_name(link: str) -> str:

@@ -90,26 +90,61 @@ def structure_tables(results: Results) -> Iterable[Table]:
     links, roles = [linkage.links[name] for name in structure.links], results.roles
     note = _("A crank is told from a rocker by moving the linkage.")
     yield table_of_words(
-        "links", _("Links"), (_("link"), _("is a"), _("called"), _("points"), _("motion")),
-        [(x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(results, x.name))
-         for x in links],
+        "links",
+        _("Links"),
+        (_("link"), _("is a"), _("called"), _("points"), _("motion")),
+        [
+            (x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(results, x.name))
+            for x in links
+        ],
         (note,) if results.motion is None and results.mechanism.turned else (),
-    )  # fmt: skip
+    )
     yield table_of_words(
-        "pairs", _("Kinematic pairs"),
+        "pairs",
+        _("Kinematic pairs"),
         (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
-        [(p.name, f"{printed(p.i)} - {printed(p.j)}", _(PAIRS[p.kind]),
-          _("on the frame") if FRAME in (p.i, p.j) else _("between moving links"),
-          str(p.freedoms), str(p.pair_class), p.code) for p in structure.pairs],
-    )  # fmt: skip
+        [
+            (
+                p.name,
+                f"{printed(p.i)} - {printed(p.j)}",
+                _(PAIRS[p.kind]),
+                _("on the frame") if FRAME in (p.i, p.j) else _("between moving links"),
+                str(p.freedoms),
+                str(p.pair_class),
+                p.code,
+            )
+            for p in structure.pairs
+        ],
+    )
     yield table_of_words(
-        "groups", _("Assur groups, in solving order"),
-        (_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"),
-         _("type number"), _("letters")),
-        [(", ".join(map("+".join, g.bodies)), g.roman, str(g.order), g.type, ", ".join(p.name for p in g.inner),
-          ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in g.outer), counted_mobility(g.count),
-          str(g.type_number or ""), g.letters) for g in structure.groups],
-    )  # fmt: skip
+        "groups",
+        _("Assur groups, in solving order"),
+        (
+            _("group"),
+            _("class"),
+            _("order"),
+            _("type"),
+            _("inner pairs"),
+            _("outer pairs"),
+            _("mobility"),
+            _("type number"),
+            _("letters"),
+        ),
+        [
+            (
+                ", ".join(map("+".join, g.bodies)),
+                g.roman,
+                str(g.order),
+                g.type,
+                ", ".join(p.name for p in g.inner),
+                ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in g.outer),
+                counted_mobility(g.count),
+                str(g.type_number or ""),
+                g.letters,
+            )
+            for g in structure.groups
+        ],
+    )
 
 
 def mobility_with_rollers(structure: Structure) -> str:

@@ -25,10 +25,15 @@ DIGITS = 10  # on a terminal; files have 15
 # what has no header is in result.json only
 VALUE = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
 MEASURED = (
-    ("quantity", N_("quantity"), "word"), ("asked", N_("by"), "by"), ("wanted", N_("wanted"), "mixed"),
-    ("measured", N_("measured"), "mixed"), ("kind", N_("unit"), "unit"),
-    ("difference", N_("relative difference"), "share"), ("open", "", "share"), ("met", "", "by"),
-)  # fmt: skip
+    ("quantity", N_("quantity"), "word"),
+    ("asked", N_("by"), "by"),
+    ("wanted", N_("wanted"), "mixed"),
+    ("measured", N_("measured"), "mixed"),
+    ("kind", N_("unit"), "unit"),
+    ("difference", N_("relative difference"), "share"),
+    ("open", "", "share"),
+    ("met", "", "by"),
+)
 
 
 def synthesis_tables(results: Results) -> Iterable[Table]:
@@ -91,7 +96,7 @@ def to_json(found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, lo
         "source": outcome.source,
         "measured": None if measured is None else _records(_measured(measured)),
         "met": None if measured is None else all(m.met for m in measured),
-    }  # fmt: skip
+    }
 
 
 def _values(name: str, title: str, values: Sequence[Value], names: Mapping[str, str] | None) -> Listing:
@@ -135,10 +140,12 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
 def _records(listing: Listing) -> list[dict[str, Any]]:
     """Rows by the names of their columns, SI and radians."""
     return [
-        {name: plain(float(value)) if value is not None and (own if kind == "mixed" else kind) in NUMERIC else value
-         for (name, __, kind), value in zip(listing.columns, row, strict=True)}
+        {
+            name: plain(float(value)) if value is not None and (own if kind == "mixed" else kind) in NUMERIC else value
+            for (name, __, kind), value in zip(listing.columns, row, strict=True)
+        }
         for row, own in zip(listing.rows, _kinds(listing), strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def _kinds(listing: Listing) -> list[Kind]:

@@ -46,9 +46,14 @@ def _number(value: float, count: int) -> str:
 
 
 def show(
-    table: Table, units: UnitSystem, console: Console, rows: set[int] | None = None, *,
-    most: int | None = MOST_ROWS, more: str = MORE_ROWS,
-) -> None:  # fmt: skip
+    table: Table,
+    units: UnitSystem,
+    console: Console,
+    rows: set[int] | None = None,
+    *,
+    most: int | None = MOST_ROWS,
+    more: str = MORE_ROWS,
+) -> None:
     """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts.
 
     more: the word that says how many rows beyond `most` (None: no bound) are left out, and where they all are.

@@ -44,9 +44,13 @@ STRONG = 1e9  # Pa: no hydraulic or gas drive has such a pressure
 UNIFORM = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
 SAME_SPEED = 0.01  # relative: two speeds of one shaft that differ by less differ by rounding on paper
 ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of drivers and of a run
-    ("dynamics", "mean speed"), ("dynamics", "mean_speed"), ("dynamics", "motor", "free"),
-    ("dynamics", "motor", "synchronous"), ("dynamics", "motor", "speed"), ("synthesis", "crank_speed"),
-)  # fmt: skip
+    ("dynamics", "mean speed"),
+    ("dynamics", "mean_speed"),
+    ("dynamics", "motor", "free"),
+    ("dynamics", "motor", "synchronous"),
+    ("dynamics", "motor", "speed"),
+    ("synthesis", "crank_speed"),
+)
 
 
 def understood(task: Problem | TaskProblem) -> Iterable[str]:
@@ -73,9 +77,11 @@ def _ranges(problem: Problem) -> Iterator[str]:
     if spans:
         (small, short), (large, long) = spans[0], spans[-1]
         yield _("from {small} ({short}) to {large} ({long})").format(
-            small=with_unit(problem.units, small, LENGTH), short=short,
-            large=with_unit(problem.units, large, LENGTH), long=long,
-        )  # fmt: skip
+            small=with_unit(problem.units, small, LENGTH),
+            short=short,
+            large=with_unit(problem.units, large, LENGTH),
+            long=long,
+        )
     largest = [(load, max(map(abs, load.table.values)) if load.table is not None else 1.0) for load in linkage.loads]
     every = (
         (MASS, _("masses"), [(link.mass, name) for name, link in linkage.links.items()]),
@@ -133,9 +139,12 @@ def motion(driver: Driver) -> str:
         speeds = np.sqrt([float(rounded(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
-            low=_short(low), high=_short(high), least=_short(low * 30 / math.pi), most=_short(high * 30 / math.pi),
+            low=_short(low),
+            high=_short(high),
+            least=_short(low * 30 / math.pi),
+            most=_short(high * 30 / math.pi),
             between=between_rows(driver.law),
-        )  # fmt: skip
+        )
     text = _("{speed} rad/s = {turns} rpm, counterclockwise")
     if driver.sense < 0:
         text = _("{speed} rad/s = {turns} rpm, clockwise")
@@ -253,9 +262,12 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
                 "write `{written} m/s`, or `{written} {unit}/s` if that is meant"
             )
         yield text.format(
-            key=path_text(path), speed=_short(speed), turns=_short(speed * 30 / math.pi),
-            unit=units.spelt(base), written=numeral(speed, ".6g"),
-        )  # fmt: skip
+            key=path_text(path),
+            speed=_short(speed),
+            turns=_short(speed * 30 / math.pi),
+            unit=units.spelt(base),
+            written=numeral(speed, ".6g"),
+        )
 
 
 def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
@@ -270,9 +282,11 @@ def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
             "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
             "{speed_rpm} rpm: the law of motion takes the mean speed; write one of them, or both the same"
         ).format(
-            mean=_short(mean), mean_rpm=_short(mean * 30 / math.pi), speed=_short(speed),
+            mean=_short(mean),
+            mean_rpm=_short(mean * 30 / math.pi),
+            speed=_short(speed),
             speed_rpm=_short(speed * 30 / math.pi),
-        )  # fmt: skip
+        )
 
 
 def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
@@ -286,9 +300,11 @@ def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
             "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
             "`{per_cent} %`, if that is meant"
         ).format(
-            written=written, parts=f"{1 / delta:.0f}", hundredfold=numeral(100 * delta, ".6g"),
+            written=written,
+            parts=f"{1 / delta:.0f}",
+            hundredfold=numeral(100 * delta, ".6g"),
             per_cent=numeral(1e4 * delta, ".6g"),
-        )  # fmt: skip
+        )
 
 
 def _far_places(problem: Problem) -> Iterator[str]:
@@ -309,9 +325,13 @@ def _far_places(problem: Problem) -> Iterator[str]:
                 "{key}: this place is {distance} from every point of link {link}, farther than the mechanism is long "
                 "(its largest link, {points}, is {size}): is the unit right? a bare length is in {unit}"
             ).format(
-                key=key, distance=with_unit(problem.units, distance, LENGTH), link=link, points=longest,
-                size=with_unit(problem.units, size, LENGTH), unit=problem.units.spelt(LENGTH),
-            )  # fmt: skip
+                key=key,
+                distance=with_unit(problem.units, distance, LENGTH),
+                link=link,
+                points=longest,
+                size=with_unit(problem.units, size, LENGTH),
+                unit=problem.units.spelt(LENGTH),
+            )
             names = "".join(list(linkage.links[link].points)[:2])
             share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
             yield share if len(distances) > 1 else sentence
@@ -325,9 +345,10 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
                 "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
                 "meant"
             ).format(
-                key=path_text(path), pressure=with_unit(problem.units, pressure, PRESSURE),
+                key=path_text(path),
+                pressure=with_unit(problem.units, pressure, PRESSURE),
                 number=numeral(problem.units.from_si(pressure, PRESSURE), ".6g"),
-            )  # fmt: skip
+            )
 
 
 def _sizes(problem: Problem) -> Iterable[str]:
@@ -365,9 +386,12 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
                 "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, less than 1/50 of the link ({points}, "
                 "{size}): are the units of inertia right? a uniform rod has I = {inertia}"
             ).format(
-                link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH),
+                link=name,
+                radius=told,
+                points=spans[name][1],
+                size=with_unit(problem.units, spans[name][0], LENGTH),
                 inertia=with_unit(problem.units, link.mass * spans[name][0] ** 2 / 12, INERTIA, 3),
-            )  # fmt: skip
+            )
         elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
             yield _(
                 "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
@@ -389,9 +413,11 @@ def _sliders_twice(problem: Problem) -> Iterator[str]:
                     "links {a} and {b} move as one slider: both have point {point} and slide in one direction on "
                     "{base}. Remove one of them"
                 ).format(
-                    a=links[0], b=links[1], point=points[0],
+                    a=links[0],
+                    b=links[1],
+                    point=points[0],
                     base=_("the frame") if base == FRAME else _("link {link}").format(link=base),
-                )  # fmt: skip
+                )
 
 
 def _smooth_tables(problem: Problem) -> Iterable[str]:

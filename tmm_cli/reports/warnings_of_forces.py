@@ -156,8 +156,10 @@ def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str
             load=load.name, link=load.link
         )
     if not abs(velocity[k]):
-        return _("load {load} does no work in the working stroke: its point is at rest. Write the link or the point "
-                 "that moves").format(load=load.name)  # fmt: skip
+        return _(
+            "load {load} does no work in the working stroke: its point is at rest. Write the link or the point "
+            "that moves"
+        ).format(load=load.name)
     turned = motion.poses[load.link].z[k] if load.follows else 1.0
     angle = round(float(np.angle(-velocity[k] / turned)), 6) + 0.0  # no signed zero
     written = f"angle: {results.problem.units.told(angle, ANGLE, 4)}"
@@ -216,10 +218,13 @@ def tables_of_many(
                 "is {last}, their strokes are {least} to {largest}. Rows in shares fit every stroke (against: share of "
                 "stroke)"
             ).format(
-                load=load.name, apart=np.count_nonzero(apart), count=len(apart),
-                last=with_unit(units, lasts[apart][0], measure), least=with_unit(units, np.min(strokes), measure),
+                load=load.name,
+                apart=np.count_nonzero(apart),
+                count=len(apart),
+                last=with_unit(units, lasts[apart][0], measure),
+                least=with_unit(units, np.min(strokes), measure),
                 largest=with_unit(units, np.max(strokes), measure),
-            )  # fmt: skip
+            )
 
 
 def open_tables(results: Results) -> Iterable[str]:
@@ -283,6 +288,7 @@ def lever_apart(results: Results) -> Iterable[str]:
     yield _(
         "the lever differs from the force plan by {difference} % at position {number}, more than the limit of {limit} %"
     ).format(
-        number=results.numbers[k], difference=numeral(100 * float(worst[k]), ".3g"),
+        number=results.numbers[k],
+        difference=numeral(100 * float(worst[k]), ".3g"),
         limit=numeral(100 * results.problem.lever_limit, ".3g"),
-    )  # fmt: skip
+    )

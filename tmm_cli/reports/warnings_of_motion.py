@@ -156,9 +156,12 @@ def opposite_run(results: Results) -> Iterable[str]:
             "the run goes from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
             "from and to"
         ).format(
-            first=first, last=last, link=driver.link, turns="ccw" if single.sense > 0 else "cw",
+            first=first,
+            last=last,
+            link=driver.link,
+            turns="ccw" if single.sense > 0 else "cw",
             sense=_("counterclockwise") if single.sense > 0 else _("clockwise"),
-        )  # fmt: skip
+        )
         return
     speed = f"{'-' if single.sense < 0 else ''}{with_unit(results.problem.units, driver.rate, SPEED)}"
     yield _(
@@ -242,10 +245,14 @@ def left_slots(results: Results) -> Iterable[str]:
                 "link {runner} leaves its slot {slot} of link {carrier}, which is {length} long: it is up to {far} "
                 "beyond {point} (driver {ways}); a longer slot, or slides: {{..., unbounded: true}} where it is meant"
             ).format(
-                runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier, point=excess.point,
-                length=with_unit(units, excess.length, LENGTH), far=with_unit(units, excess.far, LENGTH),
+                runner=slide.runner,
+                slot="".join(slide.ends or ()),
+                carrier=slide.carrier,
+                point=excess.point,
+                length=with_unit(units, excess.length, LENGTH),
+                far=with_unit(units, excess.far, LENGTH),
                 ways=", ".join(ways),
-            )  # fmt: skip
+            )
 
 
 def pressure_angles(results: Results) -> Iterable[str]:

@@ -82,9 +82,10 @@ class Mechanisms:
         problem = self.task.problem.whole
         self.allowed = problem.pressure_limits
         self.tables = tuple(
-            load.name for load in problem.linkage.loads
+            load.name
+            for load in problem.linkage.loads
             if load.table is not None and load.table.against == "stroke" and not load.table.shares
-        )  # fmt: skip
+        )
 
     def __reduce__(self) -> tuple[type[Mechanisms], tuple[Any, ...]]:
         """What it found is found again in another process."""
@@ -105,9 +106,11 @@ class Mechanisms:
 
         try:
             turning = Turning(
-                lambda numbers: self.task.make(self.names, self.dimensions, numbers), own, read,
+                lambda numbers: self.task.make(self.names, self.dimensions, numbers),
+                own,
+                read,
                 forces=any(one.forces for one in at_positions),
-            )  # fmt: skip
+            )
             with np.errstate(all="ignore"):
                 looked = look(turning, np.array([own]), Wish())
             return turning if looked.does[0] == looking.WORKS and looked.sure[0] else None
@@ -130,8 +133,12 @@ class Mechanisms:
     def at(self, points: Real, *, values: bool = True) -> Found:
         """Points as they are written (points, parameters). values: else it is only told how they go."""
         count = len(points)
-        found = Found(np.zeros(count, dtype=int), [""] * count, np.full((count, len(self.shown)), np.nan),
-                      np.full((count, len(self.tables), 2), np.nan))  # fmt: skip
+        found = Found(
+            np.zeros(count, dtype=int),
+            [""] * count,
+            np.full((count, len(self.shown)), np.nan),
+            np.full((count, len(self.tables), 2), np.nan),
+        )
         if self.turning is None:
             self._one_by_one(points, np.arange(count), found)
             return found

@@ -79,9 +79,10 @@ class Shown:
 def known(task: Task) -> Mapping[str, Shown]:
     """All that can be shown of a file, by the names in its tables. Raises ProblemError."""
     named = {
-        name: Shown(name, quantity.dimension, quantity) for name, quantity in task.quantities.items()
+        name: Shown(name, quantity.dimension, quantity)
+        for name, quantity in task.quantities.items()
         if not name.startswith("arm of ")  # it is nothing where its force vanishes
-    }  # fmt: skip
+    }
     return {**named, PRESSURE: Shown(PRESSURE, ANGLE, None)}
 
 
@@ -104,9 +105,11 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
     ]
     if len(found) > MOST:
         raise ProblemError(
-            _("these are too many quantities"), found=str(len(found)), allowed=_("at most {most}").format(most=MOST),
+            _("these are too many quantities"),
+            found=str(len(found)),
+            allowed=_("at most {most}").format(most=MOST),
             file="--show",
-        )  # fmt: skip
+        )
     return tuple(found)
 
 

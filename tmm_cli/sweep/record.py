@@ -13,9 +13,12 @@ from tmm_cli.sweep.quantities import Shown
 WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # how a mechanism goes
 STATES = ("works", "limit", "stops", "apart", "refused")  # in files
 WORDS = (
-    N_("works"), N_("beyond a limit"), N_("does not turn fully"), N_("cannot be assembled"),
+    N_("works"),
+    N_("beyond a limit"),
+    N_("does not turn fully"),
+    N_("cannot be assembled"),
     N_("is refused"),
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

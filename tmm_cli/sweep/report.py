@@ -57,19 +57,31 @@ def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
     yield "states", list(STATES)
     yield "mechanism", sweep.state
     yield "why", {str(k): text for k, text in enumerate(sweep.why) if text}
-    yield "quantities", [
-        {
-            "name": one.name, "unit": _unit(one.dimension), "kind": _kind(one), "values": sweep.values[:, k],
-        }
-        for k, one in enumerate(sweep.shown)
-    ]  # fmt: skip
-    yield "borders", [
-        {
-            "at": list(mark.at), "along": sweep.axes[mark.along].name, "before": STATES[mark.before],
-            "after": STATES[mark.after], "why": mark.why,
-        }
-        for mark in sweep.marks
-    ]  # fmt: skip
+    yield (
+        "quantities",
+        [
+            {
+                "name": one.name,
+                "unit": _unit(one.dimension),
+                "kind": _kind(one),
+                "values": sweep.values[:, k],
+            }
+            for k, one in enumerate(sweep.shown)
+        ],
+    )
+    yield (
+        "borders",
+        [
+            {
+                "at": list(mark.at),
+                "along": sweep.axes[mark.along].name,
+                "before": STATES[mark.before],
+                "after": STATES[mark.after],
+                "why": mark.why,
+            }
+            for mark in sweep.marks
+        ],
+    )
 
 
 def _why(text: str, state: int) -> str:

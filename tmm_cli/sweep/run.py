@@ -66,10 +66,11 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     most = MOST if cores is None else min(MOST, int(BUDGET * cores / each))
     if points > most:
         raise ProblemError(
-            _("these are too many mechanisms"), file="--over",
+            _("these are too many mechanisms"),
+            file="--over",
             found=_("{points} mechanisms").format(points=points),
             allowed=_("at most {most}").format(most=most),
-        )  # fmt: skip
+        )
 
 
 def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] = lambda count: None) -> Swept:

@@ -90,8 +90,12 @@ def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> 
 def _stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
     """A hatched stretch of a panel."""
     left, right = (float(panel.x.on(value)) for value in (low, high))
-    corners = [complex(left, panel.y.start), complex(right, panel.y.start), complex(right, panel.y.end),
-               complex(left, panel.y.end)]  # fmt: skip
+    corners = [
+        complex(left, panel.y.start),
+        complex(right, panel.y.start),
+        complex(right, panel.y.end),
+        complex(left, panel.y.end),
+    ]
     for start, end in hatching([corners], PITCH[fails]):
         panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
 
@@ -123,9 +127,10 @@ def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
     lines = _Grid(panel, sweep, (columns, rows))
     drawn = [
-        (fails, name) for fails, name in ((True, _("no such mechanism")), (False, _("beyond a limit")))
+        (fails, name)
+        for fails, name in ((True, _("no such mechanism")), (False, _("beyond a limit")))
         if np.any((state >= STOPS) if fails else (state == LIMIT))
-    ]  # fmt: skip
+    ]
     for fails, __ in drawn:
         lines.hatched(state, fails=fails)
     _levels(lines, values, degrees=_degrees(one, units))
@@ -203,8 +208,12 @@ def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
     at = panel.x.end - sum(SAMPLE + 5 + width(text, SMALL * POINT) for __, text in drawn)
     height = panel.sheet.ground.high.imag - ROW / 2
     for fails, text in drawn:
-        field = [complex(at, height - 1.3), complex(at + SAMPLE, height - 1.3), complex(at + SAMPLE, height + 1.3),
-                 complex(at, height + 1.3)]  # fmt: skip
+        field = [
+            complex(at, height - 1.3),
+            complex(at + SAMPLE, height - 1.3),
+            complex(at + SAMPLE, height + 1.3),
+            complex(at, height + 1.3),
+        ]
         for start, end in hatching([field], PITCH[fails] / 1.5):
             panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
         panel.sheet.line([*field, field[0]], DARK, 0.5, blocks=False)

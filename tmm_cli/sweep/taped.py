@@ -92,9 +92,13 @@ class Turning:
     """
 
     def __init__(
-        self, make: Make, first: Sequence[float], read: Callable[[Motion, Reactions | None], Mapping[str, Any]],
-        *, forces: bool,
-    ) -> None:  # fmt: skip
+        self,
+        make: Make,
+        first: Sequence[float],
+        read: Callable[[Motion, Reactions | None], Mapping[str, Any]],
+        *,
+        forces: bool,
+    ) -> None:
         self.make, self.first, self.variant = make, tuple(first), make(first)
         linkage = self.linkage = self.variant.linkage
         driver = linkage.driver
@@ -121,7 +125,7 @@ class Turning:
         self.scan, self.close = (record(self._states, *[1] * len(first), axis) for axis in (2, 3))
         self.forces = record(
             lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 4 * len(self.stroke_links) + 1), 3
-        )  # fmt: skip
+        )
         self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
         self._parts: dict[tuple[str, ...], Program] = {}
         self._some: dict[tuple[str, ...], Program] = {}

@@ -46,7 +46,7 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 
 def one_of(
     shape: Block, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
-) -> tuple[str, ...]:  # fmt: skip
+) -> tuple[str, ...]:
     """Return the set of keys that the block has, with no other of them and none of `others`.
 
     Raises ProblemError: the refusal, with the keys that are missing or too many.
@@ -64,9 +64,11 @@ def one_of(
     elif surplus:
         mend = _("; too many: {keys}").format(keys=_alternatives(surplus))
     raise ProblemError(
-        translated(refusal) + mend, found=", ".join(here) or _("none of them"),
-        allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets), key=True,
-    )  # fmt: skip
+        translated(refusal) + mend,
+        found=", ".join(here) or _("none of them"),
+        allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets),
+        key=True,
+    )
 
 
 def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:

@@ -15,8 +15,11 @@ Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
 Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
 Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
 LETTERS: Final[Mapping[Chain, str]] = {  # of the joints along the chain from the driver's pivot, as constructions say
-    "four-bar": "ABCD", "crank-slider": "OAB", "slotted-lever": "OACB", "shaper": "OACDE",
-}  # fmt: skip
+    "four-bar": "ABCD",
+    "crank-slider": "OAB",
+    "slotted-lever": "OACB",
+    "shaper": "OACDE",
+}
 
 
 @dataclass(frozen=True)

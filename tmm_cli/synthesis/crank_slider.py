@@ -32,19 +32,30 @@ def construction(found: Found) -> Construction:
     pin1, pin2 = r * b1 / abs(b1), -r * b2 / abs(b2)
     segments = [
         Segment(complex(near - 0.12 * height, -e), complex(far + 0.12 * height, -e), "axis"),
-        Segment(o, pin1, "link", "r"), Segment(pin1, b1, "link", "l"),
-        Segment(pin2, o, "link2", "r"), Segment(o, b2, "link2", "l − r"),
-    ]  # fmt: skip
+        Segment(o, pin1, "link", "r"),
+        Segment(pin1, b1, "link", "l"),
+        Segment(pin2, o, "link2", "r"),
+        Segment(o, b2, "link2", "l − r"),
+    ]
     arcs = [circle(o, r)]
     spots = [
-        Spot("O", o, "support"), Spot("A1", pin1, "hinge"), Spot("A2", pin2, "hinge"),
-        Spot("B1", b1, "slider"), Spot("B2", b2, "slider"),
-    ]  # fmt: skip
+        Spot("O", o, "support"),
+        Spot("A1", pin1, "hinge"),
+        Spot("A2", pin2, "hinge"),
+        Spot("B1", b1, "slider"),
+        Spot("B2", b2, "slider"),
+    ]
     sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
     plain = Construction(
-        N_("Extreme positions of the slider"), tuple(segments), tuple(arcs), tuple(spots), sizes=sizes,
-        wishes=(box(o, r),), chain="crank-slider", values=(("r", r, "length"), ("l", l, "length")),
-    )  # fmt: skip
+        N_("Extreme positions of the slider"),
+        tuple(segments),
+        tuple(arcs),
+        tuple(spots),
+        sizes=sizes,
+        wishes=(box(o, r),),
+        chain="crank-slider",
+        values=(("r", r, "length"), ("l", l, "length")),
+    )
     if not theta > DRAWN:
         return plain
     middle, radius = (b1 + b2) / 2, height / 2 / float(np.sin(theta))
@@ -55,12 +66,14 @@ def construction(found: Found) -> Construction:
     return replace(
         plain,
         title=N_("Extreme positions of the slider, and the circle on which {B}1{B}2 is seen under theta"),
-        segments=(*segments, Segment(b1, b2, "thin")), arcs=tuple(arcs),
+        segments=(*segments, Segment(b1, b2, "thin")),
+        arcs=tuple(arcs),
         angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
-        centres=(Centre(centre, radius, (b1, b2)),), wishes=(box(o, r), (centre,), box(centre, radius)),
+        centres=(Centre(centre, radius, (b1, b2)),),
+        wishes=(box(o, r), (centre,), box(centre, radius)),
         values=(*plain.values, ("θ", theta, "angle")),
         notes=(N_("red: where {O} may be, so that the crank turns fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
-    )  # fmt: skip
+    )
 
 
 # Crank-slider from its stroke (tasks 1 to 4): h = H/r, L = l/r, nu = e/r, theta between the extreme cranks.
@@ -74,17 +87,24 @@ def construction(found: Found) -> Construction:
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "stroke": ("length", N_("stroke H")), "speed": ("speed", N_("mean speed of the slider")),
-    "crank_speed": ("angular speed", N_("speed of the crank")), "ratio": ("number", N_("L = l/r")),
-    "nu": ("number", N_("nu = e/r")), "k": ("number", N_("k")),
-    "pressure": ("angle", N_("largest pressure angle lambda")), "e": ("length", N_("offset of the guide e")),
-}  # fmt: skip
+    "stroke": ("length", N_("stroke H")),
+    "speed": ("speed", N_("mean speed of the slider")),
+    "crank_speed": ("angular speed", N_("speed of the crank")),
+    "ratio": ("number", N_("L = l/r")),
+    "nu": ("number", N_("nu = e/r")),
+    "k": ("number", N_("k")),
+    "pressure": ("angle", N_("largest pressure angle lambda")),
+    "e": ("length", N_("offset of the guide e")),
+}
 FOUND: Final = {
-    "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")), "e": QUANTITIES["e"],
-    "h": ("number", N_("h = H/r")), "theta": ("angle", N_("theta, between the extreme cranks")),
+    "r": ("length", N_("crank r")),
+    "l": ("length", N_("connecting rod l")),
+    "e": QUANTITIES["e"],
+    "h": ("number", N_("h = H/r")),
+    "theta": ("angle", N_("theta, between the extreme cranks")),
     "printed": ("number", N_("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
     "error": ("number", N_("relative error of that")),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -229,9 +249,19 @@ def find(task: Task) -> Found:
         nu = task.e / r
     scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
     return Found(
-        r, length * r, nu * r, height, length, nu, h, theta, k_of(theta), np.arcsin((1 + nu) / length), nu * scale,
+        r,
+        length * r,
+        nu * r,
+        height,
+        length,
+        nu,
+        h,
+        theta,
+        k_of(theta),
+        np.arcsin((1 + nu) / length),
+        nu * scale,
         (scale - 1) * (nu != 0),
-    )  # fmt: skip
+    )
 
 
 def _stroke(task: Task) -> Any:
@@ -301,11 +331,16 @@ def solve(task: Task) -> Outcome:
         wanted = float(getattr(found, name))
         demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
     return Outcome(
-        given(task, QUANTITIES), lengths + more,
-        N_("triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
-          "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"),
-        tuple(demands), (construction(found),), output="slide",
-    )  # fmt: skip
+        given(task, QUANTITIES),
+        lengths + more,
+        N_(
+            "triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
+            "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"
+        ),
+        tuple(demands),
+        (construction(found),),
+        output="slide",
+    )
 
 
 # Crank-slider by its stroke: keys of the task.

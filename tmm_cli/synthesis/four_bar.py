@@ -22,8 +22,21 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
 
 TYPES: Final = (  # in the order frame, input, coupler, output: by the shortest link, the longest, the shortest again
-    "GCCC", "GCRR", "GRCR", "GRRC", "RRR1", "RRR2", "RRR3", "RRR4", "SCCC", "SCRR", "SRCR", "SRRC", "S2X", "S3X",
-)  # fmt: skip
+    "GCCC",
+    "GCRR",
+    "GRCR",
+    "GRRC",
+    "RRR1",
+    "RRR2",
+    "RRR3",
+    "RRR4",
+    "SCCC",
+    "SCRR",
+    "SRCR",
+    "SRRC",
+    "S2X",
+    "S3X",
+)
 CHANGE: Final = 8  # the first type with change points
 PLACES: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only places are asked for
 

@@ -20,10 +20,16 @@ from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 
 PARAMETERS: Final[dict[str, str]] = {}
 LINKS: Final = {  # that a task may give: kind and what they are called
-    "l1": ("length", N_("link 1")), "l2": ("length", N_("link 2")), "l3": ("length", N_("link 3")),
-    "l4": ("length", N_("link 4")), "r": ("length", N_("crank r")), "l": ("length", N_("connecting rod l")),
-    "e": ("length", N_("offset e")), "OA": ("length", N_("crank OA")), "OC": ("length", N_("frame OC")),
-}  # fmt: skip
+    "l1": ("length", N_("link 1")),
+    "l2": ("length", N_("link 2")),
+    "l3": ("length", N_("link 3")),
+    "l4": ("length", N_("link 4")),
+    "r": ("length", N_("crank r")),
+    "l": ("length", N_("connecting rod l")),
+    "e": ("length", N_("offset e")),
+    "OA": ("length", N_("crank OA")),
+    "OC": ("length", N_("frame OC")),
+}
 FOUR_BARS: Final = {
     "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
     "GCRR": N_("GCRR: crank-rocker-rocker (crank-rocker)"),
@@ -135,8 +141,10 @@ def _four_bar(task: FourBar) -> Outcome:
     found = turning(task)
     change = int(found.kind) >= CHANGE
     at_change, fully, rocks = (
-        N_("turns fully or rocks: decided in the change positions"), N_("turns fully"), N_("rocks"),
-    )  # fmt: skip
+        N_("turns fully or rocks: decided in the change positions"),
+        N_("turns fully"),
+        N_("rocks"),
+    )
     asked = (
         *given(task, LINKS),
         Value("frame", f"l{task.frame}", "word", N_("frame")),
@@ -148,8 +156,10 @@ def _four_bar(task: FourBar) -> Outcome:
     ]
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
         values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
-    source = N_("F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
-               "four-bar linkages, Mechanism and Machine Theory 20 (1985)")  # fmt: skip
+    source = N_(
+        "F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
+        "four-bar linkages, Mechanism and Machine Theory 20 (1985)"
+    )
     return Outcome(asked, tuple(values), source, _turning(bool(found.turns[0]), change))
 
 
@@ -194,9 +204,11 @@ def read(shape: Shape, values: ValueReader) -> Task:
     fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
-            translated(UNDETERMINED), found=", ".join(sorted(given)) or _("none"),
-            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS), key=True,
-        )  # fmt: skip
+            translated(UNDETERMINED),
+            found=", ".join(sorted(given)) or _("none"),
+            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS),
+            key=True,
+        )
     record = fitting[0]
     if record is FourBar:
         frame = int((shape.frame or "l4")[1])
@@ -204,10 +216,11 @@ def read(shape: Shape, values: ValueReader) -> Task:
         if (driver - frame) % 2 == 0:
             allowed = ", ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
             raise ProblemError(
-                _("the driver is hinged to the frame"), path=("driver",),
+                _("the driver is hinged to the frame"),
+                path=("driver",),
                 found=_("'l{driver}' opposite the frame l{frame}").format(driver=driver, frame=frame),
                 allowed=allowed,
-            )  # fmt: skip
+            )
         found |= {"frame": frame, "driver": driver}
     made: Task = record(**found)
     return made

@@ -115,9 +115,11 @@ def read(tree: Tree) -> TaskProblem:
     """A file with a task and a linkage: all of the block is checked, nothing is solved. Raises ProblemError."""
     if "links" not in tree.data:
         raise ProblemError(
-            _("there is no linkage that could use what is found"), path=("synthesis",),
-            allowed=_("tmm synthesis, or links and a driver"), key=True,
-        ).located(tree.file, tree)  # fmt: skip
+            _("there is no linkage that could use what is found"),
+            path=("synthesis",),
+            allowed=_("tmm synthesis, or links and a driver"),
+            key=True,
+        ).located(tree.file, tree)
     file = TaskFile(tree)
     with placed_in(tree):
         if not file.searches:
@@ -189,16 +191,20 @@ class TaskFile:
             if first != name:
                 raise ProblemError(
                     _("{first} and {second} of the synthesis have the same name").format(first=first, second=name),
-                    path=("synthesis", "names"), found=quote(other), allowed=_("different names"),
-                )  # fmt: skip
+                    path=("synthesis", "names"),
+                    found=quote(other),
+                    allowed=_("different names"),
+                )
             if other in raw:
                 raise ProblemError(
                     _("the parameter {name} is given by hand, and the synthesis {task} finds it (its {own})").format(
                         name=other, task=task, own=name
                     ),
-                    path=("parameters", other), found=quote(raw[other]), key=True,
+                    path=("parameters", other),
+                    found=quote(raw[other]),
+                    key=True,
                     allowed=_("one of the two; another name: synthesis: {{names: {{{name}: ...}}}}").format(name=name),
-                )  # fmt: skip
+                )
         return names
 
     def stand_ins(self) -> Parameters:
@@ -212,8 +218,11 @@ class TaskFile:
         """Parameters given by hand that rest on what is found, at first hand or through others."""
         raw = self.shape.parameters
         known = dict.fromkeys([*raw, *found], PhysicalValue(0.0))
-        needs = {name: set(Parser(plain_text(source[:200]), known, self.units).names())
-                 for name, source in raw.items() if isinstance(source, str)}  # fmt: skip
+        needs = {
+            name: set(Parser(plain_text(source[:200]), known, self.units).names())
+            for name, source in raw.items()
+            if isinstance(source, str)
+        }
         late: set[str] = set()
         while more := {name for name, used in needs.items() if used & (found | late)} - late:
             late |= more
@@ -226,9 +235,11 @@ class TaskFile:
             used = Parser(plain_text(text[:200]), known, self.units).names()
             if path[0] not in ("task", "names") and used:
                 raise ProblemError(
-                    _("this rests on what the synthesis finds"), path=("synthesis", *path),
-                    found=", ".join(map(quote, used)), allowed=_("parameters that do not"),
-                )  # fmt: skip
+                    _("this rests on what the synthesis finds"),
+                    path=("synthesis", *path),
+                    found=", ".join(map(quote, used)),
+                    allowed=_("parameters that do not"),
+                )
 
     @cached_property
     def task(self) -> Any:
@@ -298,8 +309,9 @@ class TaskFile:
         """The parameters that were found, under the names that the file gives them."""
         return {
             self.names[name]: PhysicalValue(_plain(value.value), KINDS[value.kind].dimension)
-            for name, value in outcome.parameters.items() if name in self.names
-        }  # fmt: skip
+            for name, value in outcome.parameters.items()
+            if name in self.names
+        }
 
 
 def _found(file: TaskFile) -> Problem:
@@ -312,9 +324,11 @@ def _whole(file: TaskFile, synthesised: Synthesised) -> Problem:
     problem = file.with_values(file.values(synthesised.outcome), file.units)
     sketch = synthesised.outcome.sketch or problem.linkage.sketch
     return replace(
-        problem, linkage=replace(problem.linkage, sketch=sketch), synthesis=synthesised,
+        problem,
+        linkage=replace(problem.linkage, sketch=sketch),
+        synthesis=synthesised,
         extended=partial(_extended, file.tree, synthesised),
-    )  # fmt: skip
+    )
 
 
 def _extended(tree: Tree, synthesised: Synthesised) -> Problem:

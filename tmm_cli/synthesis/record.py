@@ -113,9 +113,13 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
     """
 
     def __init__(
-        self, key: str | tuple[str | int, ...], reason: str, nearest: str | tuple[float, Kind, int] | None = None, *,
+        self,
+        key: str | tuple[str | int, ...],
+        reason: str,
+        nearest: str | tuple[float, Kind, int] | None = None,
+        *,
         search: bool = True,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.path = (key,) if isinstance(key, str) else key
         self.reason, self.nearest, self.search = reason, nearest, search and bool(self.path)
         super().__init__(reason)

@@ -33,19 +33,27 @@ def construction(f: Found) -> Construction:
     stroke = abs(e2 - e1)
     ends = sorted((e1.real, e2.real))
     segments += [
-        Segment(d1, e1, "link", "DE"), Segment(d2, e2, "link2", "DE"), Segment(d1, d2, "dashed"),
+        Segment(d1, e1, "link", "DE"),
+        Segment(d2, e2, "link2", "DE"),
+        Segment(d1, d2, "dashed"),
         Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "axis"),
-    ]  # fmt: skip
+    ]
     spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
     top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
     sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
     lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
     return Construction(
-        N_("Extreme positions of the shaper"), tuple(segments), tuple(arcs), tuple(spots),
-        (N_("guide midway between {D}1{D}2 and the top of the arc"),), angles=tuple(angles), sizes=sizes,
-        chain="shaper", wishes=((top,),),
+        N_("Extreme positions of the shaper"),
+        tuple(segments),
+        tuple(arcs),
+        tuple(spots),
+        (N_("guide midway between {D}1{D}2 and the top of the arc"),),
+        angles=tuple(angles),
+        sizes=sizes,
+        chain="shaper",
+        wishes=((top,),),
         values=(*((name, float(value), "length") for name, value in lengths.items()), ("θ", float(f.theta), "angle")),
-    )  # fmt: skip
+    )
 
 
 # Crank shaper (six-bar: crank, stone, slotted lever CD, rod DE, ram) from its stroke and k.
@@ -58,10 +66,15 @@ def construction(f: Found) -> Construction:
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "stroke": ("length", N_("stroke H of the ram")), "k": ("number", N_("k")), "OC": ("length", N_("frame OC")),
-    "frame_ratio": ("number", N_("OC/CD")), "OA": ("length", N_("crank OA")), "DE": ("length", N_("rod DE")),
-    "rod_ratio": ("number", N_("DE/CD")), "pressure": ("angle", N_("largest pressure angle of the ram")),
-}  # fmt: skip
+    "stroke": ("length", N_("stroke H of the ram")),
+    "k": ("number", N_("k")),
+    "OC": ("length", N_("frame OC")),
+    "frame_ratio": ("number", N_("OC/CD")),
+    "OA": ("length", N_("crank OA")),
+    "DE": ("length", N_("rod DE")),
+    "rod_ratio": ("number", N_("DE/CD")),
+    "pressure": ("angle", N_("largest pressure angle of the ram")),
+}
 FRAMES: Final = ("OC", "frame_ratio", "OA")
 RODS: Final = ("DE", "rod_ratio", "pressure")
 
@@ -152,8 +165,10 @@ def solve(task: Task) -> Outcome:
         Demand(N_("k"), float(task.k), "number", ratio),
         Demand(text, float(f.pressure), kind, pressure, task.pressure is not None, of="pressure"),
     )
-    source = N_("D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
-               "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc")  # fmt: skip
+    source = N_(
+        "D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
+        "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc"
+    )
     return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")
 
 

@@ -36,15 +36,22 @@ def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot
     axis = (o - c) / abs(o - c)
     top = c + 1.1 * max(lever, frame + crank) * axis
     segments = [
-        Segment(c, ends[0], "link", f"C{end}"), Segment(o, pins[0], "link", "OA"),
-        Segment(c, ends[1], "link2"), Segment(o, pins[1], "link2", "OA"),
-        Segment(c, o, "axis", "OC"), Segment(o, top, "axis"),
-    ]  # fmt: skip
+        Segment(c, ends[0], "link", f"C{end}"),
+        Segment(o, pins[0], "link", "OA"),
+        Segment(c, ends[1], "link2"),
+        Segment(o, pins[1], "link2", "OA"),
+        Segment(c, o, "axis", "OC"),
+        Segment(o, top, "axis"),
+    ]
     arcs = [circle(o, crank), Arc(c, lever, first, last, "dashed")]
     spots = [
-        Spot("C", c, "support"), Spot("O", o, "support"), Spot("A1", pins[0], "stone", ways[0]),
-        Spot("A2", pins[1], "stone", ways[1]), Spot(f"{end}1", ends[0], "hinge"), Spot(f"{end}2", ends[1], "hinge"),
-    ]  # fmt: skip
+        Spot("C", c, "support"),
+        Spot("O", o, "support"),
+        Spot("A1", pins[0], "stone", ways[0]),
+        Spot("A2", pins[1], "stone", ways[1]),
+        Spot(f"{end}1", ends[0], "hinge"),
+        Spot(f"{end}2", ends[1], "hinge"),
+    ]
     corners = [Angle(pin, o, c, right=True) for pin in pins]
     return segments, arcs, spots, [Angle(c, ends[0], ends[1], "θ"), *corners]
 
@@ -55,12 +62,21 @@ def construction(f: Found) -> Construction:
     b1, b2 = spots[-2].at, spots[-1].at
     segments.append(Segment(b1, b2, "dashed"))
     return Construction(
-        N_("Extreme positions of the slotted lever"), tuple(segments), tuple(arcs), tuple(spots),
-        (N_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),), angles=tuple(angles), chain="slotted-lever",
+        N_("Extreme positions of the slotted lever"),
+        tuple(segments),
+        tuple(arcs),
+        tuple(spots),
+        (N_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),),
+        angles=tuple(angles),
+        chain="slotted-lever",
         wishes=(box(complex(f.o), float(f.crank)),),
-        values=(("OA", float(f.crank), "length"), ("OC", float(f.frame), "length"), ("CB", float(f.lever), "length"),
-                ("θ", float(f.theta), "angle")),
-    )  # fmt: skip
+        values=(
+            ("OA", float(f.crank), "length"),
+            ("OC", float(f.frame), "length"),
+            ("CB", float(f.lever), "length"),
+            ("θ", float(f.theta), "angle"),
+        ),
+    )
 
 
 def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
@@ -70,15 +86,16 @@ def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
     frame = np.linspace(low, high, FAMILY)
     crank = frame * float(np.sin(f.theta / 2))
     rows = (
-        ("OA", N_("crank OA"), crank), ("nearest", N_("stone from C, at least"), frame - crank),
+        ("OA", N_("crank OA"), crank),
+        ("nearest", N_("stone from C, at least"), frame - crank),
         ("farthest", N_("stone from C, at most"), frame + crank),
-    )  # fmt: skip
+    )
     own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
         *(Line(text, frame, values) for __, text, values in rows),
         Line(N_("lever CB"), frame, np.full(FAMILY, float(f.lever))),
         Line(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
-    )  # fmt: skip
+    )
     title = N_("Crank OA and distance of the stone from C, over OC within its bounds")
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
     columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
@@ -97,9 +114,12 @@ def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "CB": ("length", N_("lever CB")), "k": ("number", N_("k")), "swing": ("angle", N_("swing of the lever")),
-    "OC": ("length", N_("frame OC")), "OA": ("length", N_("crank OA")),
-}  # fmt: skip
+    "CB": ("length", N_("lever CB")),
+    "k": ("number", N_("k")),
+    "swing": ("angle", N_("swing of the lever")),
+    "OC": ("length", N_("frame OC")),
+    "OA": ("length", N_("crank OA")),
+}
 QUICK_RETURN: Final = N_(
     "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
 )
@@ -200,14 +220,18 @@ def solve(task: Task) -> Outcome:
         Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
         Demand(N_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
         Demand(N_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
-        *(Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
-          for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))),
-    )  # fmt: skip
+        *(
+            Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+            for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))
+        ),
+    )
     notes = (N_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
     free = family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
     drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
-    source = N_("OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
-               "on the bisector, OA = OC sin(theta/2)")  # fmt: skip
+    source = N_(
+        "OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
+        "on the bisector, OA = OC sin(theta/2)"
+    )
     return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
 
 
@@ -237,16 +261,24 @@ def _found(task: Task, f: Found) -> tuple[Value, ...]:
         Value("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
         Value("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
         Value("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
-        Value("phi", np.arctan2(np.imag(away), np.real(away)), "angle",
-              N_("direction from C to O, of crank and lever when they are in line")),
+        Value(
+            "phi",
+            np.arctan2(np.imag(away), np.real(away)),
+            "angle",
+            N_("direction from C to O, of crank and lever when they are in line"),
+        ),
         Value("", f.theta, "angle", N_("theta = B1CB2")),
         Value("", f.frame - f.crank, "length", N_("stone from C, at least")),
         Value("", f.frame + f.crank, "length", N_("stone from C, at most")),
         Value("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
         # in the slow stroke the crank turns as the lever does
-        Value("", N_("counterclockwise") if task.side > 0 else N_("clockwise"), "word",
-              N_("crank for a slow stroke from B1 to B2")),
-    )  # fmt: skip
+        Value(
+            "",
+            N_("counterclockwise") if task.side > 0 else N_("clockwise"),
+            "word",
+            N_("crank for a slow stroke from B1 to B2"),
+        ),
+    )
 
 
 # Slotted lever by k and its extreme positions: keys of the task.
@@ -302,8 +334,9 @@ def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
         lacking = [other for other in others if getattr(shape, other) is None]
         if getattr(shape, key) is not None and lacking:
             raise ProblemError(
-                _("{key} goes with {others} only").format(key=key, others=_(" and ").join(others)), path=(key,),
+                _("{key} goes with {others} only").format(key=key, others=_(" and ").join(others)),
+                path=(key,),
                 found=_("{key} without {lacking}").format(key=key, lacking=_(" and ").join(lacking)),
                 allowed=_("{others}, or no {key}").format(others=_(" and ").join(others), key=key),
                 key=True,
-            )  # fmt: skip
+            )

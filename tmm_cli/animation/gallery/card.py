@@ -137,10 +137,18 @@ def card(file: str) -> Card:
     structure = results.structure
     groups = dict.fromkeys(f"{group.roman} {group.type}" for group in structure.groups)
     return Card(
-        file, _language(tree), problem.title, problem.reference, problem.description or remark(file),
-        structure.roman, structure.formula.replace("->", "→"), tuple(groups),
-        purposes(results), tuple(_told(_facts(results), problem.units)), turning(results),
-    )  # fmt: skip
+        file,
+        _language(tree),
+        problem.title,
+        problem.reference,
+        problem.description or remark(file),
+        structure.roman,
+        structure.formula.replace("->", "→"),
+        tuple(groups),
+        purposes(results),
+        tuple(_told(_facts(results), problem.units)),
+        turning(results),
+    )
 
 
 def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
@@ -149,10 +157,18 @@ def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
     if all(task.of != "W" for task in problem.shows.values()):
         values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
     return Card(
-        file, _language(tree), problem.title, problem.reference, problem.description or remark(file), "",
-        typeset(f"W = {results.chain.chain.count}"), (), ("space",), tuple(_told(values, problem.units)),
+        file,
+        _language(tree),
+        problem.title,
+        problem.reference,
+        problem.description or remark(file),
+        "",
+        typeset(f"W = {results.chain.chain.count}"),
+        (),
+        ("space",),
+        tuple(_told(values, problem.units)),
         scheme(results.chain.chain),
-    )  # fmt: skip
+    )
 
 
 def remark(file: str) -> str:

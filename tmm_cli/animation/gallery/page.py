@@ -26,14 +26,26 @@ def page(cards: Sequence[Card]) -> str:
     purposes = Counter(purpose for card in cards for purpose in card.purposes)
     names = dict.fromkeys(fact.name for card in cards for fact in card.facts)
     words = {
-        "title": _("Gallery of mechanisms"), "words_label": _("text"), "words_hint": _("press, Whitworth, M15"),
-        "number_label": _("class"), "group_label": _("group"), "purpose_label": _("purpose"),
-        "fact_label": _("property"), "fact_hint": _("stroke, or k > 1.4"), "any": _("any"), "clear": _("clear"),
-        "stop": _("stop all"), "go": _("turn all"), "speed": _("speed"),
-        "told": _("{shown} of {all} mechanisms").format(shown="#", all="#"), "none": _("No mechanism is like that."),
-        "hint": _("Press a picture to stop it or let it turn, a tag to find others like it; / goes to the search. "
-                  "Numbers of properties are compared in the units of each card."),
-    }  # fmt: skip
+        "title": _("Gallery of mechanisms"),
+        "words_label": _("text"),
+        "words_hint": _("press, Whitworth, M15"),
+        "number_label": _("class"),
+        "group_label": _("group"),
+        "purpose_label": _("purpose"),
+        "fact_label": _("property"),
+        "fact_hint": _("stroke, or k > 1.4"),
+        "any": _("any"),
+        "clear": _("clear"),
+        "stop": _("stop all"),
+        "go": _("turn all"),
+        "speed": _("speed"),
+        "told": _("{shown} of {all} mechanisms").format(shown="#", all="#"),
+        "none": _("No mechanism is like that."),
+        "hint": _(
+            "Press a picture to stop it or let it turn, a tag to find others like it; / goes to the search. "
+            "Numbers of properties are compared in the units of each card."
+        ),
+    }
     return filled(
         "gallery/",
         **{name: _text(word) for name, word in words.items()},

@@ -85,9 +85,11 @@ def _attributes(picture: Picture, name: str, moving: list[str]) -> str:
 def _courses(body: Body) -> tuple[Course, Course, Course, Course]:
     """With y down, as the page has it."""
     return (
-        _course(body.place.real * PLACE), _course(-body.place.imag * PLACE), _course(-body.angle * TURN),
+        _course(body.place.real * PLACE),
+        _course(-body.place.imag * PLACE),
+        _course(-body.angle * TURN),
         _course(body.stretch * TURN),
-    )  # fmt: skip
+    )
 
 
 def _course(values: Real) -> Course:

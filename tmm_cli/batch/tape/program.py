@@ -22,9 +22,13 @@ class Outputs(Mapping[str, Array]):
     """
 
     def __init__(
-        self, names: Mapping[str, tuple[Any, Any]], planes: Mapping[Any, Array], turned: bool, several: bool,
+        self,
+        names: Mapping[str, tuple[Any, Any]],
+        planes: Mapping[Any, Array],
+        turned: bool,
+        several: bool,
         shape: tuple[int, int],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.names, self.planes, self.turned, self.several, self.shape = names, planes, turned, several, shape
 
     def __iter__(self) -> Iterator[str]:

@@ -17,19 +17,52 @@ import numpy as np
 Number = Any  # float, bool, or a NumPy scalar of any precision
 
 ONE_BY_ONE: dict[str, Any] = {
-    "sqrt": np.sqrt, "cos": np.cos, "sin": np.sin, "arctan2": np.arctan2, "minimum": np.minimum,
-    "maximum": np.maximum, "add": np.add, "subtract": np.subtract, "multiply": np.multiply, "divide": np.true_divide,
-    "negative": np.negative, "absolute": np.absolute, "sign": np.sign, "isfinite": np.isfinite, "floor": np.floor,
-    "less": np.less, "less_equal": np.less_equal, "greater": np.greater, "greater_equal": np.greater_equal,
-    "equal": np.equal, "not_equal": np.not_equal, "bitwise_and": np.logical_and, "bitwise_or": np.logical_or,
-    "invert": np.logical_not, "logical_and": np.logical_and, "logical_or": np.logical_or,
-    "logical_not": np.logical_not, "remainder": np.remainder, "rint": np.rint,
-}  # fmt: skip
+    "sqrt": np.sqrt,
+    "cos": np.cos,
+    "sin": np.sin,
+    "arctan2": np.arctan2,
+    "minimum": np.minimum,
+    "maximum": np.maximum,
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.true_divide,
+    "negative": np.negative,
+    "absolute": np.absolute,
+    "sign": np.sign,
+    "isfinite": np.isfinite,
+    "floor": np.floor,
+    "less": np.less,
+    "less_equal": np.less_equal,
+    "greater": np.greater,
+    "greater_equal": np.greater_equal,
+    "equal": np.equal,
+    "not_equal": np.not_equal,
+    "bitwise_and": np.logical_and,
+    "bitwise_or": np.logical_or,
+    "invert": np.logical_not,
+    "logical_and": np.logical_and,
+    "logical_or": np.logical_or,
+    "logical_not": np.logical_not,
+    "remainder": np.remainder,
+    "rint": np.rint,
+}
 SWAPPED = {"add", "multiply", "minimum", "maximum", "bitwise_and", "bitwise_or", "logical_and", "logical_or", "equal"}
 TRUTHS = {
-    "isfinite", "less", "less_equal", "greater", "greater_equal", "equal", "not_equal", "bitwise_and", "bitwise_or",
-    "invert", "logical_and", "logical_or", "logical_not",
-}  # fmt: skip
+    "isfinite",
+    "less",
+    "less_equal",
+    "greater",
+    "greater_equal",
+    "equal",
+    "not_equal",
+    "bitwise_and",
+    "bitwise_or",
+    "invert",
+    "logical_and",
+    "logical_or",
+    "logical_not",
+}
 
 
 @dataclass(eq=False)
@@ -230,7 +263,15 @@ def _absolute(tape: Tape, a: Any) -> Any:
 
 
 SIMPLER = {
-    "add": _add, "subtract": _subtract, "multiply": _multiply, "divide": _divide, "negative": _negative,
-    "absolute": _absolute, "sqrt": _sqrt, "bitwise_and": _joined(False), "logical_and": _joined(False),
-    "bitwise_or": _joined(True), "logical_or": _joined(True),
-}  # fmt: skip
+    "add": _add,
+    "subtract": _subtract,
+    "multiply": _multiply,
+    "divide": _divide,
+    "negative": _negative,
+    "absolute": _absolute,
+    "sqrt": _sqrt,
+    "bitwise_and": _joined(False),
+    "logical_and": _joined(False),
+    "bitwise_or": _joined(True),
+    "logical_or": _joined(True),
+}

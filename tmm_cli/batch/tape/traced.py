@@ -177,9 +177,10 @@ COMPLEX: dict[str, Callable[..., Part]] = {
     "equal": lambda tape, a, b: (_both(tape, "equal", "bitwise_and", a, b), None),
     "not_equal": lambda tape, a, b: (_both(tape, "not_equal", "bitwise_or", a, b), None),
     "isfinite": lambda tape, a: (
-        tape.apply("bitwise_and", tape.apply("isfinite", a[0]), tape.apply("isfinite", a[1])), None,
+        tape.apply("bitwise_and", tape.apply("isfinite", a[0]), tape.apply("isfinite", a[1])),
+        None,
     ),
-}  # fmt: skip
+}
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: TracedArray.where,

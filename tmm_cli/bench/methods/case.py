@@ -66,9 +66,20 @@ class Case:
         law, every = self.law, np.ones(np.shape(q), dtype=bool)
         acceleration = np.full(np.shape(q), float(law.sense * law.acceleration))
         return Motion(
-            self.linkage, (), q, poses, first, second, (), every, every, drives=drives_at(self.linkage, q),
-            time=law.time(q), rate=law.speed(q), acceleration=acceleration,
-        )  # fmt: skip
+            self.linkage,
+            (),
+            q,
+            poses,
+            first,
+            second,
+            (),
+            every,
+            every,
+            drives=drives_at(self.linkage, q),
+            time=law.time(q),
+            rate=law.speed(q),
+            acceleration=acceleration,
+        )
 
     def loads(self, motion: Motion) -> tuple[Applied, ...]:
         """All that acts on the links of a motion besides reactions."""

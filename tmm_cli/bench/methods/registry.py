@@ -13,9 +13,12 @@ from tmm_cli.mechanics.numerics.vectors import Real
 
 
 def family(
-    name: str, prepare: Callable[[float, Case], Callable[[Real], Answers]], settings: Mapping[str, float],
-    *, timed: bool = True,
-) -> tuple[Method, ...]:  # fmt: skip
+    name: str,
+    prepare: Callable[[float, Case], Callable[[Real], Answers]],
+    settings: Mapping[str, float],
+    *,
+    timed: bool = True,
+) -> tuple[Method, ...]:
     """Methods that differ in one setting."""
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 

@@ -57,9 +57,13 @@ class _Model:
                 self.joints[pair.name] = self.system.add_revolute(i, j, *ends)
             else:
                 slide, turned = pair.slide, pair.slide.direction - pair.slide.turned
-                a, b = (slide.direction, cross(unit(slide.direction), slide.through)), (
-                    turned, cross(unit(turned), slide.at),
-                )  # fmt: skip
+                a, b = (
+                    (slide.direction, cross(unit(slide.direction), slide.through)),
+                    (
+                        turned,
+                        cross(unit(turned), slide.at),
+                    ),
+                )
                 if pair.i != slide.carrier:
                     a, b = b, a
                 self.joints[pair.name] = self.system.add_prismatic(i, j, *map(float, (*a, *b)))

@@ -72,10 +72,17 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
         crank.angular_velocity = step
         data = linkage_to_solver_data(linkage)
         return data.positions, (
-            np.zeros((len(names), 2)), np.zeros((len(names), 2)), data.constraints, data.joint_types,
-            data.parent_indices, data.constraint_offsets, data.solve_order,
-            np.array([case.law.sense * case.law.rate]), np.zeros(1), np.array([names.index(crank.name)], np.int32),
-        )  # fmt: skip
+            np.zeros((len(names), 2)),
+            np.zeros((len(names), 2)),
+            data.constraints,
+            data.joint_types,
+            data.parent_indices,
+            data.constraint_offsets,
+            data.solve_order,
+            np.array([case.law.sense * case.law.rate]),
+            np.zeros(1),
+            np.array([names.index(crank.name)], np.int32),
+        )
 
     def at(q: Real) -> tuple[Any, Any, Any]:
         key = (float(q[0]), float(q[1] - q[0]) if len(q) > 1 else 0.0)

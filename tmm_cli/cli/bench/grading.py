@@ -15,8 +15,9 @@ from tmm_cli.cli.talk import say
 def grading(
     reduced: Reduced = False,
     full: Annotated[bool, typer.Option("--full", help="A group of 100 000 students too.")] = False,
-    out: Out = None, as_json: Json = False,
-) -> None:  # fmt: skip
+    out: Out = None,
+    as_json: Json = False,
+) -> None:
     """Time and memory of grading a group, how they grow, and how often mistakes are named rightly.
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.

@@ -43,8 +43,11 @@ def dxf(drawing: Drawing) -> bytes:
             document.linetypes.add(LINETYPES[style], [sum(dashes), *signed])
     for name, font in FONTS.values():
         document.styles.add(name, font=font)
-    aligned = {"left": TextEntityAlignment.MIDDLE_LEFT, "center": TextEntityAlignment.MIDDLE_CENTER,
-               "right": TextEntityAlignment.MIDDLE_RIGHT}  # fmt: skip
+    aligned = {
+        "left": TextEntityAlignment.MIDDLE_LEFT,
+        "center": TextEntityAlignment.MIDDLE_CENTER,
+        "right": TextEntityAlignment.MIDDLE_RIGHT,
+    }
     space = document.modelspace()
     for mark in drawing.marks:
         if isinstance(mark, Text):

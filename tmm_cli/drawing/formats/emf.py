@@ -38,9 +38,28 @@ def emf(drawing: Drawing) -> bytes:
     size = 108 + sum(map(len, records))
     box = (0, 0, width, height)
     header = _record(
-        HEADER, "8i4I2H3I4i3I2I", *box, *box, 0x464D4520, 0x10000, size, len(records) + 1, len(pen.handles) + 1, 0,
-        0, 0, 0, DEVICE, DEVICE, DEVICE // UNIT, DEVICE // UNIT, 0, 0, 0, *[1000 * DEVICE // UNIT] * 2,
-    )  # fmt: skip
+        HEADER,
+        "8i4I2H3I4i3I2I",
+        *box,
+        *box,
+        0x464D4520,
+        0x10000,
+        size,
+        len(records) + 1,
+        len(pen.handles) + 1,
+        0,
+        0,
+        0,
+        0,
+        DEVICE,
+        DEVICE,
+        DEVICE // UNIT,
+        DEVICE // UNIT,
+        0,
+        0,
+        0,
+        *[1000 * DEVICE // UNIT] * 2,
+    )
     return b"".join((header, *records))
 
 
@@ -90,8 +109,9 @@ class _Pens:
         if polygons:
             counts = [len(p) for p in polygons]
             points = _rounded(np.concatenate(polygons))
-            yield _record(POLYGONS, f"4iII{len(counts)}I", *_box(points), len(counts), len(points), *counts,
-                          data=points.tobytes())  # fmt: skip
+            yield _record(
+                POLYGONS, f"4iII{len(counts)}I", *_box(points), len(counts), len(points), *counts, data=points.tobytes()
+            )
 
     def _pen(self, colour: str | None, width: float) -> Iterable[bytes]:
         if colour is None:

@@ -36,15 +36,17 @@ def cut(path: str, wanted: Sequence[int]) -> bytes:
     (measured,) = struct.unpack_from(">H", tables["hhea"], 34)
     measures = [tables["hmtx"][4 * k : 4 * k + 4] for k in (min(glyph, measured - 1) for glyph in order)]
     count = struct.pack(">H", len(order))
-    return _joined({
-        **{name: tables[name] for name in AS_THEY_ARE if name in tables},
-        "glyf": b"".join(shapes),
-        "head": tables["head"][:8] + bytes(4) + tables["head"][12:50] + b"\x00\x01" + tables["head"][52:HEAD],
-        "hhea": tables["hhea"][:34] + count,
-        "hmtx": b"".join(measures),
-        "loca": np.cumsum([0, *map(len, shapes)]).astype(">u4").tobytes(),
-        "maxp": tables["maxp"][:4] + count + tables["maxp"][6:MAXP],
-    })  # fmt: skip
+    return _joined(
+        {
+            **{name: tables[name] for name in AS_THEY_ARE if name in tables},
+            "glyf": b"".join(shapes),
+            "head": tables["head"][:8] + bytes(4) + tables["head"][12:50] + b"\x00\x01" + tables["head"][52:HEAD],
+            "hhea": tables["hhea"][:34] + count,
+            "hmtx": b"".join(measures),
+            "loca": np.cumsum([0, *map(len, shapes)]).astype(">u4").tobytes(),
+            "maxp": tables["maxp"][:4] + count + tables["maxp"][6:MAXP],
+        }
+    )
 
 
 @lru_cache(4)

@@ -103,13 +103,15 @@ def _packed(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
         told[0, 1 + k :: 3] = pixels[0, :, k]
         np.subtract(pixels[1:, :, k], pixels[:-1, :, k], out=told[1:, 1 + k :: 3])
     per_metre = round(DPI / 0.0254)
-    return b"".join((
-        b"\x89PNG\r\n\x1a\n",
-        _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
-        _chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-        _chunk(b"IDAT", zlib.compress(told.data, PACKED)),
-        _chunk(b"IEND", b""),
-    ))  # fmt: skip
+    return b"".join(
+        (
+            b"\x89PNG\r\n\x1a\n",
+            _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
+            _chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
+            _chunk(b"IDAT", zlib.compress(told.data, PACKED)),
+            _chunk(b"IEND", b""),
+        )
+    )
 
 
 def _chunk(name: bytes, content: bytes) -> bytes:

@@ -25,9 +25,11 @@ from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis.pipeline import Results
 
 SUBJECTS = (
-    ("structure", N_("Structure")), ("kinematics", N_("Kinematics")), ("forces", N_("Forces")),
+    ("structure", N_("Structure")),
+    ("kinematics", N_("Kinematics")),
+    ("forces", N_("Forces")),
     ("law-of-motion", N_("Law of motion")),
-)  # fmt: skip
+)
 SYNTHESIS = N_("Structure and synthesis")  # where there is one
 STRUCTURE, FORCES = 0, 2
 FURTHER = "-sheet-"  # in the name of a drawing that goes on with another one

@@ -28,9 +28,10 @@ def refuse_plans(count: int) -> None:
     """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
     if count > MOST:
         raise ProblemError(
-            _("plans of so many positions fill no sheet that is read"), found=str(count),
+            _("plans of so many positions fill no sheet that is read"),
+            found=str(count),
             allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
-        )  # fmt: skip
+        )
 
 
 def files_of_sheets(

@@ -119,9 +119,7 @@ def field_of(paper: Size, block: str) -> Field:
     return Field(room.real, room.imag, (taken[0] - EDGE + GAP, taken[1] - EDGE + GAP))
 
 
-def _sheet(
-    number: int, choice: Choice, paper: Size, field: Field, high: float
-) -> tuple[list[Picture], list[Page]]:  # fmt: skip
+def _sheet(number: int, choice: Choice, paper: Size, field: Field, high: float) -> tuple[list[Picture], list[Page]]:
     """All drawings of a sheet, and which of them stand on which of its pages.
 
     high: how high a drawing becomes if it can be folded, mm.

@@ -230,8 +230,13 @@ def _gost(titles: Titles) -> list[Mark]:
     heads = ((0, 7, _("Rev.")), (7, 17, _("Sheet")), (17, 40, _("Doc. No.")), (40, 55, _("Sign.")), (55, 65, _("Date")))
     for start, end, word in heads:
         marks += written(word, complex(start, 30), complex(end, 35), SMALL)
-    roles = ((25, _("Drawn"), texts.student), (20, _("Checked"), texts.teacher), (15, _("Techn."), ""),
-             (5, _("Norms"), ""), (0, _("Approved"), ""))  # fmt: skip
+    roles = (
+        (25, _("Drawn"), texts.student),
+        (20, _("Checked"), texts.teacher),
+        (15, _("Techn."), ""),
+        (5, _("Norms"), ""),
+        (0, _("Approved"), ""),
+    )
     for low, role, name in roles:
         marks += written(role, complex(0, low), complex(17, low + 5), SMALL, "left")
         marks += written(name, complex(17, low), complex(40, low + 5), SMALL, "left")
@@ -252,12 +257,19 @@ def _plain(titles: Titles) -> list[Mark]:
     marks += _lines("y", ((8, 0, 140), (16, 0, 140), (24, 0, 140)), FINE)
     marks += _lines("x", ((105, 16, 32), (85, 0, 16), (20, 0, 16), (105, 0, 16)), FINE)
     cells = (
-        (0, 24, 105, titles.title), (105, 24, 140, texts.code), (0, 16, 105, titles.subject),
+        (0, 24, 105, titles.title),
+        (105, 24, 140, texts.code),
+        (0, 16, 105, titles.subject),
         (105, 16, 140, _("sheet {number} of {count}").format(number=titles.number, count=titles.count)),
-        (0, 8, 20, _("Student")), (20, 8, 85, texts.student), (85, 8, 105, _("Group")), (105, 8, 140, texts.group),
-        (0, 0, 20, _("Teacher")), (20, 0, 85, texts.teacher), (85, 0, 105, _("Department")),
+        (0, 8, 20, _("Student")),
+        (20, 8, 85, texts.student),
+        (85, 8, 105, _("Group")),
+        (105, 8, 140, texts.group),
+        (0, 0, 20, _("Teacher")),
+        (20, 0, 85, texts.teacher),
+        (85, 0, 105, _("Department")),
         (105, 0, 140, texts.department),
-    )  # fmt: skip
+    )
     for left, low, right, text in cells:
         marks += written(text, complex(left, low), complex(right, low + 8), USUAL, "left", lines=2)
     return marks

@@ -177,8 +177,12 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     largest = max((abs(force) for __, force in forces), default=0.0)
     rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
     rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]
-    heads = [_("force or moment"), _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))), _("angle from x, °"),
-             _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT)))]  # fmt: skip
+    heads = [
+        _("force or moment"),
+        _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))),
+        _("angle from x, °"),
+        _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT))),
+    ]
     place = place_of_driver(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the indices of two links: from the first one on the second")]
@@ -234,8 +238,11 @@ def _columns(results: Results) -> list[Quantity]:
     law, way = running.steady.law, running.way(motion.q)
     machine, sense = running.steady.machine, running.sense
     return [
-        (Symbol("J"), machine.inertia(way), INERTIA), (Symbol("M"), sense * machine.moment(way), MOMENT),
-        (Lettered("M_d"), sense * law.driving(way), MOMENT), (_("A, J"), running.steady.work(way), NUMBER),
-        (Symbol("ω"), motion.rate, ANGULAR_SPEED), (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),
+        (Symbol("J"), machine.inertia(way), INERTIA),
+        (Symbol("M"), sense * machine.moment(way), MOMENT),
+        (Lettered("M_d"), sense * law.driving(way), MOMENT),
+        (_("A, J"), running.steady.work(way), NUMBER),
+        (Symbol("ω"), motion.rate, ANGULAR_SPEED),
+        (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),
         (_("t, s"), motion.time, NUMBER),
-    ]  # fmt: skip
+    ]

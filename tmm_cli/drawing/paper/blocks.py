@@ -112,11 +112,13 @@ def corners(low: complex, high: complex, size: complex) -> Vector:
     if min(room.real, room.imag) < 0:
         return np.zeros(0, complex)
     steps = np.linspace(1, 0, STEPS)
-    return low + np.concatenate([
-        room.real * np.array([1, 0, 1, 0]) + 1j * room.imag * np.array([0, 0, 1, 1]),
-        *(room.real * steps + 1j * y for y in (0, room.imag)),
-        *(x + 1j * room.imag * steps for x in (room.real, 0)),
-    ])  # fmt: skip
+    return low + np.concatenate(
+        [
+            room.real * np.array([1, 0, 1, 0]) + 1j * room.imag * np.array([0, 0, 1, 1]),
+            *(room.real * steps + 1j * y for y in (0, room.imag)),
+            *(x + 1j * room.imag * steps for x in (room.real, 0)),
+        ]
+    )
 
 
 def covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = CLEAR) -> Vector:
@@ -142,7 +144,7 @@ def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[
 
 def nearest_free(
     block: Block, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
-) -> tuple[Shape, complex]:  # fmt: skip
+) -> tuple[Shape, complex]:
     """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it.
 
     fits: whether there is room for a drawing of this width and height (mm).

@@ -114,9 +114,13 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
 
 
 def picture(
-    marks: Iterable[Mark], title: str, longest: float, figure: Size | None = None, mu: float | None = None,
+    marks: Iterable[Mark],
+    title: str,
+    longest: float,
+    figure: Size | None = None,
+    mu: float | None = None,
     notes: Sequence[str] = (),
-) -> Picture:  # fmt: skip
+) -> Picture:
     """What was drawn, cut out of its paper, below its title and notes."""
     drawn, heading = list(marks), title if written_here() else ""
     low, high = extremes(drawn)

@@ -24,10 +24,11 @@ def parts(words: Words) -> tuple[str | Symbol, ...]:
 def plain(words: Words) -> str:
     """In one line: a^n_BA."""
     return "".join(
-        part if isinstance(part, str)
+        part
+        if isinstance(part, str)
         else part.letter + (f"^{part.above}" if part.above else "") + (f"_{part.below}" if part.below else "")
         for part in parts(words)
-    )  # fmt: skip
+    )
 
 
 def pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:

@@ -28,9 +28,17 @@ from tmm_cli.problem.units import UnitSystem, on_paper
 DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 NAMES = "#7a3d99"  # of links, lines and angles
 COLOURS = {
-    "absolute": DARK, "relative": "#5a5a5a", "normal": REACTION, "tangential": REACTION, "coriolis": LOAD,
-    "sliding": INERTIA, "load": LOAD, "inertia": INERTIA, "reaction": REACTION, "inner": NAMES,
-}  # fmt: skip
+    "absolute": DARK,
+    "relative": "#5a5a5a",
+    "normal": REACTION,
+    "tangential": REACTION,
+    "coriolis": LOAD,
+    "sliding": INERTIA,
+    "load": LOAD,
+    "inertia": INERTIA,
+    "reaction": REACTION,
+    "inner": NAMES,
+}
 GREY_TEXT = "#505050"  # of titles of columns
 HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
 EDGE = 4.0  # mm inside the field where curves are cut
@@ -40,9 +48,15 @@ class Sheet:
     """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
 
     def __init__(
-        self, title: str, caption: str, points: Iterable[complex] = (), *, pad: float = PAD,
-        paper: tuple[float, float] | None = None, room: Room | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        title: str,
+        caption: str,
+        points: Iterable[complex] = (),
+        *,
+        pad: float = PAD,
+        paper: tuple[float, float] | None = None,
+        room: Room | None = None,
+    ) -> None:
         """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(found)
@@ -98,9 +112,17 @@ class Sheet:
         self.parts.append((name, slice(first, len(self.marks))))
 
     def text(
-        self, at: complex, text: script.Words, size: float, *, colour: str = DARK, weight: str = "normal",
-        ha: Align = "left", style: str = "normal", turn: float = 0.0,
-    ) -> None:  # fmt: skip
+        self,
+        at: complex,
+        text: script.Words,
+        size: float,
+        *,
+        colour: str = DARK,
+        weight: str = "normal",
+        ha: Align = "left",
+        style: str = "normal",
+        turn: float = 0.0,
+    ) -> None:
         """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         one = isinstance(text, str)
@@ -123,9 +145,16 @@ class Sheet:
             self.labels.append(Label(text, anchor, size, colour, style))
 
     def line(
-        self, places: Sequence[complex], colour: str = DARK, width: float = 1.0, style: Style = "-", z: float = 3, *,
-        blocks: bool = True, faint: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        places: Sequence[complex],
+        colour: str = DARK,
+        width: float = 1.0,
+        style: Style = "-",
+        z: float = 3,
+        *,
+        blocks: bool = True,
+        faint: bool = False,
+    ) -> None:
         """A polyline through places (mm), of this width (points); places that are not finite interrupt it.
 
         faint: it is interrupted where texts stand.
@@ -138,9 +167,15 @@ class Sheet:
                 (self.ground.faint if faint else self.ground.solid).path(stretch)
 
     def area(
-        self, corners: Sequence[complex], face: str, edge: str = DARK, width: float = 1.0, z: float = 2.0, *,
+        self,
+        corners: Sequence[complex],
+        face: str,
+        edge: str = DARK,
+        width: float = 1.0,
+        z: float = 2.0,
+        *,
         blocks: bool = True,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
         outline = None if edge == "none" else edge
         self.marks.append(Area(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
@@ -274,8 +309,9 @@ def border(inner: complex, outer: complex, low: complex, high: complex) -> compl
     """Where the way from a place in a field to another one leaves it."""
     way, share = outer - inner, 1.0
     for at, step, least, most in (
-        (inner.real, way.real, low.real, high.real), (inner.imag, way.imag, low.imag, high.imag),
-    ):  # fmt: skip
+        (inner.real, way.real, low.real, high.real),
+        (inner.imag, way.imag, low.imag, high.imag),
+    ):
         if abs(step) > 1e-12:
             share = min(share, ((most if step > 0 else least) - at) / step)
     return inner + max(share, 0.0) * way

@@ -110,9 +110,12 @@ def _column(sheet: Sheet, top: complex, table: Table, rows: Sequence[tuple[Words
 
 
 def above(
-    here: Position, title: str, places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath],
+    here: Position,
+    title: str,
+    places: Sequence[tuple[complex, complex]],
+    beneath: Callable[[float], Beneath],
     **words: str,
-) -> tuple[Sheet, Sheet | None]:  # fmt: skip
+) -> tuple[Sheet, Sheet | None]:
     """A sheet for a drawing with what is written by it; this is on a sheet of its own where it is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a

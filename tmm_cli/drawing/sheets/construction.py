@@ -97,9 +97,13 @@ def joints(linkage: Linkage, chain: Chain, drawn: Construction) -> dict[str, str
 
 
 STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
-    "link": (DARK, 2.2, "-"), "link2": (INERTIA, 2.2, "-"), "thin": (THIN, 0.8, "-"), "dashed": (THIN, 0.7, "--"),
-    "axis": (THIN, 0.7, "-."), "bold": (LOAD, 1.5, "-"),
-}  # fmt: skip
+    "link": (DARK, 2.2, "-"),
+    "link2": (INERTIA, 2.2, "-"),
+    "thin": (THIN, 0.8, "-"),
+    "dashed": (THIN, 0.7, "--"),
+    "axis": (THIN, 0.7, "-."),
+    "bold": (LOAD, 1.5, "-"),
+}
 PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
 SMALLER = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
 FINE = 1.0  # mm between places along an arc
@@ -110,9 +114,12 @@ BOXES = {"slider": MEASURED.box, "stone": MEASURED.stone}
 
 
 def construction(
-    title: str, drawn: Construction, units: UnitSystem, linkage: Linkage | None = None,
+    title: str,
+    drawn: Construction,
+    units: UnitSystem,
+    linkage: Linkage | None = None,
     names: Mapping[str, str] | None = None,
-) -> Sheet:  # fmt: skip
+) -> Sheet:
     """One sheet; joints are called as in the linkage, parameters by their names in the file."""
     drawn, letters = rename(drawn, linkage, names or {})
     sheet = Sheet(title, translated(drawn.title).format(**letters), granted(drawn), pad=PAD)

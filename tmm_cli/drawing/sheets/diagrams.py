@@ -34,10 +34,17 @@ WRITTEN, WRITTEN_JUMPS = 2, 24  # curves in a panel, and jumps of a curve, up to
 LINES = (DARK, LOAD, INERTIA, REACTION, NAMES, "#c77700", "#00757d", THIN)
 STYLES: tuple[Style, ...] = ("-", "--", "-.", ":")
 SYMBOLS = {
-    quantities.LENGTH: "s", quantities.SPEED: "v", quantities.ACCELERATION: "a",
-    quantities.ANGLE: "φ", quantities.ANGULAR_SPEED: "ω", quantities.ANGULAR_ACCELERATION: "ε",
-    quantities.FORCE: "F", quantities.MOMENT: "M", quantities.INERTIA: "J", quantities.MASS: "m",
-}  # fmt: skip
+    quantities.LENGTH: "s",
+    quantities.SPEED: "v",
+    quantities.ACCELERATION: "a",
+    quantities.ANGLE: "φ",
+    quantities.ANGULAR_SPEED: "ω",
+    quantities.ANGULAR_ACCELERATION: "ε",
+    quantities.FORCE: "F",
+    quantities.MOMENT: "M",
+    quantities.INERTIA: "J",
+    quantities.MASS: "m",
+}
 UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the file
 
 
@@ -191,9 +198,12 @@ def plotted(found: Quantities, units: UnitSystem, xs: Any, marks: Any, borders: 
             told = [numeral(v, ".4g") if written else "" for v in (values[i], values[i + 1])]
             jumps.append(Jump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
     return Plot(
-        with_unit(found.words, found.dimension, units), curves, jumps, _scale(found, units, unit),
+        with_unit(found.words, found.dimension, units),
+        curves,
+        jumps,
+        _scale(found, units, unit),
         degrees=found.dimension == quantities.ANGLE and units.symbol(quantities.ANGLE) == "deg",
-    )  # fmt: skip
+    )
 
 
 def _leaps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:

@@ -73,9 +73,7 @@ def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
         _line(tangent, factor, (axis.low, axis.high), name, colour)
         for tangent, name, colour in zip(steady.tangents, names, COLOURS, strict=True)
     ]
-    work = Plot(
-        _("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
-    )  # fmt: skip
+    work = Plot(_("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm"))
     panel = chart(sheet, [work], Across(axis, below))[0]
     for curve in (whole, *lines):
         sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
@@ -143,7 +141,14 @@ def _flywheel(inertia: float, begins: float, units: UnitSystem) -> Words:
     tan, largest, least = symbol("tan"), *ANGLES
     found = units.from_si(inertia, MOMENT_OF_INERTIA)
     return (
-        Lettered("J_f"), " = ab·", Symbol("μ", "J"), f"/({tan} ", largest, f" − {tan} ", least, ")",
+        Lettered("J_f"),
+        " = ab·",
+        Symbol("μ", "J"),
+        f"/({tan} ",
+        largest,
+        f" − {tan} ",
+        least,
+        ")",
         f" − {numeral(begins, '.4g')}" if begins else "",
         f" = {numeral(found, '.4g')} {on_paper(units.spelt(MOMENT_OF_INERTIA))}",
-    )  # fmt: skip
+    )

@@ -73,9 +73,10 @@ def told_apart(plan: ForcePlan) -> list[NamedVector]:
     """Reactions that are seen beside their parts."""
     least = SMALL * plan.plan.size
     return [
-        full for full in plan.full
+        full
+        for full in plan.full
         if abs(full.value) > least and all(abs(full.value - v.value) > least for v in plan.plan.vectors)
-    ]  # fmt: skip
+    ]
 
 
 def table(plan: ForcePlan, mu: float) -> list[Row]:

@@ -54,23 +54,95 @@ EXAMPLES: tuple[Example, ...] = (
     _dyad("RPR", {"B": 55}),
     _dyad("PRP", {"A": 0, "C": 0}),
     _dyad("RPP", {"B": 55, "C": 0}),
-    Example(3, 3, "", {"P": 0.35 + 0.45j, "Q": 0.65 + 0.45j, "R": 0.5 + 0.7j, "A": 0.1 + 0.15j, "B": 0.9 + 0.15j,
-                       "C": 0.5 + 1.0j}, ("PQR", "PA", "QB", "RC"), {"A": 225, "B": 315, "C": 90}),
-    Example(3, 4, "", {"M": 0.5 + 0.55j, "P": 0.3 + 0.75j, "Q": 0.3 + 0.4j, "R": 0.7 + 0.75j, "S": 0.7 + 0.4j,
-                       "A": 0.05 + 0.95j, "B": 0.05 + 0.15j, "C": 0.95 + 0.95j, "D": 0.95 + 0.15j},
-            ("MPQ", "MRS", "PA", "QB", "RC", "SD"), {"A": 135, "B": 225, "C": 45, "D": 315}),
-    Example(4, 2, "", {"P": 0.3 + 0.75j, "Q": 0.3 + 0.3j, "R": 0.7 + 0.75j, "S": 0.7 + 0.3j, "A": 0.05 + 0.5j,
-                       "B": 0.95 + 0.5j}, ("PQA", "RSB", "PR", "QS"), {"A": 200, "B": 340}),
-    Example(4, 3, "", {"P": 0.3 + 0.75j, "Q": 0.3 + 0.35j, "R": 0.7 + 0.75j, "S": 0.7 + 0.35j, "T": 0.5 + 0.12j,
-                       "A": 0.03 + 0.55j, "B": 0.97 + 0.55j, "U": 0.1 + 0.95j, "V": 0.9 + 0.95j}, (
-            "PQA", "RSB", "PR", "QST", "AU", "BV"), {"U": 120, "V": 60, "T": 270}),
-    Example(5, 3, "", {"P": 0.5 + 0.9j, "Q": 0.2 + 0.65j, "R": 0.32 + 0.3j, "S": 0.68 + 0.3j, "T": 0.8 + 0.65j,
-                       "A": 0.12 + 0.95j, "B": 0.5 + 0.08j, "C": 0.98 + 0.4j, "D": 0.98 + 0.05j},
-            ("PQA", "QR", "RSB", "STC", "TP", "CD"), {"A": 110, "B": 270, "D": 300}),
-    Example(6, 3, "", {"P": 0.35 + 0.9j, "Q": 0.15 + 0.55j, "R": 0.35 + 0.2j, "S": 0.65 + 0.2j, "T": 0.85 + 0.55j,
-                       "U": 0.65 + 0.9j, "A": 0.05 + 0.9j, "B": 0.5 + 0.02j, "C": 0.95 + 0.9j},
-            ("PQA", "QR", "RSB", "ST", "TUC", "UP"), {"A": 120, "B": 270, "C": 60}),
-)  # fmt: skip
+    Example(
+        3,
+        3,
+        "",
+        {"P": 0.35 + 0.45j, "Q": 0.65 + 0.45j, "R": 0.5 + 0.7j, "A": 0.1 + 0.15j, "B": 0.9 + 0.15j, "C": 0.5 + 1.0j},
+        ("PQR", "PA", "QB", "RC"),
+        {"A": 225, "B": 315, "C": 90},
+    ),
+    Example(
+        3,
+        4,
+        "",
+        {
+            "M": 0.5 + 0.55j,
+            "P": 0.3 + 0.75j,
+            "Q": 0.3 + 0.4j,
+            "R": 0.7 + 0.75j,
+            "S": 0.7 + 0.4j,
+            "A": 0.05 + 0.95j,
+            "B": 0.05 + 0.15j,
+            "C": 0.95 + 0.95j,
+            "D": 0.95 + 0.15j,
+        },
+        ("MPQ", "MRS", "PA", "QB", "RC", "SD"),
+        {"A": 135, "B": 225, "C": 45, "D": 315},
+    ),
+    Example(
+        4,
+        2,
+        "",
+        {"P": 0.3 + 0.75j, "Q": 0.3 + 0.3j, "R": 0.7 + 0.75j, "S": 0.7 + 0.3j, "A": 0.05 + 0.5j, "B": 0.95 + 0.5j},
+        ("PQA", "RSB", "PR", "QS"),
+        {"A": 200, "B": 340},
+    ),
+    Example(
+        4,
+        3,
+        "",
+        {
+            "P": 0.3 + 0.75j,
+            "Q": 0.3 + 0.35j,
+            "R": 0.7 + 0.75j,
+            "S": 0.7 + 0.35j,
+            "T": 0.5 + 0.12j,
+            "A": 0.03 + 0.55j,
+            "B": 0.97 + 0.55j,
+            "U": 0.1 + 0.95j,
+            "V": 0.9 + 0.95j,
+        },
+        ("PQA", "RSB", "PR", "QST", "AU", "BV"),
+        {"U": 120, "V": 60, "T": 270},
+    ),
+    Example(
+        5,
+        3,
+        "",
+        {
+            "P": 0.5 + 0.9j,
+            "Q": 0.2 + 0.65j,
+            "R": 0.32 + 0.3j,
+            "S": 0.68 + 0.3j,
+            "T": 0.8 + 0.65j,
+            "A": 0.12 + 0.95j,
+            "B": 0.5 + 0.08j,
+            "C": 0.98 + 0.4j,
+            "D": 0.98 + 0.05j,
+        },
+        ("PQA", "QR", "RSB", "STC", "TP", "CD"),
+        {"A": 110, "B": 270, "D": 300},
+    ),
+    Example(
+        6,
+        3,
+        "",
+        {
+            "P": 0.35 + 0.9j,
+            "Q": 0.15 + 0.55j,
+            "R": 0.35 + 0.2j,
+            "S": 0.65 + 0.2j,
+            "T": 0.85 + 0.55j,
+            "U": 0.65 + 0.9j,
+            "A": 0.05 + 0.9j,
+            "B": 0.5 + 0.02j,
+            "C": 0.95 + 0.9j,
+        },
+        ("PQA", "QR", "RSB", "ST", "TUC", "UP"),
+        {"A": 120, "B": 270, "C": 60},
+    ),
+)
 
 
 def sheets() -> Iterator[tuple[str, Drawing]]:
@@ -103,8 +175,18 @@ def _draw(sheet: Sheet, example: Example, corner: complex, side: float) -> None:
             if name in example.stones:
                 along = _unit(example.stones[name])
                 length, height = (part / 2 * way for part, way in zip(STONE, (along, 1j * along), strict=True))
-                sheet.area([place + length + height, place - length + height, place - length - height,
-                            place + length - height], "white", DARK, 1.0, 5)  # fmt: skip
+                sheet.area(
+                    [
+                        place + length + height,
+                        place - length + height,
+                        place - length - height,
+                        place + length - height,
+                    ],
+                    "white",
+                    DARK,
+                    1.0,
+                    5,
+                )
                 sheet.line([place - 2 * length, place + 2 * length], DARK, 0.6, "-.")
             else:
                 sheet.circle(place, RADIUS, "white", DARK, 1.0)

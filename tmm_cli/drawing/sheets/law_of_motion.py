@@ -96,10 +96,12 @@ def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Q
         Quantities(_("moments"), MOMENT, driving),
         Quantities(_("works, J"), NUMBER, _courses((_("loads"), driver, _("sum")), works, way, here), "A"),
         Quantities(
-            _("kinetic energy, J"), NUMBER,
-            _courses((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1], "T",
+            _("kinetic energy, J"),
+            NUMBER,
+            _courses((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1],
+            "T",
         ),
-    ]  # fmt: skip
+    ]
 
 
 def _moving(results: Results, running: Running, way: Real, here: Real) -> list[Quantities]:
@@ -107,8 +109,12 @@ def _moving(results: Results, running: Running, way: Real, here: Real) -> list[Q
     steady = running.steady
     law = steady.law
     parts = _summed(_links(results, running, way), _links(results, running, here), _("sum"))
-    mean = Course(_("mean of the largest and the least"), np.full(np.shape(way), np.mean(steady.speeds)),
-                  np.full(np.shape(here), np.nan), limit=True)  # fmt: skip
+    mean = Course(
+        _("mean of the largest and the least"),
+        np.full(np.shape(way), np.mean(steady.speeds)),
+        np.full(np.shape(here), np.nan),
+        limit=True,
+    )
     return [
         Quantities(_("reduced inertia of the links"), INERTIA, parts),
         Quantities("dJ/dφ", INERTIA, [_course("", steady.machine.slope, way, here)], "J′"),

@@ -101,9 +101,11 @@ def _checked(here: Position) -> Iterable[Words]:
     value = float((balance.generalized if turns else balance.force)[here.k])
     yield filled(
         _("force plan: {name} = {value} {unit}, difference {percent} %"),
-        name=balance_symbol(balance.driver.link, several=False, turns=turns), value=figure(abs(value)),
-        unit=spelt("N·m" if turns else "N"), percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
-    )  # fmt: skip
+        name=balance_symbol(balance.driver.link, several=False, turns=turns),
+        value=figure(abs(value)),
+        unit=spelt("N·m" if turns else "N"),
+        percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
+    )
 
 
 def _several(here: Position) -> Iterable[str]:

@@ -43,10 +43,16 @@ def sorts() -> tuple[Sort, Sort]:
     return (
         Sort("velocity", _("Velocity plan. {caption}"), velocity_plan, "p", "v", "m/s", "omega", "rad/s"),
         Sort(
-            "acceleration", _("Acceleration plan. {caption}"), acceleration_plan, POLE, "a", "m/s²", "epsilon",
+            "acceleration",
+            _("Acceleration plan. {caption}"),
+            acceleration_plan,
+            POLE,
+            "a",
+            "m/s²",
+            "epsilon",
             "rad/s²",
         ),
-    )  # fmt: skip
+    )
 
 
 def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:

@@ -111,9 +111,12 @@ def energy(whole: Results, results: Results) -> list[Quantities]:
         return []
     crank = results.linkage.driver.kind == "turn"
     powers = {
-        _("drivers"): "drivers", _("weights"): "weights", _("loads"): "loads", _("friction"): "friction",
+        _("drivers"): "drivers",
+        _("weights"): "weights",
+        _("loads"): "loads",
+        _("friction"): "friction",
         _("rate of T"): "rate",
-    }  # fmt: skip
+    }
     found = []
     for words, dimension, parts, symbol in (
         (_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, {"": "inertia"}, ""),
@@ -161,7 +164,7 @@ def pressure(results: Results, motion: Motion) -> list[Quantities]:
         text = _("link {link} in pair {pair}")
         courses = [
             Course(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
-        ]  # fmt: skip
+        ]
         words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
         for first in range(0, len(courses), MOST):
             allowed = np.full(np.shape(motion.q), here[0].allowed)

@@ -87,12 +87,14 @@ def _quantities(
         Quantities(_("moments") if crank else _("forces"), MOMENT if crank else FORCE, moments),
         Quantities(_("works and kinetic energy, J"), NUMBER, works, "A"),
         Quantities(
-            _("angular velocity ω") if crank else _("speed v"), ANGULAR_SPEED if crank else SPEED,
+            _("angular velocity ω") if crank else _("speed v"),
+            ANGULAR_SPEED if crank else SPEED,
             [Course("", speed, there)],
         ),
         Quantities(
             _("angular acceleration ε") if crank else _("acceleration a"),
-            ANGULAR_ACCELERATION if crank else ACCELERATION, [Course("", changes, at_points)],
+            ANGULAR_ACCELERATION if crank else ACCELERATION,
+            [Course("", changes, at_points)],
         ),
         Quantities(_("time t, s"), NUMBER, [Course("", times, time)], "t"),
-    ]  # fmt: skip
+    ]

@@ -176,11 +176,15 @@ class Legend:
         self.facts = [
             _("Formula of structure: {formula}").format(formula=structure.formula.replace("->", "→")),
             _("n = {n} moving links, p₁ = {p1} lower pairs ({r} turning, {p} sliding), p₂ = {p2} higher pairs").format(
-                n=n, p1=lower, r=sum(p.kind == "R" for p in structure.pairs),
-                p=sum(p.kind == "P" for p in structure.pairs), p2=higher),
+                n=n,
+                p1=lower,
+                r=sum(p.kind == "R" for p in structure.pairs),
+                p=sum(p.kind == "P" for p in structure.pairs),
+                p2=higher,
+            ),
             _("W = 3n − 2p₁ − p₂ = 3·{n} − 2·{p1} − {p2} = {w}").format(n=n, p1=lower, p2=higher, w=structure.mobility),
             _("Mechanism of class {roman}").format(roman=structure.roman),
-        ]  # fmt: skip
+        ]
         if structure.reduction:
             formula = _("W of the formula of structure: {count}").format(
                 count=typeset(counted_mobility(structure.count))

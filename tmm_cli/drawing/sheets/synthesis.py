@@ -76,12 +76,15 @@ def _plot(lines: Iterable[Line], y: tuple[str, str], wide: Dimension, units: Uni
     colours = cycle((DARK, LOAD, INERTIA, REACTION))
     curves = [
         Curve(
-            np.asarray(line.x, dtype=float) / units.factor(wide), np.asarray(line.y, dtype=float) / units.factor(high),
-            translated(line.text), THIN if line.faint else next(colours), width=1.0 if line.faint else 1.3,
+            np.asarray(line.x, dtype=float) / units.factor(wide),
+            np.asarray(line.y, dtype=float) / units.factor(high),
+            translated(line.text),
+            THIN if line.faint else next(colours),
+            width=1.0 if line.faint else 1.3,
             dots=line.dots,
         )
         for line in sorted(lines, key=lambda line: not line.faint)
-    ]  # fmt: skip
+    ]
     return Plot(with_unit(translated(words), high, units), curves)
 
 

@@ -223,9 +223,11 @@ def _longer(bar: Bar, foot: complex) -> complex:
 
 
 def _join(
-    others: Sequence[Bar], bar: Bar, struts: list[Line],
+    others: Sequence[Bar],
+    bar: Bar,
+    struts: list[Line],
     welds: list[tuple[complex, complex, complex]],
-) -> None:  # fmt: skip
+) -> None:
     """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
     for other in others:
         turn = float(cross(other.along, bar.along))

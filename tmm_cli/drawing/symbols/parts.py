@@ -221,9 +221,7 @@ def support(sheet: Sheet, at: complex, out: complex, look: Look = MEASURED, rods
     return foot + GROUND * half * side
 
 
-def guide(
-    sheet: Sheet, middle: complex, along: complex, look: Look, reach: float, rods: Sequence[Line] = ()
-) -> None:  # fmt: skip
+def guide(sheet: Sheet, middle: complex, along: complex, look: Look, reach: float, rods: Sequence[Line] = ()) -> None:
     """A piece of the frame's guide, so long (mm) on both sides: hatched rails, open where rods go through."""
     for side in (1j * along, -1j * along):
         wall(sheet, middle + side * (look.box[1] / 2 + GAP), along, side, reach, rods)

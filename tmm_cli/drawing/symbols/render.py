@@ -50,18 +50,28 @@ class Rendered:
 
 
 def render(
-    sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
+    sheet: Sheet,
+    scene: Scene,
+    links: Sequence[str],
+    pairs: Sequence[Pair],
+    look: Look,
+    hue: Mapping[str, str],
     leads: Sequence[Pair] = (),
-) -> Rendered:  # fmt: skip
+) -> Rendered:
     """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
     with sheet.on_layer("links"):
         return _render(sheet, scene, links, pairs, look, hue, leads)
 
 
 def _render(
-    sheet: Sheet, scene: Scene, links: Sequence[str], pairs: Sequence[Pair], look: Look, hue: Mapping[str, str],
+    sheet: Sheet,
+    scene: Scene,
+    links: Sequence[str],
+    pairs: Sequence[Pair],
+    look: Look,
+    hue: Mapping[str, str],
     leads: Sequence[Pair],
-) -> Rendered:  # fmt: skip
+) -> Rendered:
     if look.measured and not look.moves:
         scene = spread(sheet, scene, links)
     forms = {link: (by_points if look.measured else by_pairs)(sheet, scene, link) for link in links}

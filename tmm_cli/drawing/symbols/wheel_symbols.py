@@ -25,9 +25,12 @@ OPEN = 1.1  # mm from a rod in which nothing is hatched
 
 
 def draw(
-    sheet: Sheet, found: Outline, hue: Mapping[str, str], span: tuple[float, float] | None = None,
+    sheet: Sheet,
+    found: Outline,
+    hue: Mapping[str, str],
+    span: tuple[float, float] | None = None,
     rods: Sequence[Line] = (),
-) -> None:  # fmt: skip
+) -> None:
     """What belongs to links that have a colour (hue), and a cam of any.
 
     span: how far the rack goes on both sides of the pitch point (m); rods (mm) keep hatching away.

@@ -167,9 +167,23 @@ def _notes(student: StudentMarks) -> str:
 
 
 ANSWERS_HEADER = (
-    "student", "quantity", "position", "written", "value", "direction, deg", "right value", "right direction, deg",
-    "unit", "error, %", "allowed, %", "state", "points", "of", "unit read", "reasons",
-)  # fmt: skip
+    "student",
+    "quantity",
+    "position",
+    "written",
+    "value",
+    "direction, deg",
+    "right value",
+    "right direction, deg",
+    "unit",
+    "error, %",
+    "allowed, %",
+    "state",
+    "points",
+    "of",
+    "unit read",
+    "reasons",
+)
 
 
 def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
@@ -180,10 +194,21 @@ def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
             right, allowed = (mark.right, mark.allowed) if mark.judged else (None, None)
             error = None if mark.value is None else mark.error
             yield [
-                name, answer.asked.quantity.name, answer.asked.number, shown(mark.text),
-                *_value(answer, mark.value, mark.size), *_value(answer, right), answer.unit, _percent(error),
-                _percent(allowed), mark.state, rounded(mark.points), rounded(mark.of), mark.reading, reasons(mark),
-            ]  # fmt: skip
+                name,
+                answer.asked.quantity.name,
+                answer.asked.number,
+                shown(mark.text),
+                *_value(answer, mark.value, mark.size),
+                *_value(answer, right),
+                answer.unit,
+                _percent(error),
+                _percent(allowed),
+                mark.state,
+                rounded(mark.points),
+                rounded(mark.of),
+                mark.reading,
+                reasons(mark),
+            ]
 
 
 def _value(answer: Answer, value: complex | None, size: bool = False) -> tuple[Cell, Cell]:

@@ -25,8 +25,10 @@ def _lines(book: Gradebook) -> Iterator[str]:
         classname = quoteattr(shown(student.student))
         for answer, mark in zip(book.answers, student.marks, strict=True):
             text = escape(output(answer, mark, book.task.rules.reveal))
-            inner = f"<system-out>{text}</system-out>" if fitting(mark) else (
-                f'<failure message="{mark.state}" type="{mark.state}">{text}</failure>'
-            )  # fmt: skip
+            inner = (
+                f"<system-out>{text}</system-out>"
+                if fitting(mark)
+                else (f'<failure message="{mark.state}" type="{mark.state}">{text}</failure>')
+            )
             yield f"<testcase classname={classname} name={quoteattr(answer.name)}>{inner}</testcase>\n"
     yield "</testsuite>\n</testsuites>\n"

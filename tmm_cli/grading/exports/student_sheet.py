@@ -52,10 +52,15 @@ def sheets(book: Gradebook) -> Iterator[Sheet]:
         both = list(zip(book.answers, student.marks, strict=True))
         unsaid = (_unsaid(),) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
         yield Sheet(
-            title, shown(student.student), _total(student), tuple(map(sentence, student.problems)), headers,
-            tuple(Row(mark.state, _cells(answer, mark, reveal)) for answer, mark in both), tuple(_reasons(both)),
+            title,
+            shown(student.student),
+            _total(student),
+            tuple(map(sentence, student.problems)),
+            headers,
+            tuple(Row(mark.state, _cells(answer, mark, reveal)) for answer, mark in both),
+            tuple(_reasons(both)),
             (*unsaid, *general, *_why_more(both)),
-        )  # fmt: skip
+        )
 
 
 def _unsaid() -> str:
@@ -75,8 +80,15 @@ def _points(points: float) -> str:
 def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
     right = (answer.text(mark.right) if mark.judged else "-",) if reveal else ()
     points = f"{_points(mark.points)} / {_points(mark.of)}"
-    return (answer.name, written(answer, mark), *right, _error(answer, mark), _allowed(answer, mark), points,
-            _(STATES[mark.state]))  # fmt: skip
+    return (
+        answer.name,
+        written(answer, mark),
+        *right,
+        _error(answer, mark),
+        _allowed(answer, mark),
+        points,
+        _(STATES[mark.state]),
+    )
 
 
 def written(answer: Answer, mark: Mark) -> str:

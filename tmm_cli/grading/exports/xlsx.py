@@ -55,9 +55,14 @@ def _answers(book: Gradebook) -> Iterator[list[Cell]]:
 
 
 def _sheets(
-    workbook: Any, name: str, header: Sequence[str], rows: Iterable[Sequence[Cell]], formats: dict[str, Any], head: Any,
+    workbook: Any,
+    name: str,
+    header: Sequence[str],
+    rows: Iterable[Sequence[Cell]],
+    formats: dict[str, Any],
+    head: Any,
     widths: Sequence[float],
-) -> None:  # fmt: skip
+) -> None:
     """A table, on further sheets where one cannot hold it."""
     rows = iter(rows)
     for number in count(1):

@@ -19,10 +19,27 @@ from tmm_cli.grading.mistakes.forces import (
 from tmm_cli.grading.mistakes.motion import Coriolis, Mirror, Normal, Tangential
 
 MISTAKES: tuple[type[Mistake], ...] = (
-    Degrees, Rpm, Millimetres, Sense, Mirror, Coriolis, Normal, Tangential, HingeInertia, NoInertia, NoCouple,
-    InertiaReversed, WeightForMass, NoWeight, WrongStroke, GuideThroughHinge, Neighbour, OtherZero, ScaleInverted,
+    Degrees,
+    Rpm,
+    Millimetres,
+    Sense,
+    Mirror,
+    Coriolis,
+    Normal,
+    Tangential,
+    HingeInertia,
+    NoInertia,
+    NoCouple,
+    InertiaReversed,
+    WeightForMass,
+    NoWeight,
+    WrongStroke,
+    GuideThroughHinge,
+    Neighbour,
+    OtherZero,
+    ScaleInverted,
     OppositeReaction,
-)  # fmt: skip
+)
 
 
 def cases(family: Family) -> tuple[Mistake, ...]:

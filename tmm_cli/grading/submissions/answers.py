@@ -188,8 +188,14 @@ def _given(cells: Cells) -> Given | None:
         given, turn = _number(*size), _number(*cells["angle"])
         if turn.unit and parse_unit(turn.unit).dimension != ANGLE:
             raise ProblemError(_("a direction is an angle"), found=quote(turn.unit), allowed="deg, rad")
-        return Given(given.first, turn.first, "polar", given.unit, turn.unit, _("{size} at {angle}").format(
-            size=given.text, angle=turn.text))  # fmt: skip
+        return Given(
+            given.first,
+            turn.first,
+            "polar",
+            given.unit,
+            turn.unit,
+            _("{size} at {angle}").format(size=given.text, angle=turn.text),
+        )
     return read_answer(*size)
 
 

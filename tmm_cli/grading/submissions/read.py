@@ -63,9 +63,10 @@ def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
     first = 0 if _known(header[0], answers) else 1
     if filled and "student" not in columns and not any(_known(text, answers) for text in header):
         raise ProblemError(
-            _("no heading of this table is understood"), found=quote("; ".join(header)),
+            _("no heading of this table is understood"),
+            found=quote("; ".join(header)),
             allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
-        )  # fmt: skip
+        )
     for text in header[first:]:
         if _is_unit(text) and not _known(text, answers):
             raise ProblemError(
@@ -212,8 +213,9 @@ class _Reader:
                 yield self.file(folder / names[0], student)
             else:
                 told = ", ".join(clean(name, 60) for name in names[:4])
-                yield _unread(student, _("there are {count} files of this student: {names}").format(
-                    count=len(names), names=told))  # fmt: skip
+                yield _unread(
+                    student, _("there are {count} files of this student: {names}").format(count=len(names), names=told)
+                )
 
     def file(self, path: Path, student: str) -> Submission:
         """Of one student's file."""

@@ -116,9 +116,17 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel,
         motion = refined(motion, widened(linkage), exactly(q[where]), law, where)
     inputs = Inputs(linkage)
     mechanism = Mechanism(inputs, structure).known(
-        kernels=kernels, driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False), asked=q, dead=(),
-        output=None, outputs=(), strokes=None, further=(), travels=(), pressure=(),
-    )  # fmt: skip
+        kernels=kernels,
+        driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False),
+        asked=q,
+        dead=(),
+        output=None,
+        outputs=(),
+        strokes=None,
+        further=(),
+        travels=(),
+        pressure=(),
+    )
     return with_forces(Results(inputs, structure, mechanism, tuple(range(len(q))), motion), cycle=False)
 
 
@@ -230,10 +238,13 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         strokes = _begun(strokes, linkage, kernels, q)
     found = replace(
-        results, inputs=replace(results.inputs, linkage=linkage), structure=results.structure.rebind(linkage),
-        mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes), motion=moved,
+        results,
+        inputs=replace(results.inputs, linkage=linkage),
+        structure=results.structure.rebind(linkage),
+        mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes),
+        motion=moved,
         numbers=numbers,
-    )  # fmt: skip
+    )
     if results.reactions is None:
         return found
     found = with_forces(found, cycle=False)
@@ -323,9 +334,14 @@ def sizes(results: Results) -> Mapping[Dimension, float]:
     a = _most(accel.a for accel in motion.second.values()) + e * size
     rate, gain = _most([motion.rate]), _most([motion.acceleration])
     found = {
-        LENGTH: max(size, v), ANGLE: np.pi, SPEED: v * rate, ANGULAR_SPEED: w * rate,
-        ACCELERATION: a * rate**2 + v * gain, ANGULAR_ACCELERATION: e * rate**2 + w * gain, NUMBER: max(v, w, a, e),
-    }  # fmt: skip
+        LENGTH: max(size, v),
+        ANGLE: np.pi,
+        SPEED: v * rate,
+        ANGULAR_SPEED: w * rate,
+        ACCELERATION: a * rate**2 + v * gain,
+        ANGULAR_ACCELERATION: e * rate**2 + w * gain,
+        NUMBER: max(v, w, a, e),
+    }
     if results.reactions is not None:
         applied = results.reactions.applied
         links = results.linkage.links.values()

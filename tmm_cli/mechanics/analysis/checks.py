@@ -52,9 +52,12 @@ def checks(results: Results) -> tuple[Check, ...]:
         return ()
     closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
     found = (
-        *_slots(results), *_pressure(results), *_loads(results, closely), *_near_dead(results, closely),
+        *_slots(results),
+        *_pressure(results),
+        *_loads(results, closely),
+        *_near_dead(results, closely),
         *_lever(results),
-    )  # fmt: skip
+    )
     if not results.driver_range.full:
         return found
     cycle = results.driver_range.end - results.driver_range.start
@@ -81,10 +84,14 @@ def _loads(results: Results, motion: Motion) -> Iterable[Check]:
     if strokes is None or not strokes.strokes:
         return
     always = {
-        x.name: x.table.stroke_link if x.table else "" for x in loads
-        if not x.working_stroke_only and x.window is None and not x.resists and x.base == FRAME
+        x.name: x.table.stroke_link if x.table else ""
+        for x in loads
+        if not x.working_stroke_only
+        and x.window is None
+        and not x.resists
+        and x.base == FRAME
         and (x.table is None or x.table.against == "stroke")
-    }  # fmt: skip
+    }
     between = (motion.q[1:] + motion.q[:-1]) / 2
     for load in given_loads(motion, strokes):
         if load.name not in always:

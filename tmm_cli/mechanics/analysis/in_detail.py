@@ -81,10 +81,13 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
     except AmbiguousSketchError as error:
         return _undecided(inputs, error.group, positions or (), problem)
     numbers = positions or inputs.request.detail[:1] or (0,)
-    return replace(results, assemblies=tuple(
-        find_assemblies(results.linkage, results.structure, results.kernels, float(results.asked[n]), n)
-        for n in numbers
-    ))  # fmt: skip
+    return replace(
+        results,
+        assemblies=tuple(
+            find_assemblies(results.linkage, results.structure, results.kernels, float(results.asked[n]), n)
+            for n in numbers
+        ),
+    )
 
 
 def _undecided(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
@@ -97,7 +100,10 @@ def _undecided(inputs: Inputs, group: Group, positions: Sequence[int], problem: 
         if given and number >= len(given):
             raise UnknownPositionError(number, len(given))
     places: list[tuple[float, int | None]] = [(given[n], n) for n in positions] if given else []
-    return replace(results, assemblies=tuple(
-        find_assemblies(inputs.linkage, results.structure, kernels, q, number)
-        for q, number in places or [(inputs.linkage.sketch.at, None)]
-    ))  # fmt: skip
+    return replace(
+        results,
+        assemblies=tuple(
+            find_assemblies(inputs.linkage, results.structure, kernels, q, number)
+            for q, number in places or [(inputs.linkage.sketch.at, None)]
+        ),
+    )

@@ -211,9 +211,14 @@ def rides_there_and_back(
 
 
 def parts_of(
-    linkage: Linkage, kernels: Sequence[Kernel], link: str, rides: Sequence[Ride], law: LawOfMotion, setting: int,
+    linkage: Linkage,
+    kernels: Sequence[Kernel],
+    link: str,
+    rides: Sequence[Ride],
+    law: LawOfMotion,
+    setting: int,
     before: Sequence[Part],
-) -> list[Part]:  # fmt: skip
+) -> list[Part]:
     """The wheel in the rides with one of the settings, after the parts before them.
 
     A driver that goes back is as fast at each place as it was on its way there.

@@ -227,9 +227,11 @@ def _sketch(linkage: Linkage, driver: Driver) -> Sketch:
         return linkage.sketch
     motion = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     points = {
-        point: complex(motion.spot(point)[0]) for n in linkage.moving for point in linkage.links[n].points
+        point: complex(motion.spot(point)[0])
+        for n in linkage.moving
+        for point in linkage.links[n].points
         if point not in linkage.links[FRAME].points
-    }  # fmt: skip
+    }
     angles = {name: float(np.angle(motion.poses[name].z)[0]) for name in linkage.moving}
     if driver.kind == "slide":
         return Sketch(float(motion.run(linkage.slide(driver.joint))[0]), points, angles)

@@ -155,29 +155,70 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         found[quantity.name] = quantity
 
     for point, place in {**named_points(linkage), **mass_centres(linkage)}.items():
-        put(Quantity(f"x of {point}", "places", LENGTH, partial(_coordinate, point, place, "real"), against="range",
-                     thing=point))  # fmt: skip
-        put(Quantity(f"y of {point}", "places", LENGTH, partial(_coordinate, point, place, "imag"), against="range",
-                     thing=point))  # fmt: skip
+        put(
+            Quantity(
+                f"x of {point}",
+                "places",
+                LENGTH,
+                partial(_coordinate, point, place, "real"),
+                against="range",
+                thing=point,
+            )
+        )
+        put(
+            Quantity(
+                f"y of {point}",
+                "places",
+                LENGTH,
+                partial(_coordinate, point, place, "imag"),
+                against="range",
+                thing=point,
+            )
+        )
         put(Quantity(f"v of {point}", "velocities", SPEED, partial(_point, point, place, "v"), True, thing=point))
-        put(Quantity(f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True,
-                     thing=point))  # fmt: skip
+        put(
+            Quantity(
+                f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True, thing=point
+            )
+        )
     for link in linkage.moving:
         put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="angle", thing=link))
         put(Quantity(f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_link, link, "omega"), thing=link))
-        put(Quantity(f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"),
-                     thing=link))  # fmt: skip
+        put(
+            Quantity(
+                f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"), thing=link
+            )
+        )
         if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link):
             slides = linkage.slides_on_frame(link)
-            put(Quantity(f"s of {link}", "places", place_dimension("slide" if slides else "turn"),
-                         partial(_run, link), against="range" if slides else "angle", thing=link))  # fmt: skip
+            put(
+                Quantity(
+                    f"s of {link}",
+                    "places",
+                    place_dimension("slide" if slides else "turn"),
+                    partial(_run, link),
+                    against="range" if slides else "angle",
+                    thing=link,
+                )
+            )
     for slide in linkage.slides:
         name = f"{slide.runner} on {slide.carrier}"
         put(Quantity(f"v of {name}", "velocities", SPEED, partial(_slide, slide.name, "v"), thing=slide.runner))
-        put(Quantity(f"a of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "a"),
-                     thing=slide.runner))  # fmt: skip
-        put(Quantity(f"Coriolis of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "coriolis"),
-                     True, thing=slide.runner))  # fmt: skip
+        put(
+            Quantity(
+                f"a of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "a"), thing=slide.runner
+            )
+        )
+        put(
+            Quantity(
+                f"Coriolis of {name}",
+                "accelerations",
+                ACCELERATION,
+                partial(_slide, slide.name, "coriolis"),
+                True,
+                thing=slide.runner,
+            )
+        )
     return found
 
 

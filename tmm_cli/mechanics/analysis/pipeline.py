@@ -284,9 +284,12 @@ class Results:
 
 
 def solve(
-    inputs: Inputs, stage: Stage = "forces", positions: Sequence[int] | None = None, of: Sequence[str] = (),
+    inputs: Inputs,
+    stage: Stage = "forces",
+    positions: Sequence[int] | None = None,
+    of: Sequence[str] = (),
     problem: Any = None,
-) -> Results:  # fmt: skip
+) -> Results:
     """Run the stages up to the one asked for, at all positions of the inputs or at those numbered.
 
     of: points, links, centres of mass; then kinematics solves the groups on the way to them only. problem: see Results.
@@ -354,9 +357,14 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
             lost = cycle_losses(results)
     drivers = power(motion, reactions)
     return replace(
-        results, loads=loads, reactions=reactions, lever=lever(motion, loads, drivers), friction=rubbed, losses=lost,
+        results,
+        loads=loads,
+        reactions=reactions,
+        lever=lever(motion, loads, drivers),
+        friction=rubbed,
+        losses=lost,
         energy=energy(motion, loads, drivers),
-    )  # fmt: skip
+    )
 
 
 def cycle_losses(results: Results, places: int = CYCLE, *, ranges: bool = True) -> Losses:

@@ -180,9 +180,13 @@ def assemble(
 
 
 def _assembled(
-    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    group: Group,
+    linkage: Linkage,
+    poses: dict[str, Pose],
+    drives: Drives,
+    before: tuple[Kernel, ...],
     like: Kernel | None,
-) -> tuple[Kernel, Placement]:  # fmt: skip
+) -> tuple[Kernel, Placement]:
     q = np.array([linkage.sketch.at])
     closed = closed_form(group, linkage)
     if closed is not None:

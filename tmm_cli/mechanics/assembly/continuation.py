@@ -113,10 +113,12 @@ class Walker:
         """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
         near = self.corrector.apart(here.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states go as the root of what is left of the way
-        starts = State(*(
-            there + share * (one - there)
-            for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
-        ))  # fmt: skip
+        starts = State(
+            *(
+                there + share * (one - there)
+                for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
+            )
+        )
         found = self.corrector.nodes(limit.q + np.array(LEFT) * (here.q - limit.q), starts)
         return all(
             one is not None
@@ -260,6 +262,14 @@ def _traced(nodes: list[Node], ends: tuple[End, End] | None = None) -> BranchTra
     dead = np.array([n.q for n in nodes if n.dead])
     flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
     return BranchTrace(
-        np.array([n.q for n in nodes]), states, first, second, ends is None, ended("reached"), ended("limit"),
-        ended("lost", "boundary"), dead=dead, flips=flips,
-    )  # fmt: skip
+        np.array([n.q for n in nodes]),
+        states,
+        first,
+        second,
+        ends is None,
+        ended("reached"),
+        ended("limit"),
+        ended("lost", "boundary"),
+        dead=dead,
+        flips=flips,
+    )

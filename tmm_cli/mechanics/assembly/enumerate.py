@@ -158,8 +158,10 @@ def _assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose]
     known = {point for link in placed for point in linkage.links[link].points}
     points = {
         point: complex(pose.at(local)[0])
-        for link, pose in poses.items() for point, local in linkage.links[link].points.items() if point not in known
-    }  # fmt: skip
+        for link, pose in poses.items()
+        for point, local in linkage.links[link].points.items()
+        if point not in known
+    }
     angles = {link: float(np.angle(pose.z)[0]) for link, pose in poses.items()}
     return Assembly(poses, angles, points, margin)
 

@@ -52,11 +52,12 @@ class Remainder:
                 attached_to = hinge.attached_to if hinge.attached_to in kept else ""
                 hinges.append(replace(hinge, links=kept, attached_to=attached_to))
         remaining = replace(
-            self.linkage, hinges=tuple(hinges),
+            self.linkage,
+            hinges=tuple(hinges),
             links={name: link for name, link in self.linkage.links.items() if name in left or name == FRAME},
             slides=tuple(s for s in self.linkage.slides if {s.carrier, s.runner} <= left and s.name not in names),
             meshes=tuple(m for m in self.linkage.meshes if {m.i, m.j, m.carrier} <= left and m.name not in names),
-        )  # fmt: skip
+        )
         pairs = pairs_within(remaining)
         inner = tuple(pair for pair in pairs if FRAME not in (pair.i, pair.j))
         outer = tuple(pair for pair in pairs if FRAME in (pair.i, pair.j))

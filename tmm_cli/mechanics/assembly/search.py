@@ -51,7 +51,7 @@ def sketch_distance(sketched: Mapping[str, complex | float], shown: Shown, size:
 
 def nearest_to_sketch(
     kernel: Kernel, linkage: Linkage, assemblies: Sequence[Mapping[str, Pose]], shift: complex = 0j
-) -> int:  # fmt: skip
+) -> int:
     """Which of several assemblies the sketch shows. Raises AmbiguousSketchError when it does not tell.
 
     shift: how far the sketch has the links that the group hangs on from where they are (m).
@@ -60,10 +60,13 @@ def nearest_to_sketch(
         return 0
     shown = [sketchable(linkage, poses) for poses in assemblies]
     tells = [
-        name for name in shown[0]
-        if any(abs(one[name] - shown[0][name]) > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
-               for one in shown[1:])
-    ]  # fmt: skip
+        name
+        for name in shown[0]
+        if any(
+            abs(one[name] - shown[0][name]) > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
+            for one in shown[1:]
+        )
+    ]
     sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
     given = {name: sketched[name] for name in tells if name in sketched}
     errors = [sketch_distance(given, one, kernel.size) for one in shown]
@@ -127,9 +130,13 @@ def refuse_large_group(group: Group) -> None:
 
 
 def assembled(
-    group: Group, linkage: Linkage, poses: dict[str, Pose], drives: Drives, before: tuple[Kernel, ...],
+    group: Group,
+    linkage: Linkage,
+    poses: dict[str, Pose],
+    drives: Drives,
+    before: tuple[Kernel, ...],
     like: Kernel | None = None,
-) -> tuple[Newton, Placement]:  # fmt: skip
+) -> tuple[Newton, Placement]:
     """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
 
     Raises AssemblyError, AmbiguousSketchError.
@@ -174,9 +181,7 @@ def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, 
     return State(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
 
 
-def close_from_afar(
-    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, state: State
-) -> tuple[State, Real]:  # fmt: skip
+def close_from_afar(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, state: State) -> tuple[State, Real]:
     """Damped steps, then Newton's method; the states and whether each has closed."""
     known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):

@@ -119,9 +119,13 @@ def run(machine: Reduced, task: RunTask) -> Run:
 
 
 def _until(
-    machine: Reduced, task: RunTask, piece: tuple[float, float], times: tuple[float, float], state: Real,
+    machine: Reduced,
+    task: RunTask,
+    piece: tuple[float, float],
+    times: tuple[float, float],
+    state: Real,
     left: Iterator[int],
-) -> Any:  # fmt: skip
+) -> Any:
     """A piece, to its end, to rest, or as long as that. left: evaluations. Raises LongRunError where none is left."""
 
     last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
@@ -183,10 +187,12 @@ def _short_of(step: Any, way: Real, time: Real) -> Real:
 def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
     """Of the driver (rad/s2, or m/s2) at such times, ways and speeds."""
     states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
-    return np.array([
-        _rates(machine, task, (0.0, machine.length), float(t), y)[1] if np.isfinite(t) else np.nan
-        for t, y in zip(np.ravel(time), states.reshape(-1, 5), strict=True)
-    ]).reshape(np.shape(way))  # fmt: skip
+    return np.array(
+        [
+            _rates(machine, task, (0.0, machine.length), float(t), y)[1] if np.isfinite(t) else np.nan
+            for t, y in zip(np.ravel(time), states.reshape(-1, 5), strict=True)
+        ]
+    ).reshape(np.shape(way))
 
 
 def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:

@@ -57,7 +57,7 @@ def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
         balance = (sum(parts) - change) / size if size > 0 else still
     return Energy(
         inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance
-    )  # fmt: skip
+    )
 
 
 def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:

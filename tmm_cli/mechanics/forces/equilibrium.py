@@ -282,9 +282,14 @@ def _is(acting: Acting, sought: Sought) -> bool:
 
 
 def _equation(
-    here: Loaded, axes: Mapping[str, complex], links: Sequence[str], about: str, centre: complex,
-    sought: Sought | None = None, carried: Mapping[str, complex] | None = None,
-) -> MomentEquation:  # fmt: skip
+    here: Loaded,
+    axes: Mapping[str, complex],
+    links: Sequence[str],
+    about: str,
+    centre: complex,
+    sought: Sought | None = None,
+    carried: Mapping[str, complex] | None = None,
+) -> MomentEquation:
     """Moments of all that acts on these links. carried: to which places guides' reactions go, each with a couple."""
     to = carried or {}
     acting = [one for given in here.acting(links, axes) for one in _moved(given, to.get(given.pair), here.size)]

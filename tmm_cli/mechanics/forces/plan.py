@@ -135,10 +135,16 @@ class Reactions:
     def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
         """The forces of the pins of compound hinges on each of their links; those of one pin come to nothing."""
         return tuple(
-            PinForce(hinge.point, link, tuple(r.pair.name for r in self._at_pin(hinge.point, link)),
-                     self.pin_force(hinge.point, link))
-            for hinge in linkage.hinges if len(hinge.links) > 2 for link in hinge.links
-        )  # fmt: skip
+            PinForce(
+                hinge.point,
+                link,
+                tuple(r.pair.name for r in self._at_pin(hinge.point, link)),
+                self.pin_force(hinge.point, link),
+            )
+            for hinge in linkage.hinges
+            if len(hinge.links) > 2
+            for link in hinge.links
+        )
 
     def pin_force(self, point: str, link: str) -> Vector:
         """The force (N) of the pin of a compound hinge on one of its links."""
@@ -183,9 +189,12 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
             frame, balances[driver.link] = _drive(motion, structure, driver, applied[driver.link])
             frames.append(frame)
     return Reactions(
-        loads, tuple(reversed(groups)), tuple(frames), tuple(balances[d.link] for d in linkage.drivers),
+        loads,
+        tuple(reversed(groups)),
+        tuple(frames),
+        tuple(balances[d.link] for d in linkage.drivers),
         {name: tuple(reactions) for name, reactions in borne.items()},
-    )  # fmt: skip
+    )
 
 
 def _by_place(loads: tuple[Applied, ...]) -> list[list[Applied]]:

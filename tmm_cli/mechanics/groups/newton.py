@@ -161,8 +161,10 @@ class Newton(Kernel):
             for link, lines in of_links.items():
                 if link not in self.order:
                     v, w = motion[link]
-                    total = [t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
-                             for t, (c, m) in zip(total, lines, strict=True)]  # fmt: skip
+                    total = [
+                        t + (c.real * v.real + c.imag * v.imag) + m * w  # type: ignore[attr-defined]
+                        for t, (c, m) in zip(total, lines, strict=True)
+                    ]
             rows += total
         return _stacked(rows) * self._scale
 
@@ -231,7 +233,7 @@ class Newton(Kernel):
         det = signed_determinant(matrix) * margin * side
         return Placement(
             tuple(own[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
-        )  # fmt: skip
+        )
 
     def _all_poses(self, at: Placement, poses: Poses) -> dict[str, Pose]:
         return {**poses, **dict(zip(self.group.links, at.poses, strict=True))}

@@ -184,9 +184,14 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
 
 
 def link_states(
-    linkage: Linkage, kernels: Iterable[Kernel], q: Real, order: int = 2, *, blank: bool = True,
+    linkage: Linkage,
+    kernels: Iterable[Kernel],
+    q: Real,
+    order: int = 2,
+    *,
+    blank: bool = True,
     drives: Drives | None = None,
-) -> LinkStates:  # fmt: skip
+) -> LinkStates:
     """All links at the first driver's places q (rad or m), each found alone.
 
     Of the given groups only, which must include those they hang on (see towards); order: 0 places alone, 1 with

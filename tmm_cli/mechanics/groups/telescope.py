@@ -263,6 +263,7 @@ class Telescope(Closed):
             chain.joint.name: on_arm if chain.joint.j == chain.arm else back,
         }
         return GroupReactions(
-            tuple(outer[pair.name] for pair in self.group.outer), tuple(inner[pair.name] for pair in self.group.inner),
+            tuple(outer[pair.name] for pair in self.group.outer),
+            tuple(inner[pair.name] for pair in self.group.inner),
             {self.driver.link: push},
-        )  # fmt: skip
+        )

@@ -140,9 +140,15 @@ class Unrolled(Newton):
             raise NotUnrolledError
         closure = closure_of(kernel.constraints, kernel.group.links)
         found = cls(
-            kernel.group, kernel.size, kernel.constraints, kernel.start, kernel.trace, kernel.passive, kernel.order,
+            kernel.group,
+            kernel.size,
+            kernel.constraints,
+            kernel.start,
+            kernel.trace,
+            kernel.passive,
+            kernel.order,
             closure,
-        )  # fmt: skip
+        )
         if kernel.trace is None and not found.linear:
             raise NotUnrolledError
         for number, link in closure.angles:

@@ -103,9 +103,12 @@ def _about(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
 
 
 def _crossing(
-    links: Links, names: tuple[str, ...], places: dict[Links, Place],
-    known: set[Links], size: float,
-) -> tuple[Line, ...]:  # fmt: skip
+    links: Links,
+    names: tuple[str, ...],
+    places: dict[Links, Place],
+    known: set[Links],
+    size: float,
+) -> tuple[Line, ...]:
     """Two lines through known centres that cross in this one; one pair of them where it lies in both."""
     i, j = links
     ways: list[tuple[Line, complex]] = []

@@ -128,9 +128,10 @@ class Motion(LinkStates):
     def centre(self, link: str) -> Point:
         """Motion of a centre of mass."""
         return self._once(
-            "centre", link,
+            "centre",
+            link,
             lambda: self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
-        )  # fmt: skip
+        )
 
     def link(self, name: str) -> Turning:
         """Turning of a link."""
@@ -170,9 +171,15 @@ class Motion(LinkStates):
 
 
 def move(
-    linkage: Linkage, kernels: Iterable[Kernel], q: Real, law: LawOfMotion, order: int = 2, *, blank: bool = True,
+    linkage: Linkage,
+    kernels: Iterable[Kernel],
+    q: Real,
+    law: LawOfMotion,
+    order: int = 2,
+    *,
+    blank: bool = True,
     drives: Drives | None = None,
-) -> Motion:  # fmt: skip
+) -> Motion:
     """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
 
     With drives by another parameter than q, the law is that of the parameter.
@@ -318,9 +325,14 @@ def _agree(one: LinkStates, other: LinkStates, size: float) -> Real:
     speed = np.maximum(largest["v"], largest["w"] * size)
     gain = np.maximum(np.maximum(largest["a"], largest["e"] * size), speed**2 / size)
     scales = {
-        "x": np.maximum(largest["x"], size), "z": 1.0, "unwrapped": np.maximum(largest["unwrapped"], 1.0),
-        "v": speed, "w": speed / size, "a": gain, "e": gain / size,
-    }  # fmt: skip
+        "x": np.maximum(largest["x"], size),
+        "z": 1.0,
+        "unwrapped": np.maximum(largest["unwrapped"], 1.0),
+        "v": speed,
+        "w": speed / size,
+        "a": gain,
+        "e": gain / size,
+    }
     with np.errstate(invalid="ignore"):
         agree: Real = np.all(
             [np.broadcast_to(gaps[k] <= LIMIT_AGREES * scales[k], np.shape(speed)) for k in SIZES], axis=0

@@ -362,8 +362,11 @@ def resisted(linkage: Linkage, link: str | None) -> Any:
             along = np.exp(1j * slide.direction)
             if slide.runner == FRAME:
                 along = -along
-            push = sum((x.force.real * along.real + x.force.imag * along.imag) * _mean(x) for x in linkage.loads
-                       if x.link == link and x.working_stroke_only)  # fmt: skip
+            push = sum(
+                (x.force.real * along.real + x.force.imag * along.imag) * _mean(x)
+                for x in linkage.loads
+                if x.link == link and x.working_stroke_only
+            )
             return -np.sign(push)
     moment = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
     return -np.sign(moment)

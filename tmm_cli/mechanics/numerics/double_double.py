@@ -76,30 +76,47 @@ def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
 
 
 UFUNCS |= {
-    "add": add, "subtract": subtract, "multiply": multiply, "divide": divide, "negative": negative,
-    "positive": lambda x: x, "absolute": absolute, "sqrt": sqrt, "power": power,
-    "floor": floor, "ceil": lambda x: negative(floor(negative(x))), "remainder": remainder,
+    "add": add,
+    "subtract": subtract,
+    "multiply": multiply,
+    "divide": divide,
+    "negative": negative,
+    "positive": lambda x: x,
+    "absolute": absolute,
+    "sqrt": sqrt,
+    "power": power,
+    "floor": floor,
+    "ceil": lambda x: negative(floor(negative(x))),
+    "remainder": remainder,
     "conjugate": DoubleDouble.conjugate,
-    "cos": lambda x: turn(x).real, "sin": lambda x: turn(x).imag, "arctan2": arctan2,
-    "tan": lambda x: divide(turn(x).imag, turn(x).real), "arctan": lambda x: arctan2(x, 1.0),
+    "cos": lambda x: turn(x).real,
+    "sin": lambda x: turn(x).imag,
+    "arctan2": arctan2,
+    "tan": lambda x: divide(turn(x).imag, turn(x).real),
+    "arctan": lambda x: arctan2(x, 1.0),
     "arcsin": lambda x: arctan2(x, sqrt(multiply(subtract(1.0, x), add(1.0, x)))),
     "arccos": lambda x: arctan2(sqrt(multiply(subtract(1.0, x), add(1.0, x))), x),
     "hypot": lambda x, y: sqrt(add(multiply(x, x), multiply(y, y))),
     "maximum": lambda x, y: _where(np.greater_equal(x, y) | np.isnan(x), x, y),
     "minimum": lambda x, y: _where(np.less_equal(x, y) | np.isnan(x), x, y),
-}  # fmt: skip
+}
 COMPARING: tuple[Any, ...] = (np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal)
 TELLING: tuple[Any, ...] = (np.sign, np.isfinite, np.isnan)
 UFUNCS |= {ufunc.__name__: _compared(ufunc) for ufunc in COMPARING}
 UFUNCS |= {ufunc.__name__: _of_higher(ufunc) for ufunc in TELLING}
 
 FUNCTIONS |= {
-    np.where: _where, np.sum: _sum, np.cumsum: _cumsum, np.interp: _interp,
-    np.real: lambda x: x.real, np.imag: lambda x: x.imag,
-    np.angle: angle, np.iscomplexobj: lambda x: x.dtype.kind == "c",
+    np.where: _where,
+    np.sum: _sum,
+    np.cumsum: _cumsum,
+    np.interp: _interp,
+    np.real: lambda x: x.real,
+    np.imag: lambda x: x.imag,
+    np.angle: angle,
+    np.iscomplexobj: lambda x: x.dtype.kind == "c",
     np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
     np.searchsorted: lambda a, v, **how: np.searchsorted(parts(a)[0], parts(v)[0], **how),
-}  # fmt: skip
+}
 
 
 # Numbers of some 31 digits, the sum of two doubles, as arrays that NumPy's functions take.

@@ -20,9 +20,21 @@ UFUNCS: dict[str, Callable[..., Any]] = {}  # NumPy's, by their names
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}  # others of NumPy that compute
 ROUNDED = {np.shape, np.max, np.min, np.nanmax, np.nanmin, np.any, np.all, np.round, np.argmax}  # by the higher part
 ARRANGING = {
-    np.stack, np.concatenate, np.broadcast_to, np.broadcast_arrays, np.reshape, np.ravel, np.moveaxis, np.swapaxes,
-    np.take_along_axis, np.atleast_1d, np.zeros_like, np.copy, np.nan_to_num, np.repeat,
-}  # fmt: skip
+    np.stack,
+    np.concatenate,
+    np.broadcast_to,
+    np.broadcast_arrays,
+    np.reshape,
+    np.ravel,
+    np.moveaxis,
+    np.swapaxes,
+    np.take_along_axis,
+    np.atleast_1d,
+    np.zeros_like,
+    np.copy,
+    np.nan_to_num,
+    np.repeat,
+}
 
 
 class DoubleDouble(NDArrayOperatorsMixin):

@@ -161,9 +161,11 @@ def _inner(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], li
     """Rows of the equations for slopes between the ends: factors of the slope before, of the own and of the next."""
     both = list(zip(pairwise(steps), pairwise(rises), strict=True))
     return (
-        [1 / a for (a, __), __ in both], [2 / a + 2 / b for (a, b), __ in both], [1 / b for (__, b), __ in both],
+        [1 / a for (a, __), __ in both],
+        [2 / a + 2 / b for (a, b), __ in both],
+        [1 / b for (__, b), __ in both],
         [3 * (c / a + d / b) for (a, b), (c, d) in both],
-    )  # fmt: skip
+    )
 
 
 def _solved(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:

@@ -80,8 +80,9 @@ def margin_of(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: 
     columns = [1.0 if k % 3 == 2 else size for k in range(len(rows))]
     entries = [
         row[k] * (down * across) if k in row else 0.0
-        for row, down in zip(rows, scale, strict=True) for k, across in enumerate(columns)
-    ]  # fmt: skip
+        for row, down in zip(rows, scale, strict=True)
+        for k, across in enumerate(columns)
+    ]
     stand = next((entry for entry in entries if hasattr(entry, "called")), None)
     return _margin(*entries) if stand is None else stand.called(_margin, *entries)
 

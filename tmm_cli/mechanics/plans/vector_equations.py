@@ -165,9 +165,15 @@ class _Way:
         told = [spot.name for own in spots.values() for spot in own]
         after = [about for link in base for about in self._others(link, base[link], told)]
         return Step(
-            group.links, group.drivers, group, ratios, tuple(equations), tuple(after), self._same(group, before),
+            group.links,
+            group.drivers,
+            group,
+            ratios,
+            tuple(equations),
+            tuple(after),
+            self._same(group, before),
             unknown <= ON_PAPER,
-        )  # fmt: skip
+        )
 
     def _spot(self, point: str) -> Spot:
         return Spot(point, point, FRAME if FRAME in self.linkage.carriers(point) else self.linkage.owner(point))

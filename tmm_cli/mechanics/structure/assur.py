@@ -95,8 +95,10 @@ class Structure:
         parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
         title_of = {
             link: titles[driver.link]
-            for driver in self.drivers if driver.base == FRAME for link in self.rigid_with(driver.link)
-        }  # fmt: skip
+            for driver in self.drivers
+            if driver.base == FRAME
+            for link in self.rigid_with(driver.link)
+        }
         title_of |= {link: group.title for group in self.groups for link in group.links}
         for group in self.groups:
             driving = [titles[driver.link] for driver in group.drivers]
@@ -161,10 +163,13 @@ class Structure:
         names = {pair.name for group in groups for pair in (*group.inner, *group.outer)}
         pairs = [pair for pair in self.pairs if pair.name in names]
         return Group(
-            tuple(link for link in self.links if link in links), tuple(p for p in pairs if {p.i, p.j} <= links),
-            tuple(p for p in pairs if not {p.i, p.j} <= links), max(g.group_class for g in groups), "",
+            tuple(link for link in self.links if link in links),
+            tuple(p for p in pairs if {p.i, p.j} <= links),
+            tuple(p for p in pairs if not {p.i, p.j} <= links),
+            max(g.group_class for g in groups),
+            "",
             tuple(driver for group in groups for driver in group.drivers),
-        )  # fmt: skip
+        )
 
     def pair(self, name: str) -> Pair:
         return next(p for p in self.pairs if p.name == name)
@@ -217,12 +222,17 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     order = {name: k for k, name in enumerate(linkage.links)}
     over_held = undriven.redundant_pairs or driven.redundant_pairs
     structure = Structure(
-        linkage.moving, pairs, linkage.drivers, groups, mobility, undriven.free,
+        linkage.moving,
+        pairs,
+        linkage.drivers,
+        groups,
+        mobility,
+        undriven.free,
         # with the driver in, a link is loose when it moves on its own; without it, every link may move with the crank
         tuple(sorted(driven.under_constrained, key=order.__getitem__)),
         tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in over_held),
         all_groups=groups,
-    )  # fmt: skip
+    )
     if sound and not less:
         rigid = Reduction(tuple(RigidSet(links) for links in rigid_sets(bodies, ties, pins)))
         return (reduced(linkage, structure, rigid) or structure) if rigid else structure
@@ -362,10 +372,7 @@ def _group(
     outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
     own = {p.name: p.i if rank[p.i] == here else p.j for p in outer}
     outer.sort(key=lambda p: links.index(own[p.name]))
-    drivers = tuple(
-        d for d in linkage.drivers
-        if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here
-    )  # fmt: skip
+    drivers = tuple(d for d in linkage.drivers if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here)
     halved = tuple(pair.name for pair in (*inner, *outer) if pair.name in as_higher)
     if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers and not halved:
         # The standard names write the turning end first: RRP, RPP.

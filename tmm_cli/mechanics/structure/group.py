@@ -16,9 +16,12 @@ from tmm_cli.mechanics.structure.graph import Tie
 
 
 def group_class(
-    bodies: Iterable[tuple[str, ...]], inner: Iterable[Pair], outer: Iterable[Pair], drivers: Iterable[Driver],
+    bodies: Iterable[tuple[str, ...]],
+    inner: Iterable[Pair],
+    outer: Iterable[Pair],
+    drivers: Iterable[Driver],
     as_higher: Collection[str] = (),
-) -> int:  # fmt: skip
+) -> int:
     """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link.
 
     Links of one body are rigid to one another; as_higher: names of lower pairs that count as higher ones.

@@ -126,10 +126,13 @@ def four_link_scheme(kinds: str) -> str | None:
     """
     schemes = {
         "RRRR": "hinged four-bar",
-        "RRRP": "crank-slider", "RRPR": "slotted-lever",
-        "RRPP": "sine", "RPRP": "tangent",
-        "RPPR": "double slotted-link", "PRRP": "double-slider",
-    }  # fmt: skip
+        "RRRP": "crank-slider",
+        "RRPR": "slotted-lever",
+        "RRPP": "sine",
+        "RPRP": "tangent",
+        "RPPR": "double slotted-link",
+        "PRRP": "double-slider",
+    }
     return schemes.get(kinds) or schemes.get(kinds[::-1])
 
 

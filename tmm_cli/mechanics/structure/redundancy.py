@@ -36,9 +36,12 @@ from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair
 
 TOUCHING = ("cylinder on plane", "sphere on plane")
 CHOICES = {
-    "R": ("turning", "cylindrical", "spherical"), "P": ("sliding", "cylindrical", "planar"),
-    "G": TOUCHING, "K": TOUCHING, "C": TOUCHING,
-}  # fmt: skip
+    "R": ("turning", "cylindrical", "spherical"),
+    "P": ("sliding", "cylindrical", "planar"),
+    "G": TOUCHING,
+    "K": TOUCHING,
+    "C": TOUCHING,
+}
 """Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 0."""
 CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
 GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
@@ -105,8 +108,11 @@ def space(linkage: Linkage, structure: Structure) -> Space:
         if kinds is not None:
             rank = rank_of(linkage, structure, kinds)
             if not rank.redundant and rank.free == rank.local:
-                replaced = tuple(Replacement(p, CHOICES[p.kind][0], kinds[p.name]) for p in structure.pairs
-                                 if kinds.get(p.name, CHOICES[p.kind][0]) != CHOICES[p.kind][0])  # fmt: skip
+                replaced = tuple(
+                    Replacement(p, CHOICES[p.kind][0], kinds[p.name])
+                    for p in structure.pairs
+                    if kinds.get(p.name, CHOICES[p.kind][0]) != CHOICES[p.kind][0]
+                )
                 return Space(chain, wanted, replaced, spatial_chain(structure, kinds), rank)
     return Space(chain, wanted, None, chain, rank_of(linkage, structure, {}))
 

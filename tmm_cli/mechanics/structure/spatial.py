@@ -211,9 +211,10 @@ def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
     spare.
     """
     return tuple(
-        LocalFreedom((link,), 1, ends) for link in chain.links
+        LocalFreedom((link,), 1, ends)
+        for link in chain.links
         if len(ends := chain.around(link)) == 2 and {p.kind for p in ends} == {"cylindrical", "spherical"}
-    )  # fmt: skip
+    )
 
 
 def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:

@@ -52,13 +52,23 @@ def _explained(found: Balancing) -> Iterable[Block]:
     """What is summed up."""
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
     yield said(
-        _("At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
-          "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its centre of "
-          "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
-          "{epsilon} the angular acceleration."),
-        F=FORCE, M=MOMENT, pivot=pivot, m=Symbol("m"), a=Symbol("a", "S"), x=Symbol("x", "S"), y=Symbol("y", "S"),
-        J=Symbol("J", "S"), epsilon=Symbol("ε"),
-    )  # fmt: skip
+        _(
+            "At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
+            "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its "
+            "centre of "
+            "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
+            "{epsilon} the angular acceleration."
+        ),
+        F=FORCE,
+        M=MOMENT,
+        pivot=pivot,
+        m=Symbol("m"),
+        a=Symbol("a", "S"),
+        x=Symbol("x", "S"),
+        y=Symbol("y", "S"),
+        J=Symbol("J", "S"),
+        epsilon=Symbol("ε"),
+    )
 
 
 def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:

@@ -31,18 +31,23 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
     replaced = _Replaced(subject.results.linkage, found, task)
     if replaced.solved():
         yield said(
-            _("A counterweight has the product {D} = m·r of its mass and its radius. Links that carry none are "
-              "replaced by masses in their hinges, so that the common centre of mass does not change; a counterweight "
-              "then balances the masses of its link about its pivot, on the side that is away from them."),
+            _(
+                "A counterweight has the product {D} = m·r of its mass and its radius. Links that carry none are "
+                "replaced by masses in their hinges, so that the common centre of mass does not change; a "
+                "counterweight "
+                "then balances the masses of its link about its pivot, on the side that is away from them."
+            ),
             D=MOMENT,
-        )  # fmt: skip
+        )
         yield from replaced.told
     else:
         yield said(
-            _("The product {D} = m·r of the mass of a counterweight and its radius, and its angle, are such that the "
-              "mean square of the force over the cycle is least; it depends on them linearly."),
+            _(
+                "The product {D} = m·r of the mass of a counterweight and its radius, and its angle, are such that the "
+                "mean square of the force over the cycle is least; it depends on them linearly."
+            ),
             D=MOMENT,
-        )  # fmt: skip
+        )
     for weight in found.counterweights:
         link, own = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
         size, angle = subject.text(weight.size), subject.text(float(np.degrees(weight.angle)))
@@ -55,8 +60,11 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
     if found.left < ON_LINE:
         yield said(_("They leave no shaking force: the common centre of mass of the links does not move."))
         return
-    yield said(_("The largest shaking force is {F} without them and {Fb} with them; the share that is left:"),
-               F=Symbol("F", "max"), Fb=Symbol("F", "max").primed)  # fmt: skip
+    yield said(
+        _("The largest shaking force is {F} without them and {Fb} with them; the share that is left:"),
+        F=Symbol("F", "max"),
+        Fb=Symbol("F", "max").primed,
+    )
     share = Leaf(Symbol("F", "max").primed, after) / Leaf(Symbol("F", "max"), before)
     yield Found(Symbol("λ"), share, found.left)
 
@@ -160,8 +168,9 @@ class _Replaced:
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
-        self.told.append(said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"),
-                              m=every[-1].symbol, pivot=pivot))  # fmt: skip
+        self.told.append(
+            said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"), m=every[-1].symbol, pivot=pivot)
+        )
         own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
         self.told.append(Found(total.symbol, added((*every[:-1], own)), total.value, _("kg")))
         self.lumps.setdefault(pivot, []).append(total)
@@ -170,8 +179,13 @@ class _Replaced:
         """Of masses that go to and fro at the end of a coupler the share that a counterweight on the crank takes."""
         points = self.linkage.links[name].points
         for point in list(self.lumps):
-            sliding = any(self.linkage.slides_on_frame(link) for h in self.linkage.hinges if h.point == point
-                          for link in h.links if link != FRAME)  # fmt: skip
+            sliding = any(
+                self.linkage.slides_on_frame(link)
+                for h in self.linkage.hinges
+                if h.point == point
+                for link in h.links
+                if link != FRAME
+            )
             pins = [p for p in self._hinges(name) if p in points and p != pivot]
             if sliding and len(pins) == 1:
                 arm = complex(points[pins[0]]) - complex(points[pivot])
@@ -179,5 +193,10 @@ class _Replaced:
                 share = Leaf(SHARE, self.task.share)
                 for one in self.lumps.pop(point):
                     yield signed(dot(along, arm), share * one * length)
-                self.told.append(said(_("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
-                                      point=point, k=SHARE))  # fmt: skip
+                self.told.append(
+                    said(
+                        _("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
+                        point=point,
+                        k=SHARE,
+                    )
+                )

@@ -21,9 +21,11 @@ def blocks(subject: Subject, rotor: Rotor, corrections: Vector) -> Iterable[Bloc
     """In the second plane what leaves no couple about the first one, then in the first what leaves no force."""
     two = len(rotor.planes) > 1
     static = _("A shaft is balanced statically when the vectors {D} = m·r of all its masses add up to nothing.")
-    dynamic = _("A shaft is balanced dynamically when the vectors {D} = m·r of all its masses add up to nothing, and "
-                "their moments about one of the planes too; {alpha} is the angle of a mass, {z} its place along the "
-                "shaft.")  # fmt: skip
+    dynamic = _(
+        "A shaft is balanced dynamically when the vectors {D} = m·r of all its masses add up to nothing, and "
+        "their moments about one of the planes too; {alpha} is the angle of a mass, {z} its place along the "
+        "shaft."
+    )
     yield said(dynamic if two else static, D=Symbol("D"), alpha=Symbol("α"), z=Symbol("z"))
     if two:
         yield from _mass(subject, rotor, corrections, 1)

@@ -35,9 +35,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield from reduced.inertia(one)
         yield from reduced.moment(one)
     yield from subject.figures(
-        "law", _("Reduced moments, works and energies are shown in figure {figure}."),
-        _("Reduced moments, works and energies over the cycle"), only="law-moments",
-    )  # fmt: skip
+        "law",
+        _("Reduced moments, works and energies are shown in figure {figure}."),
+        _("Reduced moments, works and energies over the cycle"),
+        only="law-moments",
+    )
     yield Heading(_("Driving moment"), 2)
     yield from driving.mean(here)
     for one in every:
@@ -58,9 +60,11 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield from _position(one, explained=one is here)
     yield from _time(here)
     yield from subject.figures(
-        "law", _("The law of motion is shown in figure {figure}."), _("Law of motion of the driving link"),
+        "law",
+        _("The law of motion is shown in figure {figure}."),
+        _("Law of motion of the driving link"),
         only="law-motion",
-    )  # fmt: skip
+    )
     if here.running.sense < 0:
         yield paragraph(signs(subject.results.linkage))
     yield from tables(subject)
@@ -88,9 +92,11 @@ def _position(here: Here, *, explained: bool) -> Iterable[Block]:
     """Speed and acceleration there."""
     text = _("Position {number}:")
     if explained:
-        text = _("The speed of the driving link follows from the kinetic energy, and its acceleration from the "
-                 "equation of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle "
-                 "of the driving link. Position {number}:")  # fmt: skip
+        text = _(
+            "The speed of the driving link follows from the kinetic energy, and its acceleration from the "
+            "equation of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle "
+            "of the driving link. Position {number}:"
+        )
     yield said(text, slope=SLOPE, number=here.number)
     steady, link = here.steady, here.motion.linkage.driver.link
     law, speed = steady.law, here.speed

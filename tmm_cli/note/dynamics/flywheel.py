@@ -28,10 +28,13 @@ def speeds(here: Here) -> Iterable[Block]:
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
     yield said(
-        _("The largest and the least speed of the driving link follow from their mean {mean} and the coefficient of "
-          "fluctuation {delta}:"),
-        mean=MEAN, delta=DELTA,
-    )  # fmt: skip
+        _(
+            "The largest and the least speed of the driving link follow from their mean {mean} and the coefficient of "
+            "fluctuation {delta}:"
+        ),
+        mean=MEAN,
+        delta=DELTA,
+    )
     yield Found(LARGEST, middle * (1 + half), high, _("rad/s"))
     yield Found(LEAST, middle * (1 - half), low, _("rad/s"))
 
@@ -41,14 +44,23 @@ def diagram(here: Here) -> Iterable[Block]:
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield said(
-        _("The kinetic energy of the machine is {T} in position 0 and grows by the work {A} of all moments from there "
-          "on. Over the reduced moment of inertia {J} this work gives the energy-mass diagram of Wittenbauer. A line "
-          "that touches it from above with the slope {up}, and one that touches it from below with the slope {low}, "
-          "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
-          "which {J} is zero the energies {Ea} and {Eb}:"),
-        T=START, A=WORK, J=INERTIA, up=letters(upper), low=letters(lower), Ea=OFFSETS[0], Eb=OFFSETS[1],
+        _(
+            "The kinetic energy of the machine is {T} in position 0 and grows by the work {A} of all moments "
+            "from there "
+            "on. Over the reduced moment of inertia {J} this work gives the energy-mass diagram of Wittenbauer. A line "
+            "that touches it from above with the slope {up}, and one that touches it from below with the slope {low}, "
+            "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
+            "which {J} is zero the energies {Ea} and {Eb}:"
+        ),
+        T=START,
+        A=WORK,
+        J=INERTIA,
+        up=letters(upper),
+        low=letters(lower),
+        Ea=OFFSETS[0],
+        Eb=OFFSETS[1],
         psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", letters(slope)),
-    )  # fmt: skip
+    )
     for tangent, name, speed, point in zip(here.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
         energy, work = speed_of(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
         cut = work - energy * Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
@@ -63,8 +75,10 @@ def by_tangents(here: Here) -> Iterable[Block]:
     if steady.task.delta is None:
         text = _("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:")
     elif steady.task.motor is not None:
-        text = _("The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that "
-                 "of the machine with it. Its moment of inertia, reduced to the driving link:")  # fmt: skip
+        text = _(
+            "The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that "
+            "of the machine with it. Its moment of inertia, reduced to the driving link:"
+        )
     yield said(text)
     cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
     squares = speed_of(upper, LARGEST) ** 2 - speed_of(lower, LEAST) ** 2
@@ -82,26 +96,40 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
     constant = steady.machine.constant
     second = Leaf(INERTIA) - Leaf(CONSTANT) if constant else Leaf(INERTIA)
     yield said(
-        _("With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
-          "{found} kg·m²."),
-        plus=letters(square * (1 + delta)), minus=letters(square * (1 - delta)),
+        _(
+            "With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
+            "{found} kg·m²."
+        ),
+        plus=letters(square * (1 + delta)),
+        minus=letters(square * (1 - delta)),
         found=here.subject.text(steady.wittenbauer),
-    )  # fmt: skip
+    )
     if constant:
         yield said(
-            _("By the method of Mertsalov the flywheel and the links with a constant speed ratio to the driving link, "
-              "whose moment of inertia is {constant} = {value} kg·m², are the first group. The energy of the other "
-              "links, the second group, is taken at the mean speed; then the energy of the first group changes between "
-              "{most} and {least}, the largest and the least of {rest}:"),
-            constant=CONSTANT, value=here.subject.text(constant), most=most.symbol, least=least.symbol,
+            _(
+                "By the method of Mertsalov the flywheel and the links with a constant speed ratio to the "
+                "driving link, "
+                "whose moment of inertia is {constant} = {value} kg·m², are the first group. The energy of the other "
+                "links, the second group, is taken at the mean speed; then the energy of the first group "
+                "changes between "
+                "{most} and {least}, the largest and the least of {rest}:"
+            ),
+            constant=CONSTANT,
+            value=here.subject.text(constant),
+            most=most.symbol,
+            least=least.symbol,
             rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
-        )  # fmt: skip
+        )
     else:
         yield said(
-            _("By the method of Mertsalov the energy of the links is taken at the mean speed; then the energy of the "
-              "flywheel changes between {most} and {least}, the largest and the least of {rest}:"),
-            most=most.symbol, least=least.symbol, rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
-        )  # fmt: skip
+            _(
+                "By the method of Mertsalov the energy of the links is taken at the mean speed; then the energy of the "
+                "flywheel changes between {most} and {least}, the largest and the least of {rest}:"
+            ),
+            most=most.symbol,
+            least=least.symbol,
+            rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
+        )
     gain = most.value - least.value
     yield Found(GAIN, most - least, gain, _("J"))
     inertia = Leaf(GAIN, gain) / (delta * square)
@@ -120,10 +148,13 @@ def on_shaft(here: Here) -> Iterable[Block]:
     if steady.task.ratio == 1:
         return
     yield said(
-        _("The flywheel sits on a shaft that turns {u} times as fast as the driving link; there its moment of inertia "
-          "is"),
+        _(
+            "The flywheel sits on a shaft that turns {u} times as fast as the driving link; there its moment "
+            "of inertia "
+            "is"
+        ),
         u=RATIO,
-    )  # fmt: skip
+    )
     own = Leaf(FLYWHEEL, steady.law.flywheel) / Leaf(RATIO, steady.task.ratio) ** 2
     yield Found(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
 
@@ -137,18 +168,28 @@ def size(here: Here) -> Iterable[Block]:
     moment = Leaf(MASS) * Leaf(DIAMETER) ** 2
     if form.shape == "disk":
         yield said(
-            _("The flywheel is a solid disk of the density {rho}, whose width is the share {beta} of its diameter; its "
-              "moment of inertia is {J}, and so its diameter is"),
-            rho=DENSITY, beta=SHARE, J=letters(moment / 8),
-        )  # fmt: skip
+            _(
+                "The flywheel is a solid disk of the density {rho}, whose width is the share {beta} of its "
+                "diameter; its "
+                "moment of inertia is {J}, and so its diameter is"
+            ),
+            rho=DENSITY,
+            beta=SHARE,
+            J=letters(moment / 8),
+        )
         numbers = 32, 4
     else:
         yield said(
-            _("The flywheel is a rim of the density {rho}, whose section has the shares {beta} and {eta} of its mean "
-              "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its "
-              "mean diameter is"),
-            rho=DENSITY, beta=SHARE, eta=HEIGHT, J=letters(moment / 4),
-        )  # fmt: skip
+            _(
+                "The flywheel is a rim of the density {rho}, whose section has the shares {beta} and {eta} of its mean "
+                "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its "
+                "mean diameter is"
+            ),
+            rho=DENSITY,
+            beta=SHARE,
+            eta=HEIGHT,
+            J=letters(moment / 4),
+        )
         section = section * Leaf(HEIGHT, form.height)
         numbers = 4, 1
     yield Found(DIAMETER, Raised(numbers[0] * inertia / section, 1, 5), diameter.value, _("m"))

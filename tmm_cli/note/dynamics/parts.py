@@ -78,12 +78,16 @@ def explained(here: Here) -> Iterable[Block]:
     """What is reduced, and how."""
     link = here.motion.linkage.driver.link
     yield said(
-        _("The machine is replaced by its driving link {link}, to which all masses and all loads are reduced; what "
-          "moves or acts in the sense of its rotation is positive. The reduced moment of inertia {J} has the kinetic "
-          "energy of all links, the reduced moment {M} has the power of all loads. Both follow from ratios of "
-          "velocities, which do not depend on how fast the driving link turns."),
-        link=link, J=INERTIA, M=MOMENT,
-    )  # fmt: skip
+        _(
+            "The machine is replaced by its driving link {link}, to which all masses and all loads are reduced; what "
+            "moves or acts in the sense of its rotation is positive. The reduced moment of inertia {J} has the kinetic "
+            "energy of all links, the reduced moment {M} has the power of all loads. Both follow from ratios of "
+            "velocities, which do not depend on how fast the driving link turns."
+        ),
+        link=link,
+        J=INERTIA,
+        M=MOMENT,
+    )
 
 
 def inertia(here: Here) -> Iterable[Block]:
@@ -92,10 +96,16 @@ def inertia(here: Here) -> Iterable[Block]:
     if not terms:
         return
     yield said(
-        _("Position {number}: the reduced moment of inertia, {m} being the mass of a link, {v} the velocity of its "
-          "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"),
-        number=here.number, m=Symbol("m"), v=Symbol("v", "S"), J=Symbol("J", "S"), omega=Symbol("ω"),
-    )  # fmt: skip
+        _(
+            "Position {number}: the reduced moment of inertia, {m} being the mass of a link, {v} the velocity of its "
+            "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"
+        ),
+        number=here.number,
+        m=Symbol("m"),
+        v=Symbol("v", "S"),
+        J=Symbol("J", "S"),
+        omega=Symbol("ω"),
+    )
     yield Found(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²"))
 
 
@@ -114,10 +124,13 @@ def moment(here: Here) -> Iterable[Block]:
     if not terms:
         return
     yield said(
-        _("The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
-          "angle between the two, and a couple acting with or against the angular velocity of its link:"),
-        v=Symbol("v"), alpha=Symbol("α"),
-    )  # fmt: skip
+        _(
+            "The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
+            "angle between the two, and a couple acting with or against the angular velocity of its link:"
+        ),
+        v=Symbol("v"),
+        alpha=Symbol("α"),
+    )
     whole = _sum(terms) / here.speed
     yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
 
@@ -161,11 +174,16 @@ def mean(here: Here) -> Iterable[Block]:
     steady = here.steady
     turns = round(steady.machine.length / (2 * math.pi))
     yield said(
-        _("In steady running the machine comes back to the same speed after every cycle, so that all moments together "
-          "do no work over the cycle. The work {A} of the loads is the area between the diagram of their reduced "
-          "moment {M} and its axis, and {phi} is the angle of the cycle."),
-        A=CYCLE, M=MOMENT, phi=WHOLE,
-    )  # fmt: skip
+        _(
+            "In steady running the machine comes back to the same speed after every cycle, so that all moments "
+            "together "
+            "do no work over the cycle. The work {A} of the loads is the area between the diagram of their reduced "
+            "moment {M} and its axis, and {phi} is the angle of the cycle."
+        ),
+        A=CYCLE,
+        M=MOMENT,
+        phi=WHOLE,
+    )
     text = _("The driving moment is constant:")
     if steady.moment < 0:
         text = _("The loads do work, and what the machine drives takes it with a constant moment:")
@@ -182,10 +200,14 @@ def motor(here: Here) -> Iterable[Block]:
     match here.steady.task.motor:
         case Linear() as found:
             yield said(
-                _("The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
-                  "rest and nothing at {omega}. At the speed of position {number}:"),
-                M=STALL, omega=FREE, number=here.number,
-            )  # fmt: skip
+                _(
+                    "The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
+                    "rest and nothing at {omega}. At the speed of position {number}:"
+                ),
+                M=STALL,
+                omega=FREE,
+                number=here.number,
+            )
             moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
             yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
         case Kloss() as found:
@@ -194,11 +216,19 @@ def motor(here: Here) -> Iterable[Block]:
 
 def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
     yield said(
-        _("The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. Reduced to the "
-          "driving link its synchronous speed is {omega}; {M} is its largest moment, at the slip {sk}. At the speed of "
-          "position {number}:"),
-        s=SLIP, omega=FREE, M=BREAKDOWN, sk=CRITICAL, number=here.number,
-    )  # fmt: skip
+        _(
+            "The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. "
+            "Reduced to the "
+            "driving link its synchronous speed is {omega}; {M} is its largest moment, at the slip {sk}. At "
+            "the speed of "
+            "position {number}:"
+        ),
+        s=SLIP,
+        omega=FREE,
+        M=BREAKDOWN,
+        sk=CRITICAL,
+        number=here.number,
+    )
     slip, critical = Leaf(SLIP, 1 - here.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
     yield Found(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
     if slip.value:

@@ -32,16 +32,21 @@ def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     """Of the whole run."""
     run = single.run
     yield said(
-        _("The machine is replaced by its driving link, to which all masses and all loads are reduced, and its "
-          "equation of motion is integrated from the beginning of the run on.")
-    )  # fmt: skip
+        _(
+            "The machine is replaced by its driving link, to which all masses and all loads are reduced, and its "
+            "equation of motion is integrated from the beginning of the run on."
+        )
+    )
     parts = [(START, run.kinetic[0]), (DRIVEN, run.driven[-1]), (LOADED, run.loaded[-1])]
-    text = _("The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives and the work {Al} of the "
-             "loads:")  # fmt: skip
+    text = _(
+        "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives and the work {Al} of the loads:"
+    )
     if single.task.brake:
         parts.append((BRAKED, run.braked[-1]))
-        text = _("The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives, the work {Al} of the "
-                 "loads and the work {Ab} of the brake:")  # fmt: skip
+        text = _(
+            "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives, the work {Al} of the "
+            "loads and the work {Ab} of the brake:"
+        )
     yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
     end = Leaf(END, float(run.kinetic[-1]))
     yield Found(END, added(Leaf(symbol, float(value)) for symbol, value in parts), end.value, _("J"))

@@ -28,14 +28,17 @@ def blocks(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Force analysis"))
     yield said(
-        _("The reactions in the kinematic pairs and the balancing load of the driving link are found by the method "
-          "of kinetostatics: when the forces of inertia are added to the acting forces (d'Alembert's principle), "
-          "every group of links is in equilibrium. The groups are taken in the order opposite to that of the "
-          "kinematic analysis, the driving link last. The subscript of a reaction {R} has the numbers of two links: "
-          "the first one acts on the second. The figures show all forces in their actual senses, so that their "
-          "magnitudes are positive; the arms {h} are measured in the figures."),
-        R=Symbol("R"), h=Symbol("h"),
-    )  # fmt: skip
+        _(
+            "The reactions in the kinematic pairs and the balancing load of the driving link are found by the method "
+            "of kinetostatics: when the forces of inertia are added to the acting forces (d'Alembert's principle), "
+            "every group of links is in equilibrium. The groups are taken in the order opposite to that of the "
+            "kinematic analysis, the driving link last. The subscript of a reaction {R} has the numbers of two links: "
+            "the first one acts on the second. The figures show all forces in their actual senses, so that their "
+            "magnitudes are positive; the arms {h} are measured in the figures."
+        ),
+        R=Symbol("R"),
+        h=Symbol("h"),
+    )
     yield from map(paragraph, indeterminate(subject.results.structure))
     for k in subject.detail:
         yield from _position(subject, k)
@@ -79,16 +82,20 @@ def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterab
     stem = subject.position(k).stem("position")
     yield said(
         _("The plan of the mechanism is drawn in {position}; its scale factor is {mu} = {value} m/mm."),
-        position=caption, mu=MU, value=subject.text(subject.scale("position", k, stem)),
-    )  # fmt: skip
+        position=caption,
+        mu=MU,
+        value=subject.text(subject.scale("position", k, stem)),
+    )
     yield Heading(heading(_("Weights and useful loads")), 2)
     yield said(_("They are applied to the links as arrows of one length, without a scale."))
     if first:
         yield from loads.weights(subject)
     yield from subject.figures(
-        "position", _("All forces that act on the links are shown in figure {figure}."),
-        _("The mechanism under its loads, {position}").format(position=caption), k,
-    )  # fmt: skip
+        "position",
+        _("All forces that act on the links are shown in figure {figure}."),
+        _("The mechanism under its loads, {position}").format(position=caption),
+        k,
+    )
     yield Heading(heading(_("Plan of accelerations and inertia forces")), 2)
     plans = list(subject.drawings("acceleration", k))
     if plans:
@@ -132,21 +139,29 @@ def reactions(subject: Subject) -> Iterable[Block]:
         _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x."),
         _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x."),
         [table.key for table in tables],
-    )  # fmt: skip
+    )
     yield from tables
-    pins = [(pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
-            for pin in found.pins(subject.results.linkage)]  # fmt: skip
+    pins = [
+        (pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
+        for pin in found.pins(subject.results.linkage)
+    ]
     if pins:
         tables = list(_sized(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
         yield several(
-            _("In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
-              "them."),
-            _("In a compound hinge more than two links meet; tables {first} and {last} give the force of its pin on "
-              "each of them."),
-            _("In a compound hinge more than two links meet; tables {first} to {last} give the force of its pin on "
-              "each of them."),
+            _(
+                "In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
+                "them."
+            ),
+            _(
+                "In a compound hinge more than two links meet; tables {first} and {last} give the force of its pin on "
+                "each of them."
+            ),
+            _(
+                "In a compound hinge more than two links meet; tables {first} to {last} give the force of its pin on "
+                "each of them."
+            ),
             [table.key for table in tables],
-        )  # fmt: skip
+        )
         yield from tables
 
 
@@ -175,13 +190,19 @@ def transmission(subject: Subject) -> Iterable[Block]:
     if not rows:
         return
     P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
-    head = cells(_("driven link"), _("driven in pair"), _("position"), (P, ", ", _("N")), (angle, ", °"),
-                 (Q, ", ", _("N")))  # fmt: skip
+    head = cells(
+        _("driven link"), _("driven in pair"), _("position"), (P, ", ", _("N")), (angle, ", °"), (Q, ", ", _("N"))
+    )
     yield from tabled(
-        _("The force {P} that drives a link moves it by its component along the velocity of its point alone, {Q} = "
-          "{P} cos {angle}, where {angle} is the angle between them with all loads acting; table {table} gives both."),
-        Rows(_("Transmission of force"), head, tuple(rows), "transmission"), P=P, Q=Q, angle=angle,
-    )  # fmt: skip
+        _(
+            "The force {P} that drives a link moves it by its component along the velocity of its point alone, {Q} = "
+            "{P} cos {angle}, where {angle} is the angle between them with all loads acting; table {table} gives both."
+        ),
+        Rows(_("Transmission of force"), head, tuple(rows), "transmission"),
+        P=P,
+        Q=Q,
+        angle=angle,
+    )
 
 
 def _sized(
@@ -215,7 +236,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
         yield said(
             _("The lever gives what all drivers do together, reduced to the driving link {link}."),
             link=balances[0].driver.link,
-        )  # fmt: skip
+        )
     else:
         percent = 100 * lever.difference
         head.append((_("difference, %"),))
@@ -231,10 +252,17 @@ def balancing(subject: Subject) -> Iterable[Block]:
     if has_flywheel(results) and balances[0].moment is not None:
         yield said(
             _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
-            balance=of_all, whole=row(
-                Letter(Lettered("M_d")), "=", Letter(of_all), "+", Letter(Lettered("J_f")), "·", Letter(Symbol("ε")),
+            balance=of_all,
+            whole=row(
+                Letter(Lettered("M_d")),
+                "=",
+                Letter(of_all),
+                "+",
+                Letter(Lettered("J_f")),
+                "·",
+                Letter(Symbol("ε")),
             ),
-        )  # fmt: skip
+        )
 
 
 def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:

@@ -29,9 +29,11 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
         yield _explained(turns=turns_of(subject))
     yield from _couples(subject, plan, k)
     yield from subject.figures(
-        "lever", _("The lever is shown in figure {figure}."),
-        _("Zhukovsky lever, {position}").format(position=subject.at_position(k)), k,
-    )  # fmt: skip
+        "lever",
+        _("The lever is shown in figure {figure}."),
+        _("Zhukovsky lever, {position}").format(position=subject.at_position(k)),
+        k,
+    )
     yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
     if found is None:
@@ -64,19 +66,25 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     """Couples as pairs of forces, or turned at the ratio of speeds."""
     if plan.pairs:
         yield said(
-            _("A couple on a link is replaced by a pair of forces, {P} and {Pp}, perpendicular to the line through "
-              "two of its points, a distance {l} apart:"),
-            P=Symbol("P"), Pp=Symbol("P").primed, l=Symbol("l"),
-        )  # fmt: skip
+            _(
+                "A couple on a link is replaced by a pair of forces, {P} and {Pp}, perpendicular to the line through "
+                "two of its points, a distance {l} apart:"
+            ),
+            P=Symbol("P"),
+            Pp=Symbol("P").primed,
+            l=Symbol("l"),
+        )
     for pair in plan.pairs:
         couple, apart = Leaf(pair.couple, abs(pair.moment)), Leaf(Symbol("l", "".join(pair.points)), pair.distance)
         yield Found(pair.symbol, couple / apart, pair.force, _("N"))
     if plan.couples:
         yield said(
-            _("The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
-              "of the driving link:"),
+            _(
+                "The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
+                "of the driving link:"
+            ),
             M=Symbol("M").primed,
-        )  # fmt: skip
+        )
     for load, turned in plan.couples:
         own = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_ratio(subject, load, k)))
         yield Found(turned.symbol, own, turned.size, _("N·m") if turns_of(subject) else _("N"))
@@ -111,10 +119,13 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
         terms.append(own if balance is first else own * ratio)
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
     yield said(
-        _("The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
-          "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"),
-        link=first.driver.link, i=Symbol("i"),
-    )  # fmt: skip
+        _(
+            "The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
+            "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"
+        ),
+        link=first.driver.link,
+        i=Symbol("i"),
+    )
     yield Found(name, added(terms), float(lever.balancing[k]), unit)
 
 
@@ -130,10 +141,14 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     if not largest:
         return
     yield said(
-        _("The difference {delta} from the value {plan} of the force plan is given in percent of {largest}, the "
-          "largest magnitude in all positions:"),
-        delta=Symbol("Δ"), plan=Symbol(name.letter, name.below, "R"), largest=Symbol(name.letter, "max"),
-    )  # fmt: skip
+        _(
+            "The difference {delta} from the value {plan} of the force plan is given in percent of {largest}, the "
+            "largest magnitude in all positions:"
+        ),
+        delta=Symbol("Δ"),
+        plan=Symbol(name.letter, name.below, "R"),
+        largest=Symbol(name.letter, "max"),
+    )
     gap = Function("abs", Leaf(Symbol(name.letter, name.below, "R"), plan) - Leaf(name, own))
     whole = gap / Leaf(Symbol(name.letter, "max"), largest) * 100.0
     percent = 100 * float(lever.difference[k])
@@ -154,9 +169,13 @@ def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
     check = drawn_check(subject.motion, subject.reactions, drawn, scales)
     moment = subject.reactions.balance.kind == "moment"
     yield said(
-        _("With arms and segments read off the drawings to 0.5 mm, the force plan gives {plan} {unit} and the lever "
-          "{lever} {unit}. Their difference, {share} % of the largest magnitude, is one of drawing; the difference "
-          "above is one of calculation."),
-        plan=subject.shown(abs(check.plan)), lever=subject.shown(abs(check.lever)),
-        unit=_("N·m") if moment else _("N"), share=subject.text(100 * check.difference, 2),
-    )  # fmt: skip
+        _(
+            "With arms and segments read off the drawings to 0.5 mm, the force plan gives {plan} {unit} and the lever "
+            "{lever} {unit}. Their difference, {share} % of the largest magnitude, is one of drawing; the difference "
+            "above is one of calculation."
+        ),
+        plan=subject.shown(abs(check.plan)),
+        lever=subject.shown(abs(check.lever)),
+        unit=_("N·m") if moment else _("N"),
+        share=subject.text(100 * check.difference, 2),
+    )

@@ -29,10 +29,15 @@ def weights(subject: Subject) -> Iterable[Block]:
     if not own or not gravity.value:
         return
     yield said(
-        _("The weight {G} of a link is the product of its mass {m} and the acceleration of gravity {g}; it acts in the "
-          "centre of mass of the link:"),
-        G=lettered("G"), m=Symbol("m"), g=gravity.symbol,
-    )  # fmt: skip
+        _(
+            "The weight {G} of a link is the product of its mass {m} and the acceleration of gravity {g}; it "
+            "acts in the "
+            "centre of mass of the link:"
+        ),
+        G=lettered("G"),
+        m=Symbol("m"),
+        g=gravity.symbol,
+    )
     for load in own:
         mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
         size = float(np.abs(np.ravel(load.force)[0]))
@@ -45,12 +50,14 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     if not found:
         return
     explanation = (
-        _("The force of inertia {U} of a link acts at its centre of mass and is opposite to the acceleration of "
-          "this point; the couple {M} of the forces of inertia is opposite to the angular acceleration {epsilon} of "
-          "the link; {J} is its moment of inertia about the centre of mass:")
+        _(
+            "The force of inertia {U} of a link acts at its centre of mass and is opposite to the acceleration of "
+            "this point; the couple {M} of the forces of inertia is opposite to the angular acceleration {epsilon} of "
+            "the link; {J} is its moment of inertia about the centre of mass:"
+        )
         if explained
         else _("Forces and couples of inertia:")
-    )  # fmt: skip
+    )
     yield said(explanation, U=lettered("U"), M=lettered("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
     units = {one.unit for one in found}
     largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
@@ -117,14 +124,17 @@ def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     if not given:
         return
     explanation = (
-        _("Friction {T} acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a "
-          "moment, on "
-          "a guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. The name of "
-          "the pair stands below the line, after it the link on which the friction acts. Reactions and friction are "
-          "found together, so that each friction is that of the reactions below:")
+        _(
+            "Friction {T} acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a "
+            "moment, on "
+            "a guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. "
+            "The name of "
+            "the pair stands below the line, after it the link on which the friction acts. Reactions and friction are "
+            "found together, so that each friction is that of the reactions below:"
+        )
         if explained
         else _("Friction, of the reactions below:")
-    )  # fmt: skip
+    )
     yield said(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
     for one in given:
         yield from _rubbing(subject, one, k)
@@ -188,8 +198,13 @@ def losses(subject: Subject) -> Iterable[Block]:
     if lost is None or lost.locked:
         ranges = locked_ranges(subject.results)
         if ranges:
-            yield said(_("The mechanism locks itself by friction {ranges}: no force of the driver moves it there, and "
-                         "there is no efficiency over the cycle."), ranges="; ".join(ranges))  # fmt: skip
+            yield said(
+                _(
+                    "The mechanism locks itself by friction {ranges}: no force of the driver moves it there, and "
+                    "there is no efficiency over the cycle."
+                ),
+                ranges="; ".join(ranges),
+            )
         return
     work = Leaf(Symbol("A", "d"), lost.drivers)
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]

@@ -151,9 +151,11 @@ def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
     yield from _taken_apart(part)
     if part.at_once:
         yield said(
-            _("There is no point about which one unknown alone has a moment, so the equations of equilibrium of all "
-              "these links are solved together. As a check, the moments on each link come to nothing:")
-        )  # fmt: skip
+            _(
+                "There is no point about which one unknown alone has a moment, so the equations of equilibrium of all "
+                "these links are solved together. As a check, the moments on each link come to nothing:"
+            )
+        )
     ready, later = part.sums
     equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
     yield from chain.from_iterable(_moments(part, e) for e in equations if not e.special)
@@ -179,10 +181,15 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
     """A sum along a guide."""
     node, found = along_guide(forces)
     yield said(
-        _("The sum of the projections of the forces onto the guide {guide} (link {link}) gives {symbol}; {angles} "
-          "are the acute angles between the forces and the guide:"),
-        guide=forces.guide, link=forces.link, symbol=found.name, angles=Symbol("α", "i"),
-    )  # fmt: skip
+        _(
+            "The sum of the projections of the forces onto the guide {guide} (link {link}) gives {symbol}; {angles} "
+            "are the acute angles between the forces and the guide:"
+        ),
+        guide=forces.guide,
+        link=forces.link,
+        symbol=found.name,
+        angles=Symbol("α", "i"),
+    )
     yield from (Equation(node), found)
 
 
@@ -205,16 +212,22 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     if part.subject.results.problem.note_style.arms == "paper" and part.loaded.equations:
         mu = part.on_paper(part.loaded.equations[0])
         yield said(
-            _("The arms are in millimetres of the drawing, whose scale is {mu} = {value} m/mm; a couple is divided by "
-              "this scale."),
-            mu=MU, value=part.subject.text(mu or 1.0),
-        )  # fmt: skip
+            _(
+                "The arms are in millimetres of the drawing, whose scale is {mu} = {value} m/mm; a couple is "
+                "divided by "
+                "this scale."
+            ),
+            mu=MU,
+            value=part.subject.text(mu or 1.0),
+        )
     yield from part.subject.figures(
-        "group-loads", _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to "
-                         "scale."),
+        "group-loads",
+        _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to scale."),
         _("Loads and reactions: {links}; {position}").format(links=_links(part.links), position=part.caption),
-        part.here.k, part.stem("group-loads"), further=_("The other arms are shown in figure {figure}."),
-    )  # fmt: skip
+        part.here.k,
+        part.stem("group-loads"),
+        further=_("The other arms are shown in figure {figure}."),
+    )
 
 
 def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
@@ -223,17 +236,22 @@ def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
     if not pair.lower:
         text = _("in pair {pair}: magnitude of the reaction {R} along the normal to the profiles")
     elif pair.slide is not None:
-        text = _("on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the "
-                 "guide")  # fmt: skip
+        text = _(
+            "on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the guide"
+        )
     elif lead is None or lead.axis is None:
         text = _("at hinge {point}: magnitude and direction of the reaction {R}")
     elif lead.rest is not None and lead.about is not None and len(lead.links) == 1:
         line = pair.point + lead.about
-        text = _("at hinge {point}: two components of the reaction {R}, {n} along the line {line} and {t} "
-                 "perpendicular to it")  # fmt: skip
+        text = _(
+            "at hinge {point}: two components of the reaction {R}, {n} along the line {line} and {t} "
+            "perpendicular to it"
+        )
     else:
-        text = _("at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
-                 "perpendicular to it")  # fmt: skip
+        text = _(
+            "at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
+            "perpendicular to it"
+        )
     whole, n, t = (reaction_symbol(reaction.by, reaction.on, part) for part in ("", "n", "τ"))
     places = {"guide": pair.name, "pair": pair.name, "point": pair.point, "link": reaction.on, "line": line}
     return filled(text, **places, R=whole, n=n, t=t)
@@ -249,16 +267,22 @@ def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
     if sought.arm and found is None:
         text = _("No other force has a moment about the point {point} ({links}), so {symbol} goes through this point.")
     elif sought.arm and equation.found is not None and equation.found.acting.couple:
-        text = _("The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
-                 "beside the reaction {symbol}:")  # fmt: skip
+        text = _(
+            "The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
+            "beside the reaction {symbol}:"
+        )
     elif sought.arm:
-        text = _("The equation of moments about the point {point} ({links}) gives the distance from it to the line "
-                 "of action of the reaction {symbol}:")  # fmt: skip
+        text = _(
+            "The equation of moments about the point {point} ({links}) gives the distance from it to the line "
+            "of action of the reaction {symbol}:"
+        )
     elif found is None and not equation.terms:
         text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
-        text = _("In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
-                 "moments about it ({links}) gives {symbol}:")  # fmt: skip
+        text = _(
+            "In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
+            "moments about it ({links}) gives {symbol}:"
+        )
     else:
         text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
     yield said(text, point=equation.about, links=_links(equation.links), symbol=sought.symbol)
@@ -278,17 +302,21 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     vectors = part.vectors
     lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield said(
-        _("The forces form a closed polygon. Vectors that are known completely are underlined twice, those of which "
-          "only the line of action is known once:")
+        _(
+            "The forces form a closed polygon. Vectors that are known completely are underlined twice, those of which "
+            "only the line of action is known once:"
+        )
         if explained
         else _("The forces form a closed polygon:")
-    )  # fmt: skip
+    )
     yield Equation(vector_sum([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors]))
     yield from part.subject.figures(
-        "forces", _("The force plan is drawn to scale in figure {figure}."),
+        "forces",
+        _("The force plan is drawn to scale in figure {figure}."),
         _("Force plan: {links}; {position}").format(links=_links(part.links), position=part.caption),
-        part.here.k, part.stem("forces"),
-    )  # fmt: skip
+        part.here.k,
+        part.stem("forces"),
+    )
     unknown = [v for v in vectors if v.symbol not in known]
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
         yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
@@ -325,10 +353,13 @@ def _guide_between(part: Part) -> Iterable[Block]:
     link = outer.on
     own = reaction_symbol(inner.pair.other(link), link)
     yield said(
-        _("The reaction in the inner pair {pair} is perpendicular to this guide, so only two magnitudes are unknown "
-          "in the polygon of the forces on one link ({links}), and it gives them:"),
-        pair=inner.pair.name, links=_links([link]),
-    )  # fmt: skip
+        _(
+            "The reaction in the inner pair {pair} is perpendicular to this guide, so only two magnitudes are unknown "
+            "in the polygon of the forces on one link ({links}), and it gives them:"
+        ),
+        pair=inner.pair.name,
+        links=_links([link]),
+    )
     sought = {own: inner, reaction_symbol(outer.by, link): outer}
     yield _polygon(part, link, dict.fromkeys(sought, 1))
     for symbol, reaction in sought.items():
@@ -349,8 +380,9 @@ def _inner(part: Part) -> Iterable[Block]:
         (reaction,) = inner
         yield said(
             _("The reaction in the inner pair {pair} closes the polygon of the forces on one of its links ({links}):"),
-            pair=reaction.pair.name, links=_links([reaction.on]),
-        )  # fmt: skip
+            pair=reaction.pair.name,
+            links=_links([reaction.on]),
+        )
         yield _polygon(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
         yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))

@@ -245,15 +245,17 @@ class Parts:
         wide, high = (round(side * share * EMU) for side in drawing.paper)
         size = f'cx="{wide}" cy="{high}"'
         name = f'id="{self.pictures}" name="drawing {self.pictures}" descr="{data(told)}"'
-        paragraph.add_run()._r.append(parse_xml(
-            f'<w:drawing {nsdecls("w", "wp", "a", "pic", "r")}><wp:inline distT="0" distB="0" distL="0" distR="0">'
-            f"<wp:extent {size}/><wp:docPr {name}/><a:graphic>"
-            f'<a:graphicData uri="http://schemas.openxmlformats.org/drawingml/2006/picture"><pic:pic><pic:nvPicPr>'
-            f"<pic:cNvPr {name}/><pic:cNvPicPr/></pic:nvPicPr>"
-            f'<pic:blipFill><a:blip r:embed="{link}"/><a:stretch><a:fillRect/></a:stretch></pic:blipFill>'
-            f'<pic:spPr><a:xfrm><a:off x="0" y="0"/><a:ext {size}/></a:xfrm><a:prstGeom prst="rect"><a:avLst/>'
-            f"</a:prstGeom></pic:spPr></pic:pic></a:graphicData></a:graphic></wp:inline></w:drawing>"
-        ))  # fmt: skip
+        paragraph.add_run()._r.append(
+            parse_xml(
+                f'<w:drawing {nsdecls("w", "wp", "a", "pic", "r")}><wp:inline distT="0" distB="0" distL="0" distR="0">'
+                f"<wp:extent {size}/><wp:docPr {name}/><a:graphic>"
+                f'<a:graphicData uri="http://schemas.openxmlformats.org/drawingml/2006/picture"><pic:pic><pic:nvPicPr>'
+                f"<pic:cNvPr {name}/><pic:cNvPicPr/></pic:nvPicPr>"
+                f'<pic:blipFill><a:blip r:embed="{link}"/><a:stretch><a:fillRect/></a:stretch></pic:blipFill>'
+                f'<pic:spPr><a:xfrm><a:off x="0" y="0"/><a:ext {size}/></a:xfrm><a:prstGeom prst="rect"><a:avLst/>'
+                f"</a:prstGeom></pic:spPr></pic:pic></a:graphicData></a:graphic></wp:inline></w:drawing>"
+            )
+        )
 
     def contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
         """The table of contents: a field that Word fills anew, with its entries: level, number, text."""
@@ -452,8 +454,9 @@ def _letters(line: Line) -> float:
     capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
     return 0.3 * capitals + sum(
         width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
-        for part in line if not isinstance(part, blocks.Ref | blocks.Link)
-    )  # fmt: skip
+        for part in line
+        if not isinstance(part, blocks.Ref | blocks.Link)
+    )
 
 
 def _widths(block: blocks.Rows, letter: float) -> list[float]:

@@ -159,12 +159,14 @@ class Writer:
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
         head = "".join(f"<th>{self.heading(cell)}</th>" for cell in rows.head)
         body = "".join(
-            "<tr>" + "".join(
+            "<tr>"
+            + "".join(
                 f"<td{kind_of(cell, number)}>{self.line(cell)}</td>"
                 for cell, number in zip(row, rows.numeric, strict=True)
-            ) + "</tr>\n"
+            )
+            + "</tr>\n"
             for row in rows.rows
-        )  # fmt: skip
+        )
         whole = ' class="whole"' if len(rows.rows) <= WHOLE else ""
         return (
             f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'

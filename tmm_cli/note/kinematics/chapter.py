@@ -131,39 +131,57 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
     yield Heading(_("Velocities, position {number}").format(number=number), 2)
     if here.first:
         yield said(
-            _("Velocities are found from plans: first for the driving links, then for the groups in the order of the "
-              "structural formula. A vector underlined twice is known in magnitude and direction, one underlined once "
-              "in direction only.")
-        )  # fmt: skip
+            _(
+                "Velocities are found from plans: first for the driving links, then for the groups in the order of the "
+                "structural formula. A vector underlined twice is known in magnitude and direction, one "
+                "underlined once "
+                "in direction only."
+            )
+        )
         slid = next((e for step in every for e in step.equations if isinstance(e, Along)), None)
         if slid is not None:
             yield said(
-                _("The point of a guide that coincides with the stone in this position is named after the link of the "
-                  "guide: {under} of link {link} lies at {point}; its distances to other points of the link are those "
-                  "in this position."),
-                under=name_of(slid.base), link=slid.slide.carrier, point=slid.point.at,
-            )  # fmt: skip
+                _(
+                    "The point of a guide that coincides with the stone in this position is named after the "
+                    "link of the "
+                    "guide: {under} of link {link} lies at {point}; its distances to other points of the link "
+                    "are those "
+                    "in this position."
+                ),
+                under=name_of(slid.base),
+                link=slid.slide.carrier,
+                point=slid.point.at,
+            )
     yield place_here(here)
     yield from speed_here(here)
     yield from subject.figures(
-        "velocity", _("The plan of velocities is shown in figure {figure}."),
-        _("Plan of velocities, position {number}").format(number=number), here.k,
-    )  # fmt: skip
+        "velocity",
+        _("The plan of velocities is shown in figure {figure}."),
+        _("Plan of velocities, position {number}").format(number=number),
+        here.k,
+    )
     yield from velocities(here, every)
     yield Heading(_("Accelerations, position {number}").format(number=number), 2)
     if here.first:
         yield said(
-            _("The acceleration of a point relative to another point of its link has a normal component, directed "
-              "towards that other point, and a tangential one, perpendicular to the line between them.")
-        )  # fmt: skip
+            _(
+                "The acceleration of a point relative to another point of its link has a normal component, directed "
+                "towards that other point, and a tangential one, perpendicular to the line between them."
+            )
+        )
         if any(isinstance(e, Along) for step in every for e in step.equations):
             yield said(
-                _("The acceleration of a stone relative to the coincident point of the guide has a component along the "
-                  "guide and, if the guide turns, the Coriolis component, whose direction is that of the relative "
-                  "velocity turned through 90° in the sense of the guide's rotation.")
-            )  # fmt: skip
+                _(
+                    "The acceleration of a stone relative to the coincident point of the guide has a component "
+                    "along the "
+                    "guide and, if the guide turns, the Coriolis component, whose direction is that of the relative "
+                    "velocity turned through 90° in the sense of the guide's rotation."
+                )
+            )
     yield from subject.figures(
-        "acceleration", _("The plan of accelerations is shown in figure {figure}."),
-        _("Plan of accelerations, position {number}").format(number=number), here.k,
-    )  # fmt: skip
+        "acceleration",
+        _("The plan of accelerations is shown in figure {figure}."),
+        _("Plan of accelerations, position {number}").format(number=number),
+        here.k,
+    )
     yield from accelerations(here, every)

@@ -29,10 +29,12 @@ def drivers(subject: Subject) -> Iterable[Block]:
     for driver in subject.results.linkage.drivers:
         if running is not None:
             yield said(
-                _("How fast driving link {link} moves follows from its law of motion, which is found below: it needs "
-                  "ratios of velocities only, and these are the same at every speed."),
+                _(
+                    "How fast driving link {link} moves follows from its law of motion, which is found below: it needs "
+                    "ratios of velocities only, and these are the same at every speed."
+                ),
                 link=driver.link,
-            )  # fmt: skip
+            )
             continue
         yield from _turning(subject, driver) if driver.kind == "turn" else _sliding(subject, driver)
 
@@ -54,9 +56,15 @@ def _turning(subject: Subject, driver: Driver) -> Iterable[Block]:
         text = _("Driving link {link} turns about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
     how = "" if driver.law is None else between_rows(driver.law)
     yield said(
-        text, link=driver.link, point=driver.joint, base=driver.base, sense=sense(driver.sense), how=how,
-        n=Symbol("n", own), speed=subject.text(n, 6),
-    )  # fmt: skip
+        text,
+        link=driver.link,
+        point=driver.joint,
+        base=driver.base,
+        sense=sense(driver.sense),
+        how=how,
+        n=Symbol("n", own),
+        speed=subject.text(n, 6),
+    )
     if driver.law is not None:
         return
     if rpm:
@@ -104,10 +112,13 @@ def speed_here(here: Here) -> Iterable[Block]:
     gone = driver.sense * (float(motion.q[here.k]) - begins)
     run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
     yield said(
-        _("Since position 0 the driving link has gone through {gone}; its speed {speed} follows from the even "
-          "acceleration:"),
-        gone=run.symbol, speed=now,
-    )  # fmt: skip
+        _(
+            "Since position 0 the driving link has gone through {gone}; its speed {speed} follows from the even "
+            "acceleration:"
+        ),
+        gone=run.symbol,
+        speed=now,
+    )
     root = Function("sqrt", start**2 + 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * run)
     yield Found(now, root, abs(float(motion.rate[here.k])), unit(letter))
 
@@ -145,21 +156,29 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     slides = strokes.kind == "slide"
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
-    text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving link; "
-             "it swings between them through {size}.")  # fmt: skip
+    text = _(
+        "The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving link; "
+        "it swings between them through {size}."
+    )
     if slides:
-        text = _("The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
-                 "link; its stroke between them is {size}.")  # fmt: skip
+        text = _(
+            "The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
+            "link; its stroke between them is {size}."
+        )
     yield said(text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown))
     if not np.isfinite(strokes.k):
         return
     working = sum(s.length for s in strokes.working)
     idle = sum(s.length for s in strokes.strokes if not s.working)
-    text = _("During the working stroke the driving link turns through {working}, during the idle one through {idle}; "
-             "the coefficient of change of mean speed is {k}:")  # fmt: skip
+    text = _(
+        "During the working stroke the driving link turns through {working}, during the idle one through {idle}; "
+        "the coefficient of change of mean speed is {k}:"
+    )
     if len(strokes.strokes) > 2:
-        text = _("During the working strokes of a cycle the driving link turns through {working} in all, during the "
-                 "idle ones through {idle}; the coefficient of change of mean speed is {k}:")  # fmt: skip
+        text = _(
+            "During the working strokes of a cycle the driving link turns through {working} in all, during the "
+            "idle ones through {idle}; the coefficient of change of mean speed is {k}:"
+        )
     yield said(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
     ratio = Leaf(Symbol("φ", symbol("w")), working, angle=True) / Leaf(Symbol("φ", symbol("i")), idle, angle=True)
     yield Found(Symbol("k"), ratio, strokes.k)

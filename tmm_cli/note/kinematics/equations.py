@@ -90,9 +90,13 @@ def scale(plan: OnPaper, vectors: Sequence[Vector], text: str, at_rest: str) -> 
 
 
 def turning(
-    here: Here, together: Iterable[VectorEquation], letter: str, vector_of: Callable[[About], Vector],
-    carried: str, told: str,
-) -> Iterable[Block]:  # fmt: skip
+    here: Here,
+    together: Iterable[VectorEquation],
+    letter: str,
+    vector_of: Callable[[About], Vector],
+    carried: str,
+    told: str,
+) -> Iterable[Block]:
     """What links turn with, each once, with its sense; carried: how that is seen, where the method is explained."""
     for about in once_a_link(together):
         value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
@@ -102,9 +106,14 @@ def turning(
             continue
         yield Found(rate.symbol, found.leaf / here.length(about.point, about.base), rate.value, unit(letter))
         yield said(
-            carried if here.first else told, v=vector(found.symbol), a=vector(found.symbol), epsilon=rate.symbol,
-            point=name_of(about.point), link=about.link, sense=sense(value),
-        )  # fmt: skip
+            carried if here.first else told,
+            v=vector(found.symbol),
+            a=vector(found.symbol),
+            epsilon=rate.symbol,
+            point=name_of(about.point),
+            link=about.link,
+            sense=sense(value),
+        )
 
 
 def turning_as_one(here: Here, step: Step, letter: str) -> Iterable[Block]:
@@ -124,9 +133,11 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
         return
     if here.first:
         yield said(
-            _("The ends of the vectors of all other points and of the centres of mass are found by similarity: "
-              "the figure of a link on the plan is similar to the link.")
-        )  # fmt: skip
+            _(
+                "The ends of the vectors of all other points and of the centres of mass are found by similarity: "
+                "the figure of a link on the plan is similar to the link."
+            )
+        )
     named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
     for name in names:
         vector = plan.of(name)
@@ -137,10 +148,12 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
 def not_on_paper() -> Block:
     """Of a group that no polygon solves."""
     return said(
-        _("These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
-          "found before the others. The equations of the group were solved together, numerically; the plan shows "
-          "their solution:")
-    )  # fmt: skip
+        _(
+            "These equations have more unknown magnitudes than a polygon of vectors gives, and none of them can be "
+            "found before the others. The equations of the group were solved together, numerically; the plan shows "
+            "their solution:"
+        )
+    )
 
 
 # Vector equations in letters, with what is known of each vector: two lines under one known whole, one line under one

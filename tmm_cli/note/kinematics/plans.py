@@ -21,11 +21,14 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
             yield from _driving(here, step)
             known |= words.points_of(step)
     yield from words.scale(
-        here.v, [vector for step in steps for vector in _known(here, step)],
-        _("The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
-          "of the plan is"),
+        here.v,
+        [vector for step in steps for vector in _known(here, step)],
+        _(
+            "The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
+            "of the plan is"
+        ),
         _("All points are at rest in this position."),
-    )  # fmt: skip
+    )
     for step in steps:
         if step.group is not None:
             yield from _group(here, step, known)
@@ -37,10 +40,14 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
     """Points of a driving link."""
     turned = words.further(step)
     if here.first and turned:
-        one = _("The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
-                "rotation:")  # fmt: skip
-        several = _("The velocities of points {points} of the driving link are perpendicular to their radii, in the "
-                    "sense of its rotation:")  # fmt: skip
+        one = _(
+            "The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
+            "rotation:"
+        )
+        several = _(
+            "The velocities of points {points} of the driving link are perpendicular to their radii, in the "
+            "sense of its rotation:"
+        )
         line = turned[0].base.at + turned[0].point.at
         points = listed(words.name_of(about.point) for about in turned)
         yield said(one if len(turned) == 1 else several, points=points, line=line)
@@ -87,9 +94,13 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
     yield from words.turning(
-        here, together, "ω", lambda about: here.v.relative(about.point, about.base),
-        _("Vector {v}, carried over to point {point}, turns link {link} {sense}."), _("Link {link} turns {sense}."),
-    )  # fmt: skip
+        here,
+        together,
+        "ω",
+        lambda about: here.v.relative(about.point, about.base),
+        _("Vector {v}, carried over to point {point}, turns link {link} {sense}."),
+        _("Link {link} turns {sense}."),
+    )
     yield from words.turning_as_one(here, step, "ω")
     for about in words.further(step):
         yield from _known_about(here, about, found)
@@ -137,8 +148,10 @@ def _driving_accelerations(here: Here, step: Step) -> Iterable[Block]:
         even = _(
             "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
         )
-        uneven = _("Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
-                   "tangential parts.")  # fmt: skip
+        uneven = _(
+            "Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
+            "tangential parts."
+        )
         yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
     for about in turned:
         yield from _parts(here, about)
@@ -179,11 +192,14 @@ def _coriolis(here: Here, along: Along) -> Block:
 
 def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     return words.scale(
-        here.a, [vector for step in steps for vector in _known_accelerations(here, step)],
-        _("The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
-          "factor of the plan is"),
+        here.a,
+        [vector for step in steps for vector in _known_accelerations(here, step)],
+        _(
+            "The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
+            "factor of the plan is"
+        ),
         _("Nothing accelerates in this position."),
-    )  # fmt: skip
+    )
 
 
 def _known_accelerations(here: Here, step: Step) -> Iterable[Vector]:
@@ -239,10 +255,13 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     for spot in points:
         yield here.a.read(here.a.of(spot))
     yield from words.turning(
-        here, together, "ε", lambda about: _part(here, about, "τ"),
+        here,
+        together,
+        "ε",
+        lambda about: _part(here, about, "τ"),
         _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}."),
         _("Angular acceleration {epsilon} is {sense}."),
-    )  # fmt: skip
+    )
     yield from words.turning_as_one(here, step, "ε")
     found = {*known, *words.points_of(step)}
     for about in words.further(step):

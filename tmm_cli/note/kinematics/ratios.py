@@ -69,13 +69,16 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     carried = _turning(here, mesh.carrier, "ω") is not None
     over, under, carrier = (Leaf(Symbol("ω", link)) for link in (mesh.j, mesh.i, mesh.carrier))
     share = over / under
-    text = _("Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive "
-             "counterclockwise)")  # fmt: skip
+    text = _(
+        "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive counterclockwise)"
+    )
     if carried:
         share = (over - carrier) / (under - carrier)
-        text = _("Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier {carrier}. "
-                 "By Willis' method all links are given the carrier's rotation backwards, so that it rests; then the "
-                 "ratio of the wheels is (positive counterclockwise)")  # fmt: skip
+        text = _(
+            "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier {carrier}. "
+            "By Willis' method all links are given the carrier's rotation backwards, so that it rests; then the "
+            "ratio of the wheels is (positive counterclockwise)"
+        )
     ri, rj = Symbol("r", mesh.i), Symbol("r", mesh.j)
     yield said(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
     yield Equation(row(Letter(_ratio(mesh)), "=", letters(share)))
@@ -136,11 +139,14 @@ def _rolls(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
 def _law(mesh: Mesh, letter: str) -> Block:
     text = _("The second derivative {second} of the law of motion gives")
     if letter == "ω" and mesh.slide:
-        text = _("The law of motion of follower {follower} gives the derivative {first} of its run by the angle of cam "
-                 "{cam}:")  # fmt: skip
+        text = _(
+            "The law of motion of follower {follower} gives the derivative {first} of its run by the angle of cam "
+            "{cam}:"
+        )
     elif letter == "ω":
-        text = _("The law of motion of follower {follower} gives the derivative {first} of its angle by that of cam "
-                 "{cam}:")  # fmt: skip
+        text = _(
+            "The law of motion of follower {follower} gives the derivative {first} of its angle by that of cam {cam}:"
+        )
     return said(text, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1), second=_derivative(mesh, 2))
 
 

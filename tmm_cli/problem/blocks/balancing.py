@@ -31,9 +31,11 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
         output = linkage.output_guide(linkage.output.link) if linkage.output is not None else None
         if not guides:
             raise part.refusal(
-                "share", _("a share is of the force along a guide on the frame, and there is none"), str(given.share),
+                "share",
+                _("a share is of the force along a guide on the frame, and there is none"),
+                str(given.share),
                 _("no share: the force counts alike in all directions"),
-            )  # fmt: skip
+            )
         along = direction((output if output in guides else guides[0]).direction)
     rotor = None if given.rotor is None else _rotor(given.rotor, values)
     return BalancingTask(places, share, along, rotor)
@@ -50,9 +52,10 @@ def _place(name: str, given: shapes.Counterweight, linkage: Linkage, values: Val
     radius = 0.0 if given.radius is None else part.positive("radius", LENGTH)
     if not radius and not any(about == points[p] for p in fixed):
         raise part.refusal(
-            "radius", _("this counterweight moves with its link: its mass counts, and so its radius is wanted"),
+            "radius",
+            _("this counterweight moves with its link: its mass counts, and so its radius is wanted"),
             allowed=_("radius: 80 mm, or about: a hinge of this link on the frame"),
-        )  # fmt: skip
+        )
     return Place(name, about, radius)
 
 

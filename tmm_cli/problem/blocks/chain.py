@@ -28,9 +28,18 @@ def build_chain(tree: Tree) -> ChainProblem:
         if spatial.output is not None:
             BARE.known(spatial.output, chain.links, (*PART, "output"), "moving link")
         return ChainProblem(
-            name, shape.title or name, chain, spatial.output, _local(spatial, chain), spatial.wanted, BARE.units,
-            shape.description, shape.reference, shape.shows, tree,
-        )  # fmt: skip
+            name,
+            shape.title or name,
+            chain,
+            spatial.output,
+            _local(spatial, chain),
+            spatial.wanted,
+            BARE.units,
+            shape.description,
+            shape.reference,
+            shape.shows,
+            tree,
+        )
 
 
 def _chain(spatial: schema_chain.Spatial) -> SpatialChain:
@@ -61,9 +70,11 @@ def _links(spatial: schema_chain.Spatial) -> tuple[str, ...]:
                 check_name(link, (*PART, "pairs", name, "between", number), "link")
         if len(named) > MAX_LINKS:
             raise ProblemError(
-                _("there are too many links"), path=(*PART, "pairs"), found=str(len(named)),
+                _("there are too many links"),
+                path=(*PART, "pairs"),
+                found=str(len(named)),
                 allowed=_("at most {max_links}").format(max_links=MAX_LINKS),
-            )  # fmt: skip
+            )
         return tuple(named)
     for number, link in enumerate(given):
         check_name(link, (*PART, "links", number), "link", (FRAME, *given[:number]))

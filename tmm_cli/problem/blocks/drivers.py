@@ -41,9 +41,11 @@ def build_speeds(part: Part, turns: int) -> SpeedTable:
     for k, speed in enumerate(speeds):
         if speed < 0:
             raise ProblemError(
-                _("a speed is counted in the driver's sense, which is one alone"), path=(*path, k, 1),
-                found=quote(given.speed.table[k][1]), allowed=_("zero or more; turns: cw for the other sense"),
-            )  # fmt: skip
+                _("a speed is counted in the driver's sense, which is one alone"),
+                path=(*path, k, 1),
+                found=quote(given.speed.table[k][1]),
+                allowed=_("zero or more; turns: cw for the other sense"),
+            )
     if not any(speeds):
         raise ProblemError(_("the driver stands still in all rows"), path=path, key=True)
     closed = _closes(part, "speed", angles, speeds, turns)
@@ -88,9 +90,11 @@ def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ..
         return False
     if abs(values[-1] - values[0]) > SAME_RATIO * max(abs(value) for value in values):
         raise ProblemError(
-            _("the table does not close: its cycle ends otherwise than it begins"), path=(*path, len(table) - 1, 1),
-            found=quote(table[-1][1]), allowed=_("{first}, as in the first row").format(first=table[0][1]),
-        )  # fmt: skip
+            _("the table does not close: its cycle ends otherwise than it begins"),
+            path=(*path, len(table) - 1, 1),
+            found=quote(table[-1][1]),
+            allowed=_("{first}, as in the first row").format(first=table[0][1]),
+        )
     return True
 
 
@@ -174,9 +178,11 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
             raise part.refusal("end", has_no_arm, quote(given.end), _("another point of the link"))
     if first == (given.at is not None):
         raise part.refusal(
-            "at", _("the place of the first driver stands in the sketch, that of each other one here"), at_key=True,
+            "at",
+            _("the place of the first driver stands in the sketch, that of each other one here"),
+            at_key=True,
             allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"),
-        )  # fmt: skip
+        )
     at = 0.0 if given.at is None else part.number("at", want)
     stroke = None
     if given.stroke is not None:
@@ -185,10 +191,18 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
             raise part.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(given.stroke))
         stroke = (low, high)
     return Driver(
-        link, "turn" if turns else "slide", pivot or (slide.name if slide else ""), abs(speed),
-        acceleration if speed >= 0 else -acceleration, -1 if given.turns == "cw" or speed < 0 else 1, given.balance,
-        given.end or "", base, at, stroke,
-    )  # fmt: skip
+        link,
+        "turn" if turns else "slide",
+        pivot or (slide.name if slide else ""),
+        abs(speed),
+        acceleration if speed >= 0 else -acceleration,
+        -1 if given.turns == "cw" or speed < 0 else 1,
+        given.balance,
+        given.end or "",
+        base,
+        at,
+        stroke,
+    )
 
 
 def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
@@ -203,9 +217,11 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
     whole = round(float(turns))
     if not 1 <= whole <= MOST or abs(turns - whole) > SAME_PLACE:
         raise ProblemError(
-            _("a cycle is a whole number of turns"), path=("cycle",), found=quote(shape.cycle),
+            _("a cycle is a whole number of turns"),
+            path=("cycle",),
+            found=quote(shape.cycle),
             allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST),
-        )  # fmt: skip
+        )
     return whole
 
 
@@ -217,9 +233,10 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
         return Sketch(UNTOLD_SKETCH if driver.kind == "turn" else 0.0)
     if "at" not in given:
         raise ProblemError(
-            _("the driver's place in the sketch is missing"), path=("sketch", "at"),
+            _("the driver's place in the sketch is missing"),
+            path=("sketch", "at"),
             allowed=_("at: {wanted}").format(wanted=wanted),
-        )  # fmt: skip
+        )
     at = values.number(given.pop("at"), wanted, ("sketch", "at"))
     if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
         beyond = _("the sketch shows the driver beyond its stroke")
@@ -235,9 +252,11 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
         else:
             values.known(name, {**owners, **links}, path, "point or link", key=True)
             raise ProblemError(
-                _("a point has coordinates and a link has an angle"), path=path, found=quote(value),
+                _("a point has coordinates and a link has an angle"),
+                path=path,
+                found=quote(value),
                 allowed="[x, y]" if name in owners else _("an angle"),
-            )  # fmt: skip
+            )
     return Sketch(at, points, angles)
 
 
@@ -253,9 +272,12 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
             raise no_position(number, count, "positions", "detail", k)
     if given.from_ is not None and driver.kind == "slide" and not places:
         raise part.refusal(
-            "from", _("positions of a driven slider go from one end of its way to the other"), str(given.from_),
-            _("driver: {stroke: [first, last]}, or positions: {at: [...]}"), at_key=True,
-        )  # fmt: skip
+            "from",
+            _("positions of a driven slider go from one end of its way to the other"),
+            str(given.from_),
+            _("driver: {stroke: [first, last]}, or positions: {at: [...]}"),
+            at_key=True,
+        )
     start: float | Literal["working stroke"] = 0.0
     if given.from_ == "working stroke":
         start = "working stroke"

@@ -40,16 +40,24 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
     mean = driver.rate if given.mean_speed is None else part.positive("mean_speed", ANGULAR_SPEED)
     delta = None if given.delta is None else part.positive("delta", NUMBER)
     if delta is not None and delta >= 1:
-        raise part.refusal("delta", _("a machine whose speed changes so much does not run"), quote(given.delta),
-                           _("less than 1; usual are 1/5 to 1/100"))  # fmt: skip
+        raise part.refusal(
+            "delta",
+            _("a machine whose speed changes so much does not run"),
+            quote(given.delta),
+            _("less than 1; usual are 1/5 to 1/100"),
+        )
     wheel = Part(given.flywheel, ("dynamics", "flywheel"), values)
     ratio = wheel.positive("ratio", NUMBER)
     own = 0.0 if given.flywheel.inertia is None else wheel.positive("inertia", INERTIA)
     form = Disk if given.flywheel.shape == "disk" else Rim
     size = form(wheel.positive("density", DENSITY), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
     if form is Rim and size.height >= 1:
-        raise wheel.refusal("height", _("a rim as high as that has no hole"), quote(given.flywheel.height),
-                            _("less than 1, the mean diameter"))  # fmt: skip
+        raise wheel.refusal(
+            "height",
+            _("a rim as high as that has no hole"),
+            quote(given.flywheel.height),
+            _("less than 1, the mean diameter"),
+        )
     motor = None if given.motor is None else _motor(Part(given.motor, ("dynamics", "motor"), values))
     if given.run is not None:
         return _run(part, Part(given.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
@@ -69,9 +77,11 @@ def _run(whole: Part, part: Part, driver: Driver, motor: Motor | None, flywheel:
     for key, end in (("from_", first), ("to", last)):
         if turns and end is not None and abs(end) > MOST_TURNS * 2 * math.pi:
             raise part.refusal(
-                key, _("a run is of few turns"), str(getattr(given, key)),
+                key,
+                _("a run is of few turns"),
+                str(getattr(given, key)),
                 _("within {most} turns of the x axis").format(most=MOST_TURNS),
-            )  # fmt: skip
+            )
     if first is not None and first == last:
         raise part.refusal("to", _("a run ends elsewhere than it begins"), str(given.to))
     drive = None
@@ -87,8 +97,13 @@ def _profile(part: Part, place: Dimension, size: Dimension) -> Profile:
     given: schema_dynamics.Profile = part.given
     area = 1.0
     if given.area is not None and size == MOMENT:
-        raise part.refusal("area", _("a pressure is on a piston, and this driver is a crank"), quote(given.area),
-                           _("a table of moments, or a driver that slides"), at_key=True)  # fmt: skip
+        raise part.refusal(
+            "area",
+            _("a pressure is on a piston, and this driver is a crank"),
+            quote(given.area),
+            _("a table of moments, or a driver that slides"),
+            at_key=True,
+        )
     if given.area is not None:
         size, area = PRESSURE, part.positive("area", AREA)
     arguments, sizes = part.columns("table", NUMBER if given.against == "time" else place, size)
@@ -115,11 +130,14 @@ def _motor(part: Part) -> Motor:
     synchronous, speed = part.positive("synchronous", ANGULAR_SPEED), part.positive("speed", ANGULAR_SPEED)
     if speed >= synchronous:
         raise part.refusal(
-            "speed", _("the rated speed is below the synchronous one"), f"{quote(given.speed)} = {_turns(speed)}",
+            "speed",
+            _("the rated speed is below the synchronous one"),
+            f"{quote(given.speed)} = {_turns(speed)}",
             _("less than {speed}").format(speed=_turns(synchronous)),
-        )  # fmt: skip
+        )
     overload = part.positive("overload", NUMBER)
     if overload < 1:
-        raise part.refusal("overload", _("the breakdown moment is not below the rated one"), quote(given.overload),
-                           _("1 or more"))  # fmt: skip
+        raise part.refusal(
+            "overload", _("the breakdown moment is not below the rated one"), quote(given.overload), _("1 or more")
+        )
     return Kloss.rated(synchronous / ratio, speed / ratio, ratio * part.positive("moment", MOMENT), overload)

@@ -41,9 +41,13 @@ def _setting(given: Mapping[str, object], path: Path, known: Mapping[str, object
     for name in given:
         if name not in known:
             raise ProblemError(
-                _("there is no parameter of that name"), path=(*path, name), found=quote(name), key=True,
-                allowed=", ".join(known) or _("none: the file has no parameters"), near=nearest(name, known),
-            )  # fmt: skip
+                _("there is no parameter of that name"),
+                path=(*path, name),
+                found=quote(name),
+                key=True,
+                allowed=", ".join(known) or _("none: the file has no parameters"),
+                near=nearest(name, known),
+            )
     if not given:
         return Setting()
     try:

@@ -44,9 +44,11 @@ class Members:
         if base == FRAME and free is not None and "R" in kinds:
             joined[_("a hinge on the frame: points: {{{point}: [x, y]}}").format(point=free)] = None
         return ProblemError(
-            _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base), path=path,
-            found=quote(link), allowed=", ".join(joined) or None,
-        )  # fmt: skip
+            _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base),
+            path=path,
+            found=quote(link),
+            allowed=", ".join(joined) or None,
+        )
 
 
 def build_links(shape: schema.File, values: ValueReader) -> Members:
@@ -71,9 +73,11 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
             raise part.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
         if hinge.attached_to not in links_at[point]:
             raise part.refusal(
-                "attached_to", _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
-                found=quote(hinge.attached_to), allowed=", ".join(links_at[point]),
-            )  # fmt: skip
+                "attached_to",
+                _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
+                found=quote(hinge.attached_to),
+                allowed=", ".join(links_at[point]),
+            )
     attached = {point: hinge.attached_to for point, hinge in shape.hinges.items()}
     return tuple(replace(hinge, attached_to=attached.get(hinge.point, "")) for hinge in hinges)
 
@@ -88,8 +92,9 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
                 _("with the links attached to {link} the mechanism does not fall into the same groups").format(
                     link=hinge.attached_to
                 ),
-                found=quote(hinge.attached_to), allowed=", ".join(allowed),
-            )  # fmt: skip
+                found=quote(hinge.attached_to),
+                allowed=", ".join(allowed),
+            )
 
 
 def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
@@ -144,9 +149,11 @@ class _Reader:
             raise part.refusal("points", _("a point is named twice"), str(given))
         if len(given) > 2:
             raise part.refusal(
-                "points", _("three points and more need coordinates in the link's own axes"), ", ".join(given),
+                "points",
+                _("three points and more need coordinates in the link's own axes"),
+                ", ".join(given),
                 f"{{{given[0]}: [0, 0], {given[1]}: [x, 0], {given[2]}: [x, y]}}",
-            )  # fmt: skip
+            )
         if len(given) < 2:
             if part.given.length is not None:
                 raise part.refusal("length", _("a length belongs to two points"))
@@ -227,9 +234,12 @@ def _refuse_twins(shape: schema.File) -> None:
         other = alike.setdefault(latin(name), name)
         if other != name:
             raise ProblemError(
-                _("this name looks like another one, but its letters differ"), path=named[name], found=quote(name),
-                near=other, key=True,
-            )  # fmt: skip
+                _("this name looks like another one, but its letters differ"),
+                path=named[name],
+                found=quote(name),
+                near=other,
+                key=True,
+            )
 
 
 def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:
@@ -241,9 +251,12 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
     for name in shape.links:
         if name not in joined:
             raise ProblemError(
-                _("this link is joined to nothing"), path=("links", name), found=", ".join(links[name].points),
-                allowed=_("a point that another link or the frame has too, or slides"), key=True,
-            )  # fmt: skip
+                _("this link is joined to nothing"),
+                path=("links", name),
+                found=", ".join(links[name].points),
+                allowed=_("a point that another link or the frame has too, or slides"),
+                key=True,
+            )
     used = {s.on for link in shape.links.values() for s in link.sliding}
     for guide in shape.guides:
         if guide not in used:
@@ -264,11 +277,13 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
         if point not in elsewhere:
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
             raise ProblemError(
-                _("this point is named nowhere else"), path=path, found=quote(point),
+                _("this point is named nowhere else"),
+                path=path,
+                found=quote(point),
                 allowed=_("a point of another link or the frame; one that is only watched has coordinates (see also:)"),
                 near=nearest(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,
-            )  # fmt: skip
+            )
 
 
 def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]) -> set[str]:

@@ -222,9 +222,10 @@ def _check_centre(links: Mapping[str, Link], name: str, part: Part) -> None:
     of = [link for link in links if point in links[link].points]
     if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_PLACE):
         raise part.refusal(
-            "centre", _("this centre of mass is called {point}, and so is another point").format(point=point),
+            "centre",
+            _("this centre of mass is called {point}, and so is another point").format(point=point),
             allowed=_("centre: {point}, or another name of the point").format(point=point),
-        )  # fmt: skip
+        )
 
 
 def _gravity(given: Any, values: ValueReader) -> complex:
@@ -264,9 +265,20 @@ def _load(name: str, part: Part, linkage: Linkage) -> LoadRecord:
         when, stroke_link = "working stroke", _stroke_link(part, "when", linkage, link)
     point = given.at if isinstance(given.at, str) else ""
     return LoadRecord(
-        name, link, at, pushes.size, turns.size, given.axes == "link", when, pushes.table or turns.table, point, window,
-        pushes.resists or turns.resists, base, stroke_link,
-    )  # fmt: skip
+        name,
+        link,
+        at,
+        pushes.size,
+        turns.size,
+        given.axes == "link",
+        when,
+        pushes.table or turns.table,
+        point,
+        window,
+        pushes.resists or turns.resists,
+        base,
+        stroke_link,
+    )
 
 
 def _stroke_link(part: Part, key: str, linkage: Linkage, loaded: str) -> str:
@@ -333,11 +345,12 @@ def _sized(part: Part, want: Dimension, linkage: Linkage, loaded: str, *, angled
         raise part.refusal("angle", wanted, allowed=_("angle: 180 deg"))
     if (given.against is None) != (given.table is None):
         raise part.refusal(
-            "against", _("a table has two columns: what it is against, and the size"),
+            "against",
+            _("a table has two columns: what it is against, and the size"),
             allowed=_(
                 "against: stroke, share of stroke, crank angle or crank turn, and table: [[argument, size], ...]"
             ),
-        )  # fmt: skip
+        )
     along = direction(part.number("angle", ANGLE)) if angled else 1.0
     if part.one_of("size", "table", "resists") == "size":
         return _Component(along * part.number("size", want))
@@ -354,16 +367,21 @@ def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
     for k, place in enumerate((low, high)):
         if not -SAME_PLACE <= place + cycle <= 2 * cycle + SAME_PLACE:
             raise ProblemError(
-                _("the crank does not come to this angle in its cycle"), path=(*part.path, "when", k),
+                _("the crank does not come to this angle in its cycle"),
+                path=(*part.path, "when", k),
                 found=quote(part.given.when[k]),
                 allowed=_("at most {end}; a longer cycle of loads is told by cycle: {turns} turns").format(
                     end=end, turns=max(2, math.ceil(place / math.tau))
                 ),
-            )  # fmt: skip
+            )
     length = (high - low) % cycle
     if length < SAME_PLACE or cycle - length < SAME_PLACE:
-        raise part.refusal("when", _("between these two angles there is nothing, or all"), str(part.given.when),
-                           _("two angles less than {end} apart, or when: always").format(end=end))  # fmt: skip
+        raise part.refusal(
+            "when",
+            _("between these two angles there is nothing, or all"),
+            str(part.given.when),
+            _("two angles less than {end} apart, or when: always").format(end=end),
+        )
     return low, high
 
 
@@ -372,9 +390,11 @@ def _table(part: Part, want: Dimension, linkage: Linkage, loaded: str) -> LoadTa
     argument, against, stroke_link = ANGLE, given.against or "", ""
     if linkage.driver.kind == "slide":
         raise part.refusal(
-            "against", _("a table is against a crank, or the strokes that it gives: this driver slides"),
-            str(given.against), _("size: one value"),
-        )  # fmt: skip
+            "against",
+            _("a table is against a crank, or the strokes that it gives: this driver slides"),
+            str(given.against),
+            _("size: one value"),
+        )
     shares = against.startswith("share")
     if shares or against.startswith("stroke"):
         against, stroke_link = "stroke", _stroke_link(part, "against", linkage, loaded)
@@ -399,10 +419,11 @@ def _refuse_beyond_stroke(part: Part, shares: Sequence[Any]) -> None:
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(
-                _("this is no share of the stroke"), path=(*part.path, "table", row, 0),
+                _("this is no share of the stroke"),
+                path=(*part.path, "table", row, 0),
                 found=quote(part.given.table[row][0]),
                 allowed=_("0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke"),
-            )  # fmt: skip
+            )
 
 
 def _whole_turns(way: float) -> bool:

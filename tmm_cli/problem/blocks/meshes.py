@@ -109,9 +109,11 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
     for index, mesh in enumerate(meshes):
         if mesh.roller and mesh.roller in rollers[:index]:
             raise ProblemError(
-                _("a link has this number already"), path=("cams", mesh.name, "roller"), found=quote(mesh.roller),
+                _("a link has this number already"),
+                path=("cams", mesh.name, "roller"),
+                found=quote(mesh.roller),
                 allowed=_("a number of its own for each roller"),
-            )  # fmt: skip
+            )
 
 
 def _no_contradiction(gears: list[Mesh]) -> None:
@@ -130,9 +132,10 @@ def _no_contradiction(gears: list[Mesh]) -> None:
         elif abs(wanted - found) > PITCHES_TOUCH * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
             raise ProblemError(
                 _("gear {name} contradicts those before it: the wheels lock one another").format(name=gear.name),
-                path=("gears", gear.name), allowed=_("ratios and offsets that agree round a ring, or one gear less"),
+                path=("gears", gear.name),
+                allowed=_("ratios and offsets that agree round a ring, or one gear less"),
                 key=True,
-            )  # fmt: skip
+            )
 
 
 def _different(names: Sequence[str], part: Part, path: Path, members: Members) -> None:
@@ -191,9 +194,10 @@ def _ratio(part: Part, given: Gear, distance: float) -> float:
     i, j = given.between
     if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
         raise part.refusal(
-            "", _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
+            "",
+            _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
             ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
-        )  # fmt: skip
+        )
     if not 1 / MANY_TEETH <= size <= MANY_TEETH or (given.inner and size == 1):
         raise part.refusal("", _("no pair of wheels has this ratio"), f"{size:.6g}")
     if given.module is not None and teeth is not None and radii is None:
@@ -207,10 +211,10 @@ def _ratio(part: Part, given: Gear, distance: float) -> float:
                 for v in (distance, wanted_distance)
             )
             raise part.refusal(
-                "", _("wheels {i} and {j} do not mesh: their axes are {distance} apart").format(
-                    i=i, j=j, distance=apart
-                ), allowed=_("a distance of {wanted}").format(wanted=needed),
-            )  # fmt: skip
+                "",
+                _("wheels {i} and {j} do not mesh: their axes are {distance} apart").format(i=i, j=j, distance=apart),
+                allowed=_("a distance of {wanted}").format(wanted=needed),
+            )
     return size if given.inner else -size
 
 
@@ -241,9 +245,16 @@ def _rack(name: str, part: Part, members: Members) -> Mesh:
         raise part.refusal("side", _("on which side of the rack is the wheel?"), allowed=allowed)
     forward = 1.0 if slide.runner == rack else -1.0
     return Mesh(
-        name, "rack", wheel, rack, carrier, side * forward * radius, part.number("offset", LENGTH), slide.name,
+        name,
+        "rack",
+        wheel,
+        rack,
+        carrier,
+        side * forward * radius,
+        part.number("offset", LENGTH),
+        slide.name,
         pressure=_pressure(part),
-    )  # fmt: skip
+    )
 
 
 def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:

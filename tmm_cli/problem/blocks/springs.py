@@ -87,14 +87,17 @@ def _spring(name: str, given: Spring, linkage: Linkage, part: Part) -> SpringRec
         raise part.refusal("at", _("a torsion spring has no ends"), at_key=True)
     ends = [next(iter(linkage.links[n].points.values()), 0j) for n in (i, j)]
     if given.at is not None:
-        ends = [part.values.place(place, linkage.links[n].points, (*part.path, "at", k), n)
-                for k, (n, place) in enumerate(zip((i, j), given.at, strict=True))]  # fmt: skip
+        ends = [
+            part.values.place(place, linkage.links[n].points, (*part.path, "at", k), n)
+            for k, (n, place) in enumerate(zip((i, j), given.at, strict=True))
+        ]
         if any({i, j} <= set(h.links) and given.at[0] == given.at[1] == h.point for h in linkage.hinges):
             raise part.refusal(
-                "at", _("both ends of spring {name} are in hinge {point}: it has no length").format(
+                "at",
+                _("both ends of spring {name} are in hinge {point}: it has no length").format(
                     name=name, point=given.at[0]
                 ),
-            )  # fmt: skip
+            )
     elif not twists and any(len(linkage.links[n].points) > 1 for n in (i, j)):
         allowed = _("at: [point of one, point of the other]")
         raise part.refusal("at", _("where are the ends of the spring?"), allowed=allowed)
@@ -107,9 +110,10 @@ def _spring(name: str, given: Spring, linkage: Linkage, part: Part) -> SpringRec
         free = part.number("free", ANGLE) if twists else part.positive("free", LENGTH, zero=True)
     if twists and abs(free) > math.pi:
         raise part.refusal(
-            "free", _("a free angle lies within half a turn; what a spring is wound up beyond that is its preload"),
+            "free",
+            _("a free angle lies within half a turn; what a spring is wound up beyond that is its preload"),
             found=str(given.free),
-        )  # fmt: skip
+        )
     preload = part.number("preload", MOMENT if twists else FORCE)
     damping = part.positive("damping", TORSION_DAMPING if twists else DAMPING, zero=True)
     return SpringRecord(name, i, j, ends[0], ends[1], twists, rate, free, preload, damping)

@@ -18,8 +18,11 @@ class Format(Protocol):
 
 
 FORMATS: Final[dict[str, Format]] = {
-    "pylinkage": pylinkage, "PMKS+, CSV": pmks_csv, "PMKS+, a saved link": pmks_link, "linkage/v2": linkage_v2,
-}  # fmt: skip
+    "pylinkage": pylinkage,
+    "PMKS+, CSV": pmks_csv,
+    "PMKS+, a saved link": pmks_link,
+    "linkage/v2": linkage_v2,
+}
 
 
 def foreign_of(text: str, file: str) -> Foreign:

@@ -276,8 +276,13 @@ class _Writing:
             parts.append(("turned", _number(math.remainder(turned, 360))))
         if slide.carrier == FRAME:
             return _flow([("on", f"g{fixed.index(slide) + 1}"), *parts])
-        return _flow([("on", self._key(slide.carrier))]).rstrip("}") + ", " + self._guide(slide)[1:-1] + ", " + _flow(
-            parts)[1:]  # fmt: skip
+        return (
+            _flow([("on", self._key(slide.carrier))]).rstrip("}")
+            + ", "
+            + self._guide(slide)[1:-1]
+            + ", "
+            + _flow(parts)[1:]
+        )
 
     def _motion(self) -> Iterator[str]:
         it, drive = self.foreign, self.foreign.drive

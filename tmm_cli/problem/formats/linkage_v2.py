@@ -102,8 +102,11 @@ def _both(foot: complex, along: complex, square: float, step: Node) -> tuple[com
 
 
 SIDES: Final[dict[str, Callable[[complex], float]]] = {
-    "right": lambda z: z.real, "left": lambda z: -z.real, "upper": lambda z: z.imag, "lower": lambda z: -z.imag,
-}  # fmt: skip
+    "right": lambda z: z.real,
+    "left": lambda z: -z.real,
+    "upper": lambda z: z.imag,
+    "lower": lambda z: -z.imag,
+}
 
 
 def _branch(step: Node, ends: tuple[complex, complex], along: complex) -> complex:
@@ -149,19 +152,36 @@ def _unit(along: complex, step: Node) -> complex:
 
 
 STEPS: Final[dict[str, Callable[[Construction, Node], complex]]] = {
-    "point_on_ray": _on_ray, "circle_line_y": _circle_line(1j), "circle_line_x": _circle_line(1 + 0j),
-    "circle_circle": _circles, "circle_ray": _circle_ray, "point_at_angle": _at_angle, "point_on_line": _on_line,
-    "point_towards": _towards, "point_offset": _offset,
-}  # fmt: skip
+    "point_on_ray": _on_ray,
+    "circle_line_y": _circle_line(1j),
+    "circle_line_x": _circle_line(1 + 0j),
+    "circle_circle": _circles,
+    "circle_ray": _circle_ray,
+    "point_at_angle": _at_angle,
+    "point_on_line": _on_line,
+    "point_towards": _towards,
+    "point_offset": _offset,
+}
 
 
 # linkage/v2: the YAML of the coursework client nickadminroot/tmm-cli (skills/tmm-yaml/REFERENCE.md there).
 
 
 KEYS = (
-    "schema", "units", "parameters", "geometry", "bodies", "joints", "drive", "drives", "gravity", "loads",
-    "output_body", "attached_masses", "dynamics",
-)  # fmt: skip
+    "schema",
+    "units",
+    "parameters",
+    "geometry",
+    "bodies",
+    "joints",
+    "drive",
+    "drives",
+    "gravity",
+    "loads",
+    "output_body",
+    "attached_masses",
+    "dynamics",
+)
 HINGE, GUIDE = "revolute", "prismatic"
 
 
@@ -186,30 +206,45 @@ class _Reading:
         hinges, slides = self._hinges(), self._slides()
         names = _names(hinges, [(slide.runner, slide.point) for slide in slides])
         bodies = tuple(
-            Body(name, tuple(dict.fromkeys(found for (body, __), found in names.items() if body == name)),
-                 mass=self._value(body, "mass"), inertia=self._value(body, "inertia"), centre=self._centre(body))
+            Body(
+                name,
+                tuple(dict.fromkeys(found for (body, __), found in names.items() if body == name)),
+                mass=self._value(body, "mass"),
+                inertia=self._value(body, "inertia"),
+                centre=self._centre(body),
+            )
             for name, body in self.top["bodies"].pairs()
-        )  # fmt: skip
+        )
         massed = [self._with_points(body) for body in bodies]
         places = {found: self.points.place(point) for (__, point), found in names.items()}
-        left = [
-            _("Key `{key}` is not read.").format(key=key) for key in self.top.mapping() if key not in KEYS
-        ]  # fmt: skip
+        left = [_("Key `{key}` is not read.").format(key=key) for key in self.top.mapping() if key not in KEYS]
         if self.top.get("dynamics"):
             left.append(_("Block `dynamics`: motor and flywheel are said otherwise here."))
         notes = [_("The file is about one place of the driver; `positions` asks for that one.")]
         if (ratio := self._value(self._driven(), "q_ratio")) < 0:
-            notes.append(_("q_ratio is {ratio}: the sign of omega is taken for that of the link itself.").format(
-                ratio=f"{ratio:g}"))  # fmt: skip
+            notes.append(
+                _("q_ratio is {ratio}: the sign of omega is taken for that of the link itself.").format(
+                    ratio=f"{ratio:g}"
+                )
+            )
         output = said.one_of(self.top["bodies"].mapping()) if (said := self.top.get("output_body")) else ""
         gravity = given.vector() if (given := self.top.get("gravity")) else None
         return Foreign(
-            "linkage/v2", "", "m", places, tuple(found for (body, __), found in names.items() if body == FRAME),
-            tuple(massed), self._drive(),
+            "linkage/v2",
+            "",
+            "m",
+            places,
+            tuple(found for (body, __), found in names.items() if body == FRAME),
+            tuple(massed),
+            self._drive(),
             tuple(Slide(s.runner, names[s.runner, s.point], s.carrier, s.through, s.angle) for s in slides),
-            tuple(self._pushes()), gravity, output, True,
-            tuple(notes), tuple(left),
-        )  # fmt: skip
+            tuple(self._pushes()),
+            gravity,
+            output,
+            True,
+            tuple(notes),
+            tuple(left),
+        )
 
     def _value(self, node: Node, key: str) -> float:
         found = node.get(key)

@@ -110,8 +110,9 @@ def _check(saved: Saved, file: str) -> None:
     wanted += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
     for path, name in wanted:
         if name not in known:
-            raise ProblemError(_("there is no link of that name"), path=path, found=quote(name),
-                               near=nearest(name, known), file=file)  # fmt: skip
+            raise ProblemError(
+                _("there is no link of that name"), path=path, found=quote(name), near=nearest(name, known), file=file
+            )
     on = [(("links", link.id), joint) for link in saved.links for joint in link.joints]
     on += [(("joints", joint.id), end) for joint in saved.joints if joint.carrier for end in joint.slot]
     for path, name in on:
@@ -128,16 +129,24 @@ def _folded(saved: Saved, file: str) -> Saved:
         pins = [joints[name] for name in block.joints if not joints[name].slides]
         if len(rails) != 1 or len(pins) != 1:
             raise ProblemError(
-                _("a sliding block with one joint that slides and one pin is expected"), path=("links", block.id),
-                found=", ".join(block.joints), file=file,
-            )  # fmt: skip
+                _("a sliding block with one joint that slides and one pin is expected"),
+                path=("links", block.id),
+                found=", ".join(block.joints),
+                file=file,
+            )
         (rail,), (pin,) = rails, pins
         others = [link.id for link in links if rail.id in link.joints and pin.id not in link.joints]
         carrier = rail.carrier or (others[0] if others and not rail.ground else "")
         joints[pin.id] = replace(
-            rail, id=pin.id, ground=not carrier, input=rail.input or pin.input, welded=pin.welded, carrier=carrier,
-            mass=block.mass, speed=rail.speed or pin.speed,
-        )  # fmt: skip
+            rail,
+            id=pin.id,
+            ground=not carrier,
+            input=rail.input or pin.input,
+            welded=pin.welded,
+            carrier=carrier,
+            mass=block.mass,
+            speed=rail.speed or pin.speed,
+        )
         renamed[rail.id] = pin.id
         del joints[rail.id]
     for name, joint in joints.items():
@@ -165,8 +174,11 @@ class _Mechanism:
         frame = set[str]()
         while True:  # a joint of a frame link is on the frame too
             fixed = {name for name, joint in joints.items() if joint.ground and not joint.slides}
-            more = {link.id for link in saved.links if link.id not in frame
-                    and len({joints[name].place for name in link.joints if name in fixed}) > 1}  # fmt: skip
+            more = {
+                link.id
+                for link in saved.links
+                if link.id not in frame and len({joints[name].place for name in link.joints if name in fixed}) > 1
+            }
             if not more:
                 return cls(saved, file, joints, owner, frozenset(frame))
             frame |= more
@@ -179,8 +191,9 @@ class _Mechanism:
         slides = list(self._slides())
         blocks = [
             Body(name, (joint.id,), mass=joint.mass * MASS[self.saved.length])
-            for name, joint in ((self._block(joint), joint) for joint in self.joints.values()) if name
-        ]  # fmt: skip
+            for name, joint in ((self._block(joint), joint) for joint in self.joints.values())
+            if name
+        ]
         bodies = [self._body(link) for link in self.saved.links if link.id not in self.frame]
         used = {name for body in bodies for name in body.points}
         blocks = [block for block in blocks if block.points[0] in used]
@@ -191,25 +204,39 @@ class _Mechanism:
         self.left.extend(
             _("Joint {name} is on no moving link.").format(name=name) for name in self.joints if name not in known
         )
-        notes = [*self.saved.notes, _("Masses, moments of inertia about the centre of mass and forces are read in "
-                                      "{units}.").format(units=UNITS[self.saved.length])]  # fmt: skip
+        notes = [
+            *self.saved.notes,
+            _("Masses, moments of inertia about the centre of mass and forces are read in {units}.").format(
+                units=UNITS[self.saved.length]
+            ),
+        ]
         notes += [
             _("Link {name} is pinned to the frame twice: it is part of the frame.").format(name=name)
             for name in sorted(self.frame)
         ]
         return Foreign(
-            "PMKS+", self.saved.title, self.saved.length,
+            "PMKS+",
+            self.saved.title,
+            self.saved.length,
             {name: joint.place for name, joint in self.joints.items() if name in used},
             tuple(name for name, joint in self.joints.items() if joint.ground and not joint.slides and name in used),
-            (*bodies, *blocks), drive, tuple(slides), tuple(pushes), None if self.saved.gravity else 0j,
-            notes=tuple(notes), left=(*self.saved.left, *self.left),
-        )  # fmt: skip
+            (*bodies, *blocks),
+            drive,
+            tuple(slides),
+            tuple(pushes),
+            None if self.saved.gravity else 0j,
+            notes=tuple(notes),
+            left=(*self.saved.left, *self.left),
+        )
 
     def _riders(self, joint: Joint) -> list[str]:
         """Moving links on a joint; of one that slides without the link that has the slot."""
         carrier = self._carrier(joint) if joint.slides else ""
-        return [link.id for link in self.saved.links
-                if joint.id in link.joints and link.id not in self.frame and link.id != carrier]  # fmt: skip
+        return [
+            link.id
+            for link in self.saved.links
+            if joint.id in link.joints and link.id not in self.frame and link.id != carrier
+        ]
 
     def _carrier(self, joint: Joint) -> str:
         owner = self.owner[joint.carrier] if joint.carrier else FRAME
@@ -241,8 +268,11 @@ class _Mechanism:
         if joint.ground:
             raise self._refused(joint, _("a slot that is on the frame and on a link"), quote(joint.carrier))
         if joint.id in carrier.joints or any(end not in carrier.joints for end in joint.slot):
-            raise self._refused(joint, _("a slot between two joints of another link is expected"),
-                                ", ".join((joint.carrier, *joint.slot)))  # fmt: skip
+            raise self._refused(
+                joint,
+                _("a slot between two joints of another link is expected"),
+                ", ".join((joint.carrier, *joint.slot)),
+            )
         a, b = (self.joints[end].place for end in joint.slot)
         if a == b:
             raise self._refused(joint, _("the slot has no direction: its joints coincide"), ", ".join(joint.slot))
@@ -275,9 +305,11 @@ class _Mechanism:
         cranks = self._riders(joint)
         if not joint.ground:
             raise self._refused(
-                joint, _("a motor between two moving links is not taken over"), ", ".join(cranks),
+                joint,
+                _("a motor between two moving links is not taken over"),
+                ", ".join(cranks),
                 _("a crank on the frame; else write the block `driver` by hand"),
-            )  # fmt: skip
+            )
         if len(cranks) != 1:
             raise self._refused(joint, _("one driving link is wanted"), ", ".join(cranks) or "0")
         return Drive(cranks[0], joint.speed or self.saved.rpm, "rpm")

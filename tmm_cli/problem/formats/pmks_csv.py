@@ -27,17 +27,29 @@ def read(text: str, file: str) -> Foreign:
     """The mechanism of a file. Raises ProblemError."""
     rows = _rows(text, file)
     joints = tuple(
-        Joint(row["id"], complex(*_numbers(row, ("x", "y"), file, n)), row["type"] == "P", _true(row["ground"]),
-              _true(row["input"]), _numbers(row, ("angle",), file, n)[0])
+        Joint(
+            row["id"],
+            complex(*_numbers(row, ("x", "y"), file, n)),
+            row["type"] == "P",
+            _true(row["ground"]),
+            _true(row["input"]),
+            _numbers(row, ("angle",), file, n)[0],
+        )
         for n, row in rows["joints"]
-    )  # fmt: skip
+    )
     links = tuple(_link(row, file, n) for n, row in rows["links"])
     forces = tuple(
-        Force(row["id"], row["link"], complex(*_numbers(row, ("startx", "starty"), file, n)),
-              complex(*_numbers(row, ("endx", "endy"), file, n)), not _true(row["fixed"]), _true(row["direction"]),
-              _numbers(row, ("mag",), file, n)[0])
+        Force(
+            row["id"],
+            row["link"],
+            complex(*_numbers(row, ("startx", "starty"), file, n)),
+            complex(*_numbers(row, ("endx", "endy"), file, n)),
+            not _true(row["fixed"]),
+            _true(row["direction"]),
+            _numbers(row, ("mag",), file, n)[0],
+        )
         for n, row in rows["forces"]
-    )  # fmt: skip
+    )
     notes = [_("CSV files of PMKS+ say no units: lengths are taken for cm.")]
     rpm, gravity = 10.0, False
     for n, row in rows["settings"]:

@@ -53,9 +53,11 @@ def read(text: str, file: str) -> Foreign:
     """The mechanism of a file. Raises ProblemError."""
     if NATIVE.fullmatch(text.strip()):
         raise ProblemError(
-            _("a document of the newer editor of PMKS+ is not read"), found="pmks2:...",
-            allowed=_("a link that begins with its settings, as ?2v.Ay,1E8.5,..."), file=file,
-        )  # fmt: skip
+            _("a document of the newer editor of PMKS+ is not read"),
+            found="pmks2:...",
+            allowed=_("a link that begins with its settings, as ?2v.Ay,1E8.5,..."),
+            file=file,
+        )
     found = FORM.fullmatch(text.strip())
     assert found is not None
     return foreign(_Reading.of(_checked(unquote(found[1]), file), file).saved(), file)
@@ -66,15 +68,19 @@ def _checked(content: str, file: str) -> str:
     body, mark, digest = content.rpartition("*")
     if mark and digest != _digest(body):
         raise ProblemError(
-            _("this link is damaged: its digest does not fit its text"), found=quote(digest),
-            allowed=_("a link as PMKS+ copies it, or its file .pmks"), file=file,
-        )  # fmt: skip
+            _("this link is damaged: its digest does not fit its text"),
+            found=quote(digest),
+            allowed=_("a link as PMKS+ copies it, or its file .pmks"),
+            file=file,
+        )
     body = body if mark else content
     if CHECKS[(len(body) - 1) % 62] != body[-1:]:
         raise ProblemError(
-            _("this link is not whole: its last character does not fit its length"), found=quote(body[-1:]),
-            allowed=_("a link as PMKS+ copies it, or its file .pmks"), file=file,
-        )  # fmt: skip
+            _("this link is not whole: its last character does not fit its length"),
+            found=quote(body[-1:]),
+            allowed=_("a link as PMKS+ copies it, or its file .pmks"),
+            file=file,
+        )
     return body[:-1]
 
 
@@ -118,8 +124,9 @@ class _Reading:
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
-            raise self._refused(("settings",), _("a unit of length that is not known here"), quote(words[:1]),
-                                ", ".join(LENGTHS))  # fmt: skip
+            raise self._refused(
+                ("settings",), _("a unit of length that is not known here"), quote(words[:1]), ", ".join(LENGTHS)
+            )
         rpm = self.exact.get(("I", "", 0), self._integer(whole.split(",")[0], ("settings",)))
         linear = self._number(("settings",), "D", "", 1, [*decimals.split(","), "", ""][1]) or 5.0
         left = list(self.left)
@@ -130,14 +137,24 @@ class _Reading:
             if kind in ROOTS:
                 roots.append(link)
             if kind in AUTOMATIC and kind in ROOTS:
-                notes.append(_("PMKS+ computes inertia or centre of link {name} from its shape: the stored values are "
-                               "taken.").format(name=link.id))  # fmt: skip
+                notes.append(
+                    _(
+                        "PMKS+ computes inertia or centre of link {name} from its shape: the stored values are taken."
+                    ).format(name=link.id)
+                )
         joints = tuple(self._joint(fields, left) for fields in self.joints)
         return Saved(
-            joints, tuple(self._whole(link) for link in roots), tuple(self._force(fields) for fields in self.forces),
-            -rpm if on & CLOCKWISE else rpm, not on & GRAVITY_OFF, LENGTHS[DIGITS.index(words[0])], linear,
-            tuple(notes), tuple(left), titles[0] if titles else "",
-        )  # fmt: skip
+            joints,
+            tuple(self._whole(link) for link in roots),
+            tuple(self._force(fields) for fields in self.forces),
+            -rpm if on & CLOCKWISE else rpm,
+            not on & GRAVITY_OFF,
+            LENGTHS[DIGITS.index(words[0])],
+            linear,
+            tuple(notes),
+            tuple(left),
+            titles[0] if titles else "",
+        )
 
     def _joint(self, fields: list[str], left: list[str]) -> Joint:
         head, name = fields[0], fields[0][1:]
@@ -154,13 +171,24 @@ class _Reading:
         if welded not in ("", "0", "Fe") or any(unknown):
             raise self._refused(path, _("a field of a joint that is not known here"), quote(",".join(more)))
         if any((carrier, a, b)) and not (all((carrier, a, b)) and flags & SLIDES and a != b):
-            raise self._refused(path, _("a slot needs a joint that slides, a link and two joints of that link"),
-                                quote(",".join((carrier, a, b))))  # fmt: skip
+            raise self._refused(
+                path,
+                _("a slot needs a joint that slides, a link and two joints of that link"),
+                quote(",".join((carrier, a, b))),
+            )
         return Joint(
-            name, complex(x, y), bool(flags & SLIDES), bool(flags & GROUND), bool(flags & INPUT), angle,
-            bool(flags & WELDED), carrier, (a, b), self._number(path, "J", name, 4, mass),
+            name,
+            complex(x, y),
+            bool(flags & SLIDES),
+            bool(flags & GROUND),
+            bool(flags & INPUT),
+            angle,
+            bool(flags & WELDED),
+            carrier,
+            (a, b),
+            self._number(path, "J", name, 4, mass),
             self._number(path, "J", name, 3, speed),
-        )  # fmt: skip
+        )
 
     def _link(self, fields: list[str]) -> tuple[Link, str]:
         """And the character that says whether it is a link of its own and what PMKS+ computes of it."""
@@ -169,8 +197,9 @@ class _Reading:
         if not name or len(fields) < 9 or form not in ("R", "P"):
             raise self._refused(path, _("a record of a link with nine fields is expected"), quote(",".join(fields)))
         if kind not in ROOTS + PARTS:
-            raise self._refused(path, _("a link of a kind that is not known here"), quote(kind),
-                                " ".join(ROOTS + PARTS))  # fmt: skip
+            raise self._refused(
+                path, _("a link of a kind that is not known here"), quote(kind), " ".join(ROOTS + PARTS)
+            )
         mass, inertia, x, y = (self._number(path, "L", name, k, text) for k, text in enumerate(fields[2:6]))
         others = fields[7:]
         stop = others.index("") if "" in others else len(others)

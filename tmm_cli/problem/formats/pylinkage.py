@@ -50,8 +50,11 @@ def read(text: str, file: str) -> Foreign:
             drive = Drive(name, rate)
             notes.append(_("The angular velocity of pylinkage, rad per unit of time, is taken for rad/s."))
             if kind == "arc_driver":
-                left.append(_("Link {link} is driven to and fro over an arc there; here it goes its whole way.").format(
-                    link=name))  # fmt: skip
+                left.append(
+                    _("Link {link} is driven to and fro over an arc there; here it goes its whole way.").format(
+                        link=name
+                    )
+                )
     if drive is None:
         raise ProblemError(_("no link is driven"), allowed="type: driver", file=file)
     slides = []
@@ -64,8 +67,11 @@ def read(text: str, file: str) -> Foreign:
             through = at.vector() if (at := joint.get("line_point")) else 0j
             bodies.append(Body(stone, (name,)))
             slides.append(Slide(stone, name, FRAME, through, cmath.phase(axis)))
-            notes.append(_("Joint {joint} runs on a line of the frame: slider {link} is put there.").format(
-                joint=name, link=stone))  # fmt: skip
+            notes.append(
+                _("Joint {joint} runs on a line of the frame: slider {link} is put there.").format(
+                    joint=name, link=stone
+                )
+            )
         if kind == "tracker" and not any(name in body.points for body in bodies):
             left.append(_("Point {point} follows two joints that are not on one link.").format(point=name))
     used = {point for body in bodies for point in body.points}
@@ -76,10 +82,17 @@ def read(text: str, file: str) -> Foreign:
     ]
     title = named.text() if (named := top.get("name")) and named.data else ""
     return Foreign(
-        "pylinkage", title, "mm", {j: z for j, z in places.items() if j in used}, tuple(j for j in frame if j in used),
-        tuple(bodies), drive, tuple(slides),
-        notes=tuple(dict.fromkeys(notes)), left=tuple(left),
-    )  # fmt: skip
+        "pylinkage",
+        title,
+        "mm",
+        {j: z for j, z in places.items() if j in used},
+        tuple(j for j in frame if j in used),
+        tuple(bodies),
+        drive,
+        tuple(slides),
+        notes=tuple(dict.fromkeys(notes)),
+        left=tuple(left),
+    )
 
 
 def _frame(joints: dict[str, Node], links: list[Node]) -> tuple[str, ...]:

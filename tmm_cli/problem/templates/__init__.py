@@ -73,9 +73,13 @@ def _translated(lines: list[str], translate: Translate) -> list[str]:
             mark = f"{indent}# "
             text = translate(" ".join(paragraph))
             found += textwrap.wrap(
-                text, WIDTH, initial_indent=mark, subsequent_indent=mark, break_long_words=False,
+                text,
+                WIDTH,
+                initial_indent=mark,
+                subsequent_indent=mark,
+                break_long_words=False,
                 break_on_hyphens=False,
-            )  # fmt: skip
+            )
             paragraph = []
         if comment is not None and prose:
             indent, paragraph = comment[1], [*paragraph, comment[2]]

@@ -72,10 +72,11 @@ def read(shape: Shape, values: ValueReader) -> Task:
         same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
         if same:
             raise ProblemError(
-                _("this position is there already"), path=("positions", k),
+                _("this position is there already"),
+                path=("positions", k),
                 found=_("position {number}").format(number=same[0] + 1),
                 allowed=_("any other position, as one turned by 20 deg"),
-            )  # fmt: skip
+            )
     sides = {name: side for name in DYADS if (side := _side(shape, values, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
     return Task(tuple(places), tuple(angles), sides, shape.defects == "keep", _box(shape, values, count, sides))
@@ -88,9 +89,12 @@ def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) 
     if count != 4 or len(sides) == 2:
         why = _("{count} positions").format(count=count) if count != 4 else _("both links are given")
         raise ProblemError(
-            _("a box is for pivots that are free"), path=("pivots_within",), found=why,
-            allowed=_("four positions, and AB or DC free"), key=True,
-        )  # fmt: skip
+            _("a box is for pivots that are free"),
+            path=("pivots_within",),
+            found=why,
+            allowed=_("four positions, and AB or DC free"),
+            key=True,
+        )
     one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
     return one, other
 
@@ -105,8 +109,9 @@ def _side(shape: Shape, values: ValueReader, name: str, count: int) -> Side | No
         return None
     found: dict[str, Any] = {
         field: values.vector(getattr(shape, key), LENGTH, (key,))
-        for field, key in (("pivot", pivot), ("pin", pin), ("near", near)) if key in given
-    }  # fmt: skip
+        for field, key in (("pivot", pivot), ("pin", pin), ("near", near))
+        if key in given
+    }
     for field, key, want in (("length", name, LENGTH), ("turn", turn, ANGLE)):
         if key in given:
             found[field] = values.number(getattr(shape, key), want, (key,))

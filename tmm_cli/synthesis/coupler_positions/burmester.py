@@ -46,9 +46,10 @@ class Poses:
         places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
         d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
         d2, d3, d4 = (
-            a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1], a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
+            a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1],
+            a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
             a[..., 0] * d[..., 1] - a[..., 1] * d[..., 0],
-        )  # fmt: skip
+        )
         return d, a, d2, d3, np.abs(d3), np.abs(d4), d2 + d3 + d4
 
 

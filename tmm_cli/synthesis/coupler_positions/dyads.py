@@ -55,7 +55,7 @@ class Limits:
 
 def best_on_curves(
     poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False
-) -> tuple[Dyads, Dyads, float] | None:  # fmt: skip
+) -> tuple[Dyads, Dyads, float] | None:
     """Dyads AB and DC and how good they are: the least transmission angle (rad), or less than zero where there is a
     defect, or the coupler or frame is not sensible. None where no link is sensible. loose: branches are not asked for.
     """
@@ -261,9 +261,11 @@ def dyad(task: Task, name: str) -> Dyads:
 def given_on_curves(task: Task) -> dict[str, Dyads]:
     """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
     found = {
-        name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch) if side.near is None
-        else of_near(task, name) for name, side in task.sides.items()
-    }  # fmt: skip
+        name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
+        if side.near is None
+        else of_near(task, name)
+        for name, side in task.sides.items()
+    }
     for name, own in found.items():
         if not exists(task, own):
             reason = _(
@@ -338,8 +340,10 @@ def parallel(task: Task) -> tuple[Dyads, Dyads]:
         reason = _("the coupler does not turn, and its places lie on a line: links would be infinitely long")
         raise Infeasible("positions", reason, search=False)
     if np.max(np.abs(np.abs(arms) - radius)) > SAME_PLACES * radius:
-        reason = _("the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
-                   "through the others")  # fmt: skip
+        reason = _(
+            "the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
+            "through the others"
+        )
         raise Infeasible(("positions", 3), reason, search=False)
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():

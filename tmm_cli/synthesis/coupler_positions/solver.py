@@ -74,22 +74,43 @@ def construction(
     )
     if count < 4:
         notes = sorted({BY_PIVOT if given else BY_PIN for given in by_pivot})
-        return (Construction(TITLES[sum(by_pivot)], tuple(segments), tuple(arcs), tuple(spots), tuple(notes),
-                             chain="four-bar", values=values),)  # fmt: skip
+        return (
+            Construction(
+                TITLES[sum(by_pivot)],
+                tuple(segments),
+                tuple(arcs),
+                tuple(spots),
+                tuple(notes),
+                chain="four-bar",
+                values=values,
+            ),
+        )
     found = lines(poses, [s.at for s in spots])
     curves = tuple(Curve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
     note = N_("red: centre points m (pivots); dashed: circle points k1 (pins), in position 1")
     near = Construction(
-        N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"), tuple(segments),
-        tuple(arcs), tuple(spots), (note,), curves, chain="four-bar", values=values,
-    )  # fmt: skip
+        N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"),
+        tuple(segments),
+        tuple(arcs),
+        tuple(spots),
+        (note,),
+        curves,
+        chain="four-bar",
+        values=values,
+    )
     few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
     links = [s for s in segments if s.style == "link"]
     wide = Construction(
-        N_("Centre-point curve and circle-point curve of the four positions (Burmester)"), tuple(links), (), tuple(few),
-        (note,), curves, "curves", chain="four-bar",
+        N_("Centre-point curve and circle-point curve of the four positions (Burmester)"),
+        tuple(links),
+        (),
+        tuple(few),
+        (note,),
+        curves,
+        "curves",
+        chain="four-bar",
         around=frame([s.at for s in few], [line for row in found for line in row]),
-    )  # fmt: skip
+    )
     return near, wide
 
 
@@ -103,30 +124,51 @@ def construction(
 
 __all__ = ["PARAMETERS", "Side", "Task", "solve"]
 NAMES: Final = {
-    "Ax": N_("pivot A: x"), "Ay": N_("pivot A: y"), "Dx": N_("pivot D: x"), "Dy": N_("pivot D: y"),
-    "l1": N_("driver l1 = AB"), "l2": N_("coupler l2 = BC"), "l3": N_("follower l3 = DC"), "l4": N_("frame l4 = AD"),
-    "Px": N_("P of the coupler, from B: x"), "Py": N_("P of the coupler, from B: y"),
-    "Cx": N_("pin C in position 1: x"), "Cy": N_("pin C in position 1: y"), "phi1": N_("angle of AB in position 1"),
-}  # fmt: skip
+    "Ax": N_("pivot A: x"),
+    "Ay": N_("pivot A: y"),
+    "Dx": N_("pivot D: x"),
+    "Dy": N_("pivot D: y"),
+    "l1": N_("driver l1 = AB"),
+    "l2": N_("coupler l2 = BC"),
+    "l3": N_("follower l3 = DC"),
+    "l4": N_("frame l4 = AD"),
+    "Px": N_("P of the coupler, from B: x"),
+    "Py": N_("P of the coupler, from B: y"),
+    "Cx": N_("pin C in position 1: x"),
+    "Cy": N_("pin C in position 1: y"),
+    "phi1": N_("angle of AB in position 1"),
+}
 PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
 GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by the fields of Side; places as x and y
-    "AB": {"pin": (N_("B in the coupler: x"), N_("B in the coupler: y")), "pivot": (NAMES["Ax"], NAMES["Ay"]),
-           "length": N_("length AB"), "turn": N_("turn of AB from position 1 to 2"),
-           "near": (N_("A near to x"), N_("A near to y"))},
-    "DC": {"pin": (N_("C in the coupler: x"), N_("C in the coupler: y")), "pivot": (NAMES["Dx"], NAMES["Dy"]),
-           "length": N_("length DC"), "turn": N_("turn of DC from position 1 to 2"),
-           "near": (N_("D near to x"), N_("D near to y"))},
-}  # fmt: skip
+    "AB": {
+        "pin": (N_("B in the coupler: x"), N_("B in the coupler: y")),
+        "pivot": (NAMES["Ax"], NAMES["Ay"]),
+        "length": N_("length AB"),
+        "turn": N_("turn of AB from position 1 to 2"),
+        "near": (N_("A near to x"), N_("A near to y")),
+    },
+    "DC": {
+        "pin": (N_("C in the coupler: x"), N_("C in the coupler: y")),
+        "pivot": (NAMES["Dx"], NAMES["Dy"]),
+        "length": N_("length DC"),
+        "turn": N_("turn of DC from position 1 to 2"),
+        "near": (N_("D near to x"), N_("D near to y")),
+    },
+}
 BRANCH: Final = {"AB": N_("branch of AB"), "DC": N_("branch of DC")}
 AWAY: Final = {"AB": N_("distance of A from the wanted place"), "DC": N_("distance of D from the wanted place")}
 SOURCES: Final = {  # by the count of positions; 1: four of one angle
     1: N_("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
     2: N_("pivots on the bisector of the two places of a pin, at the link's length"),
-    3: N_("pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
-         "coupler held (inversion)"),
-    4: N_("pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
-         "W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"),
-}  # fmt: skip
+    3: N_(
+        "pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
+        "coupler held (inversion)"
+    ),
+    4: N_(
+        "pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
+        "W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"
+    ),
+}
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
@@ -148,10 +190,12 @@ def solve(task: Task) -> Outcome:
     count = len(task.places)
     notes, listings = [], []
     if task.still:
-        notes.append(N_(
-            "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
-            "direction, taken across the arms in the middle of their way"
-        ))  # fmt: skip
+        notes.append(
+            N_(
+                "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
+                "direction, taken across the arms in the middle of their way"
+            )
+        )
     elif count == 4:
         values += [*_on_curve(task, "AB", one), *_on_curve(task, "DC", other)]
         listings.append(_curve(task))
@@ -191,12 +235,16 @@ def _on_curve(task: Task, name: str, found: Dyads) -> Iterator[Value]:
 def _curve(task: Task) -> Listing:
     """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
     columns = (
-        ("branch", N_("branch"), "name"), ("turn", N_("turn from 1 to 2"), "angle"),
-        ("pivot_x", N_("pivot, x"), "length"), ("pivot_y", N_("pivot, y"), "length"),
-        ("pin_x", N_("pin in the coupler, x"), "length"), ("pin_y", N_("pin in the coupler, y"), "length"),
-        ("first_x", N_("pin in position 1, x"), "length"), ("first_y", N_("pin in position 1, y"), "length"),
+        ("branch", N_("branch"), "name"),
+        ("turn", N_("turn from 1 to 2"), "angle"),
+        ("pivot_x", N_("pivot, x"), "length"),
+        ("pivot_y", N_("pivot, y"), "length"),
+        ("pin_x", N_("pin in the coupler, x"), "length"),
+        ("pin_y", N_("pin in the coupler, y"), "length"),
+        ("first_x", N_("pin in position 1, x"), "length"),
+        ("first_y", N_("pin in position 1, y"), "length"),
         ("length", N_("length of the link"), "length"),
-    )  # fmt: skip
+    )
     turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
     rows = []
     for branch in (0, 1):

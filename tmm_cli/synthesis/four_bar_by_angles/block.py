@@ -18,9 +18,12 @@ from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, Functi
 from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS
 
 DOMAINS = {
-    "log10(x)": "x more than 0", "ln(x)": "x more than 0", "sqrt(x)": "x of 0 or more", "x^1.5": "x of 0 or more",
+    "log10(x)": "x more than 0",
+    "ln(x)": "x more than 0",
+    "sqrt(x)": "x of 0 or more",
+    "x^1.5": "x of 0 or more",
     "1/x": "x on one side of 0",
-}  # fmt: skip
+}
 MOST = 361  # pairs of angles
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
 
@@ -88,9 +91,11 @@ def _lengths(lengths: dict[str, float], count: int) -> None:
     other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
-            _("one length gives the size of the four-bar"), found=", ".join(lengths) or _("none"),
-            allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other, key=True,
-        )  # fmt: skip
+            _("one length gives the size of the four-bar"),
+            found=", ".join(lengths) or _("none"),
+            allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other,
+            key=True,
+        )
 
 
 def _zeros(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None:
@@ -100,15 +105,21 @@ def _zeros(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None
         found, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")
         if found in given:
             raise ProblemError(
-                f"three pairs and two lengths determine {found} too", path=(found,), found=", ".join(given),
-                allowed=other, key=True,
-            )  # fmt: skip
+                f"three pairs and two lengths determine {found} too",
+                path=(found,),
+                found=", ".join(given),
+                allowed=other,
+                key=True,
+            )
         zeros[other] = zeros[other] or 0.0
     elif count == 5 and len(given) == 1:
         raise ProblemError(
-            _("5 pairs determine zero angles too"), path=(given[0],), found=given[0],
-            allowed=_("neither phi0 nor psi0; or both, for the least squares of errors"), key=True,
-        )  # fmt: skip
+            _("5 pairs determine zero angles too"),
+            path=(given[0],),
+            found=given[0],
+            allowed=_("neither phi0 nor psi0; or both, for the least squares of errors"),
+            key=True,
+        )
     elif count < 4:
         zeros.update({key: value or 0.0 for key, value in zeros.items()})
     elif count == 4 and not given:
@@ -120,16 +131,20 @@ def _function(shape: Shape, values: ValueReader) -> Function:
     if (shape.function is None) == (shape.table is None) or missing:
         given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
         raise ProblemError(
-            translated(UNDETERMINED), found=", ".join(given) or _("none"),
-            allowed=_("pairs; or function (or table), x, input, output"), key=True,
-        )  # fmt: skip
+            translated(UNDETERMINED),
+            found=", ".join(given) or _("none"),
+            allowed=_("pairs; or function (or table), x, input, output"),
+            key=True,
+        )
     name = (shape.function or "").replace(" ", "")
     if shape.function is not None and name not in FUNCTIONS:
         raise ProblemError(
-            _("this function is not known here"), path=("function",), found=quote(shape.function),
+            _("this function is not known here"),
+            path=("function",),
+            found=quote(shape.function),
             allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
             near=nearest(name, FUNCTIONS),
-        )  # fmt: skip
+        )
     ends: dict[str, Any] = {
         key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))
         for key in ("input", "output")
@@ -161,6 +176,7 @@ def _sound(function: Function) -> None:
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
         other = "two ends at which the function differs"
         raise ProblemError(
-            _("the function has no values there, or the same at both ends"), path=("x",),
+            _("the function has no values there, or the same at both ends"),
+            path=("x",),
             allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
-        )  # fmt: skip
+        )

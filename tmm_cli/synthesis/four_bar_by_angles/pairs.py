@@ -17,10 +17,18 @@ from tmm_cli.synthesis.four_bar_by_angles import freudenstein as least_squares
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars, parallelogram
 
 FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {
-    "log10(x)": np.log10, "ln(x)": np.log, "exp(x)": np.exp, "sqrt(x)": np.sqrt, "1/x": np.reciprocal,
-    "x^2": np.square, "x^3": lambda x: x * x * x, "x^1.5": lambda x: x * np.sqrt(x),
-    "sin(x)": np.sin, "cos(x)": np.cos, "tan(x)": np.tan,
-}  # fmt: skip
+    "log10(x)": np.log10,
+    "ln(x)": np.log,
+    "exp(x)": np.exp,
+    "sqrt(x)": np.sqrt,
+    "1/x": np.reciprocal,
+    "x^2": np.square,
+    "x^3": lambda x: x * x * x,
+    "x^1.5": lambda x: x * np.sqrt(x),
+    "sin(x)": np.sin,
+    "cos(x)": np.cos,
+    "tan(x)": np.tan,
+}
 ANGLES: Final = ("sin(x)", "cos(x)", "tan(x)")  # their x is an angle
 
 

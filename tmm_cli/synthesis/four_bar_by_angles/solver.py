@@ -74,8 +74,13 @@ def reached(one: Bars, task: Task) -> Diagram:
         Line(N_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
         Line(N_("wanted"), at_pairs, psi, dots=True),
     )
-    return Diagram("pairs", N_("Output angles at the pairs"), (N_("input angle phi"), "angle"),
-                   (N_("output angle psi"), "angle"), lines)  # fmt: skip
+    return Diagram(
+        "pairs",
+        N_("Output angles at the pairs"),
+        (N_("input angle phi"), "angle"),
+        (N_("output angle psi"), "angle"),
+        lines,
+    )
 
 
 def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
@@ -109,11 +114,17 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
     back = c * np.exp(-1j * (phi - phi[0]))
     a, d = 0j, complex(size)
     segments = [
-        Segment(a, d, "axis", "l4"), Segment(a, complex(b[0]), "link", "l1"),
-        Segment(complex(b[0]), complex(c[0]), "link", "l2"), Segment(d, complex(c[0]), "link", "l3"),
-    ]  # fmt: skip
-    spots = [Spot("A", a, "support"), Spot("D", d, "support"), Spot("B1", complex(b[0]), "hinge"),
-             Spot("C1", complex(c[0]), "hinge")]  # fmt: skip
+        Segment(a, d, "axis", "l4"),
+        Segment(a, complex(b[0]), "link", "l1"),
+        Segment(complex(b[0]), complex(c[0]), "link", "l2"),
+        Segment(d, complex(c[0]), "link", "l3"),
+    ]
+    spots = [
+        Spot("A", a, "support"),
+        Spot("D", d, "support"),
+        Spot("B1", complex(b[0]), "hinge"),
+        Spot("C1", complex(c[0]), "hinge"),
+    ]
     arcs = [swept(complex(b[0]), back, "dashed", beyond=0.3)]
     for name, row, centre in (("C", c, d), ("B", b, a)):
         arcs.append(swept(centre, row))
@@ -134,9 +145,7 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
         "Pairs turned back about {A} to the first input: {B}1 is the centre of the circle through {C}1, {C}2′ ..."
     )
     note = N_("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
-    return Construction(
-        title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
-    )  # fmt: skip
+    return Construction(title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values)
 
 
 # Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
@@ -148,17 +157,21 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
 
 __all__ = ["PARAMETERS", "Task", "solve"]
 LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
-    "l1": ("length", N_("input l1 = AB")), "l2": ("length", N_("coupler l2 = BC")),
-    "l3": ("length", N_("output l3 = DC")), "l4": ("length", N_("frame l4 = AD")),
-}  # fmt: skip
+    "l1": ("length", N_("input l1 = AB")),
+    "l2": ("length", N_("coupler l2 = BC")),
+    "l3": ("length", N_("output l3 = DC")),
+    "l4": ("length", N_("frame l4 = AD")),
+}
 ZEROS: Final = {
     "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
     "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
 }
 FOUND: Final = {
-    **LENGTHS, **ZEROS, "phi1": ("angle", N_("angle of AB from AD in the first pair")),
+    **LENGTHS,
+    **ZEROS,
+    "phi1": ("angle", N_("angle of AB from AD in the first pair")),
     "psi1": ("angle", N_("angle of DC from AD in the first pair")),
-}  # fmt: skip
+}
 PARAMETERS: Final = {name: kind for name, (kind, __) in FOUND.items()}
 DEFECTS: Final = {
     "": N_("none: all pairs on one assembly, reached in order"),
@@ -215,9 +228,7 @@ def solve(task: Task) -> Outcome:
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
     notes = _notes(task, one, mark, any_one)
-    return Outcome(
-        _given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
-    )  # fmt: skip
+    return Outcome(_given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings))
 
 
 def take(task: Task) -> tuple[Bars, int]:
@@ -350,9 +361,12 @@ def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]
 def _solutions(task: Task, found: Bars, at: int) -> Listing:
     """Every four-bar that was found, by the number by which it can be chosen."""
     columns = (
-        ("number_of", N_("choose"), "name"), ("taken", N_("taken"), "word"), *COLUMNS,
-        ("crank", N_("input turns fully"), "word"), ("defect", N_("defects"), "word"),
-    )  # fmt: skip
+        ("number_of", N_("choose"), "name"),
+        ("taken", N_("taken"), "word"),
+        *COLUMNS,
+        ("crank", N_("input turns fully"), "word"),
+        ("defect", N_("defects"), "word"),
+    )
     rows = []
     for k in range(found.size):
         mark = quality(found.at(k), task)
@@ -363,8 +377,12 @@ def _solutions(task: Task, found: Bars, at: int) -> Listing:
 
 def _pairs(task: Task, one: Bars) -> Listing:
     """Every pair, and by how much the output is off."""
-    columns = (("phi", N_("input angle"), "angle"), ("psi", N_("output angle, wanted"), "angle"),
-               ("reached", N_("reached"), "angle"), ("error", N_("error"), "angle"))  # fmt: skip
+    columns = (
+        ("phi", N_("input angle"), "angle"),
+        ("psi", N_("output angle, wanted"), "angle"),
+        ("reached", N_("reached"), "angle"),
+        ("error", N_("error"), "angle"),
+    )
     error = off(one, task)
     rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
     return Listing(
@@ -399,10 +417,13 @@ def _given(task: Task) -> tuple[Value, ...]:
         (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
         values += [
             Value("", text, "word", N_("y")),
-            Value("", x0, of_x, N_("x, from")), Value("", x1, of_x, N_("x, to")),
-            Value("", phi0, "angle", N_("input angle, from")), Value("", phi1, "angle", N_("input angle, to")),
-            Value("", psi0, "angle", N_("output angle, from")), Value("", psi1, "angle", N_("output angle, to")),
-        ]  # fmt: skip
+            Value("", x0, of_x, N_("x, from")),
+            Value("", x1, of_x, N_("x, to")),
+            Value("", phi0, "angle", N_("input angle, from")),
+            Value("", phi1, "angle", N_("input angle, to")),
+            Value("", psi0, "angle", N_("output angle, from")),
+            Value("", psi1, "angle", N_("output angle, to")),
+        ]
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)
         values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]

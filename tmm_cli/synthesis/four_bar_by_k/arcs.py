@@ -114,9 +114,17 @@ def at(task: Task, w: Any, side: Any) -> Found:
     a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
     a = settled(task.support + a, l4 + np.abs(task.support))
     return Found(
-        w, side, l1, l2, l4, a, slope, np.arcsin(np.minimum(np.maximum(*sines), 1)),
-        np.arctan2(s * (w * c - cosine), c * cosine + s * sine), -side * way,
-    )  # fmt: skip
+        w,
+        side,
+        l1,
+        l2,
+        l4,
+        a,
+        slope,
+        np.arcsin(np.minimum(np.maximum(*sines), 1)),
+        np.arctan2(s * (w * c - cosine), c * cosine + s * sine),
+        -side * way,
+    )
 
 
 def arcs(task: Task) -> list[int]:

@@ -41,14 +41,23 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
     way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
     pin1, pin2 = a - found.l1 * way1, a + found.l1 * way2
     segments = [
-        Segment(d, c1, "link", "l3"), Segment(pin1, a, "link", "l1"), Segment(a, c1, "link", "l2 − l1"),
-        Segment(d, c2, "link2", "l3"), Segment(a, pin2, "link2", "l1"), Segment(pin2, c2, "link2", "l2"),
-        Segment(d, a, "axis", "l4"), Segment(c1, c2, "thin"),
-    ]  # fmt: skip
+        Segment(d, c1, "link", "l3"),
+        Segment(pin1, a, "link", "l1"),
+        Segment(a, c1, "link", "l2 − l1"),
+        Segment(d, c2, "link2", "l3"),
+        Segment(a, pin2, "link2", "l1"),
+        Segment(pin2, c2, "link2", "l2"),
+        Segment(d, a, "axis", "l4"),
+        Segment(c1, c2, "thin"),
+    ]
     spots = [
-        Spot("D", d, "support"), Spot("A", a, "support"), Spot("B1", pin1, "hinge"), Spot("B2", pin2, "hinge"),
-        Spot("C1", c1, "hinge"), Spot("C2", c2, "hinge"),
-    ]  # fmt: skip
+        Spot("D", d, "support"),
+        Spot("A", a, "support"),
+        Spot("B1", pin1, "hinge"),
+        Spot("B2", pin2, "hinge"),
+        Spot("C1", c1, "hinge"),
+        Spot("C2", c2, "hinge"),
+    ]
     middle, theta, half = (c1 + c2) / 2, float(task.theta), abs(c2 - c1) / 2
     arcs = [circle(a, float(found.l1))]
     angles = [Angle(d, c1, c2, "ψ")]
@@ -73,9 +82,17 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
         notes.append(N_("{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|"))
     return Construction(
         N_("Extreme positions of the rocker, and the circles on which {C}1{C}2 is seen under theta"),
-        tuple(segments), tuple(arcs), tuple(spots), tuple(notes), tuple(curves), angles=tuple(angles),
-        centres=tuple(centres), wishes=tuple(wishes), chain="four-bar", values=tuple(values),
-    )  # fmt: skip
+        tuple(segments),
+        tuple(arcs),
+        tuple(spots),
+        tuple(notes),
+        tuple(curves),
+        angles=tuple(angles),
+        centres=tuple(centres),
+        wishes=tuple(wishes),
+        chain="four-bar",
+        values=tuple(values),
+    )
 
 
 def diagrams(task: Task, found: Found, family: Sequence[Found]) -> tuple[Diagram, Diagram]:
@@ -111,11 +128,16 @@ def diagrams(task: Task, found: Found, family: Sequence[Found]) -> tuple[Diagram
 def listing(family: Sequence[Found]) -> Listing:
     """The family in numbers, from end to end of every arc, where the rocker is dead."""
     columns = (
-        ("side", N_("arc"), "word"), ("beta", N_("place on the arc, angle AC2C1"), "angle"),
-        ("xA", N_("pivot A of the crank, x"), "length"), ("yA", N_("pivot A of the crank, y"), "length"),
-        ("l1", N_("crank l1"), "length"), ("l2", N_("coupler l2"), "length"), ("l4", N_("frame l4"), "length"),
-        ("pressure", N_("largest pressure angle"), "angle"), ("transmission", N_("least transmission angle"), "angle"),
-    )  # fmt: skip
+        ("side", N_("arc"), "word"),
+        ("beta", N_("place on the arc, angle AC2C1"), "angle"),
+        ("xA", N_("pivot A of the crank, x"), "length"),
+        ("yA", N_("pivot A of the crank, y"), "length"),
+        ("l1", N_("crank l1"), "length"),
+        ("l2", N_("coupler l2"), "length"),
+        ("l4", N_("frame l4"), "length"),
+        ("pressure", N_("largest pressure angle"), "angle"),
+        ("transmission", N_("least transmission angle"), "angle"),
+    )
     rows: list[tuple[Any, ...]] = []
     for f in family:
         across = (np.maximum(f.beta, 0.0), f.a.real, f.a.imag, f.l1, f.l2, f.l4, f.pressure, np.pi / 2 - f.pressure)
@@ -140,10 +162,13 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "psi1": ("angle", N_("rocker at C1 (crank over the coupler) psi1")),
     "psi2": ("angle", N_("rocker at C2 (crank in line with the coupler) psi2")),
     "k": ("number", N_("k")),
-    "l1": ("length", N_("crank l1")), "l2": ("length", N_("coupler l2")), "l4": ("length", N_("frame l4")),
-    "xA": ("length", N_("pivot A of the crank, x")), "yA": ("length", N_("pivot A of the crank, y")),
+    "l1": ("length", N_("crank l1")),
+    "l2": ("length", N_("coupler l2")),
+    "l4": ("length", N_("frame l4")),
+    "xA": ("length", N_("pivot A of the crank, x")),
+    "yA": ("length", N_("pivot A of the crank, y")),
     "pressure": ("angle", N_("largest pressure angle")),
-}  # fmt: skip
+}
 ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 
@@ -264,11 +289,19 @@ def _refuse_numbers(task: Task) -> None:
     if not SMALLEST <= task.swing <= np.pi - 2 * ARC:
         raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"))
     if theta > np.pi / 2 + half - ARC:  # the largest theta of the arc on D's side
-        raise Infeasible("k", _("k is too large for this swing: on the whole circle the rocker would pass its dead "
-                                "position, or stand all but in it"))  # fmt: skip
+        raise Infeasible(
+            "k",
+            _(
+                "k is too large for this swing: on the whole circle the rocker would pass its dead "
+                "position, or stand all but in it"
+            ),
+        )
     if against and theta > np.pi / 2 - half - ARC:  # of the other one
-        raise Infeasible("turns", _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
-                         "cw" if task.sense > 0 else "ccw")  # fmt: skip
+        raise Infeasible(
+            "turns",
+            _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
+            "cw" if task.sense > 0 else "ccw",
+        )
     if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
         raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
     if theta == 0 and task.choose == "best":
@@ -286,19 +319,35 @@ def solve(task: Task) -> Outcome:
         Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
         Demand(N_("k"), float(task.k), "number", ratio),
         Demand(N_("swing psi of the rocker"), float(task.swing), "angle", stroke),
-        *(Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
-          for n, v in (("psi1", task.psi1), ("psi2", task.psi2))),
-        Demand(N_("largest pressure angle"), float(f.pressure), "angle", pressure, asked=task.pressure is not None,
-               of="pressure"),
-    ]  # fmt: skip
+        *(
+            Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+            for n, v in (("psi1", task.psi1), ("psi2", task.psi2))
+        ),
+        Demand(
+            N_("largest pressure angle"),
+            float(f.pressure),
+            "angle",
+            pressure,
+            asked=task.pressure is not None,
+            of="pressure",
+        ),
+    ]
     family = [at(task, whole(task, side), side) for side in arcs(task)]
-    source = N_("circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
-               "l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD")  # fmt: skip
+    source = N_(
+        "circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
+        "l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
+    )
     notes = () if task.k > 1 else (N_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
     return Outcome(
-        _given(task), _found(task, f), source, tuple(demands),
-        (construction(task, f, family), *diagrams(task, f, family)), notes, (listing(family),), output="swing",
-    )  # fmt: skip
+        _given(task),
+        _found(task, f),
+        source,
+        tuple(demands),
+        (construction(task, f, family), *diagrams(task, f, family)),
+        notes,
+        (listing(family),),
+        output="swing",
+    )
 
 
 def _given(task: Task) -> tuple[Value, ...]:
@@ -340,8 +389,10 @@ def _found(task: Task, f: Found) -> tuple[Value, ...]:
         Value("", turns, "word", N_("crank for a slow stroke from psi1 to psi2")),
     ]
     for side in arcs(task):
-        beyond, inside = (N_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
-                          N_("admissible arc on D's side: angle AC2C1 from 0 to"))  # fmt: skip
+        beyond, inside = (
+            N_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
+            N_("admissible arc on D's side: angle AC2C1 from 0 to"),
+        )
         last = at(task, places(task, side)[-1], side)
         found += [
             Value("", widest(task, side), "angle", beyond if side > 0 else inside),

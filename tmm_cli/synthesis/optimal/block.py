@@ -82,10 +82,11 @@ class Shape(Block):
 
     task: Literal["optimal"]
     vary: dict[Name, Range] = Field(
-        min_length=1, max_length=MOST,
+        min_length=1,
+        max_length=MOST,
         description="by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; bare numbers are lengths "
         "where the file takes them for such",
-    )  # fmt: skip
+    )
     objective: Annotated[Objective, BeforeValidator(_short)]
     constraints: list[Constraint] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
@@ -125,17 +126,24 @@ def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
     if target is not None:
         target = sense.number(target, KINDS[_kind(objective, middle)].dimension, ("objective", "target"))
     return Task(
-        parameters, files.variant, objective, constraints, target, shape.positions, shape.population,
-        shape.generations, shape.seed, files.accepts, _bar(),
-    )  # fmt: skip
+        parameters,
+        files.variant,
+        objective,
+        constraints,
+        target,
+        shape.positions,
+        shape.population,
+        shape.generations,
+        shape.seed,
+        files.accepts,
+        _bar(),
+    )
 
 
 class _Files:
     """The file with other numbers (SI, or TracedNumbers) of what varies."""
 
-    def __init__(
-        self, parameters: Sequence[Parameter], shape: Shape, sense: ValueReader, file_with: FileWith
-    ) -> None:  # fmt: skip
+    def __init__(self, parameters: Sequence[Parameter], shape: Shape, sense: ValueReader, file_with: FileWith) -> None:
         self.parameters, self.names, self.file_with = parameters, shape.names, file_with
         self.units, self.varied = sense.units, VariedUnits(sense.units)
         self.own = sense.parameters
@@ -200,9 +208,11 @@ def _check_mobility(variant: Variant) -> None:
     except MobilityError as refusal:
         told = mobility(refusal.structure)
         raise ProblemError(
-            _("with values in the middle of these bounds {reason}").format(reason=told.message), path=("vary",),
-            found=told.found, allowed=told.allowed,
-        ) from None  # fmt: skip
+            _("with values in the middle of these bounds {reason}").format(reason=told.message),
+            path=("vary",),
+            found=told.found,
+            allowed=told.allowed,
+        ) from None
 
 
 def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int, asked: Asked) -> task.Constraint:
@@ -211,8 +221,9 @@ def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int,
     dimension = KINDS[_kind(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
-        for key in ("least", "most", "equal") if (value := getattr(given, key)) is not None
-    }  # fmt: skip
+        for key in ("least", "most", "equal")
+        if (value := getattr(given, key)) is not None
+    }
     if not sides or ("equal" in sides and len(sides) > 1):
         raise ProblemError(
             _("a constraint has a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
@@ -233,18 +244,21 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, 
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
     for key in given.model_fields_set & others:
         raise ProblemError(
-            _("{quantity} has no {key}").format(quantity=given.of, key=key), path=(*path, key),
-            allowed=", ".join(sorted(kind.keys)) or "of", key=True,
-        )  # fmt: skip
+            _("{quantity} has no {key}").format(quantity=given.of, key=key),
+            path=(*path, key),
+            allowed=", ".join(sorted(kind.keys)) or "of",
+            key=True,
+        )
     for needed in (kind.named, kind.given):
         if needed and not getattr(given, needed):
             raise ProblemError(_("the key `{key}` is missing").format(key=needed), path=(*path, needed))
     if kind.named:
         name = getattr(given, kind.named)
         known: dict[str, list[str]] = {
-            "pair": [pair.name for pair in mobile(linkage).pairs], "link": list(linkage.moving),
+            "pair": [pair.name for pair in mobile(linkage).pairs],
+            "link": list(linkage.moving),
             "point": [point for link in linkage.moving for point in linkage.links[link].points],
-        }  # fmt: skip
+        }
         sense.known(name, dict.fromkeys(known[kind.named]), (*path, kind.named), kind.named)
     for n, link in enumerate(given.links):
         sense.known(link, linkage.links, (*path, "links", n), "link")
@@ -252,9 +266,11 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, 
     wanted = list(values) if given.values else wanted
     if len(places) != len(wanted) and (places or given.values):
         raise ProblemError(
-            _("as many angles as {key} are wanted").format(key=kind.given), path=(*path, "at"),
-            found=quote(len(places)), allowed=str(len(wanted)),
-        )  # fmt: skip
+            _("as many angles as {key} are wanted").format(key=kind.given),
+            path=(*path, "at"),
+            found=quote(len(places)),
+            allowed=str(len(wanted)),
+        )
     return kind(name, tuple(given.links), places, tuple(wanted), given.norm, given.relative)
 
 

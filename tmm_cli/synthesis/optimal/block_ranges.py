@@ -48,9 +48,11 @@ def _parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Paramete
         values = sorted({si(value, "among", n) for n, value in enumerate(own.among)})
         if len(values) < 2:
             raise ProblemError(
-                _("with one value nothing varies"), path=(*at, "among"), found=quote(own.among[0]),
+                _("with one value nothing varies"),
+                path=(*at, "among"),
+                found=quote(own.among[0]),
                 allowed=_("two and more"),
-            )  # fmt: skip
+            )
         return Parameter(name, values[0], values[-1], kind, tuple(values))
     ends = {"from": own.from_, "to": own.to} if isinstance(own, Chosen) else dict(enumerate(own))
     low, high = (si(value, key) for key, value in ends.items())
@@ -64,9 +66,11 @@ def _parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Paramete
     count = (high - low) / step + SAME
     if not 1 <= count < MOST:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1), path=(*at, "step"),
-            found=quote(own.step), allowed=_("another step; or bounds without steps, [low, high]"),
-        )  # fmt: skip
+            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1),
+            path=(*at, "step"),
+            found=quote(own.step),
+            allowed=_("another step; or bounds without steps, [low, high]"),
+        )
     values = [float(f"{low + step * k:.15g}") for k in range(int(count) + 1)]  # without what adding up leaves
     return Parameter(name, values[0], values[-1], kind, tuple(values))
 
@@ -138,16 +142,20 @@ def asked_over(over: Any, driver: Driver, sense: ValueReader) -> Over:
     if isinstance(over, str):
         if over not in possible:
             raise ProblemError(
-                _("the driver has no {over}").format(over=over), path=("over",), found=quote(over),
+                _("the driver has no {over}").format(over=over),
+                path=("over",),
+                found=quote(over),
                 allowed=", ".join([*possible, "[from, to]"]),
-            )  # fmt: skip
+            )
         return over
     low, high = (float(sense.number(value, _dimension(driver), ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
-            _("the lower end comes first, the other one at most a turn after it"), path=("over",), found=two(*over),
+            _("the lower end comes first, the other one at most a turn after it"),
+            path=("over",),
+            found=two(*over),
             allowed="[from, to]",
-        )  # fmt: skip
+        )
     return low, high
 
 
@@ -169,9 +177,10 @@ def _ends(problem: Problem, over: Over) -> Ends:
         over = (reduce(np.minimum, places), reduce(np.maximum, places)) if places else (0.0, 0.0)
         if not over[0] < over[1]:
             raise ProblemError(
-                _("how far the driver goes is wanted"), path=("over",),
+                _("how far the driver goes is wanted"),
+                path=("over",),
                 allowed=_("over: [from, to]; or positions: {at: [...]}, or driver: {stroke: [from, to]}"),
-            )  # fmt: skip
+            )
     assert not isinstance(over, str)
     if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and places):
         return over  # an accelerated crank comes to a place a turn farther on with another speed
@@ -202,8 +211,8 @@ def _not_there(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any], un
     dimension = _dimension(driver)
     low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
     return ProblemError(
-        _("the driver does not go there"), path=path, found=quote(found) if isinstance(found, str) else None,
-        allowed=_("places of its way, {low} to {high} {unit}").format(
-            low=low, high=high, unit=units.symbol(dimension)
-        ),
-    )  # fmt: skip
+        _("the driver does not go there"),
+        path=path,
+        found=quote(found) if isinstance(found, str) else None,
+        allowed=_("places of its way, {low} to {high} {unit}").format(low=low, high=high, unit=units.symbol(dimension)),
+    )

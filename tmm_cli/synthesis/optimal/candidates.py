@@ -56,9 +56,12 @@ class Candidates:
     def _program(self) -> None:
         """What gives all quantities of candidates at places of the driver."""
         self.program: Taped | OneByOne = variants_of(
-            self.task.make, self.first, self.outputs, forces=any(quantity.forces for quantity in self.quantities),
+            self.task.make,
+            self.first,
+            self.outputs,
+            forces=any(quantity.forces for quantity in self.quantities),
             one_sense=one_sense(self.task, self.first),
-        )  # fmt: skip
+        )
         self.taped = isinstance(self.program, Taped)
         self.coarse = self.program.without(CLOSELY)
         kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
@@ -75,20 +78,25 @@ class Candidates:
         self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
         self.overs = tuple(
             Over(
-                self.linkage, not quantity.slides(self.linkage, self.groups),
-                self.closed and not (self.jumps and quantity.forces), self.cycle, rough, self.taped,
+                self.linkage,
+                not quantity.slides(self.linkage, self.groups),
+                self.closed and not (self.jumps and quantity.forces),
+                self.cycle,
+                rough,
+                self.taped,
             )
             for quantity in self.quantities
-        )  # fmt: skip
+        )
         own = self.own_places(self.count + self.jumps)
         self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
         self.places = Places(self.over(self.count), self.with_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
-            f"{n}.{name}": value for n, quantity in enumerate(self.quantities)
+            f"{n}.{name}": value
+            for n, quantity in enumerate(self.quantities)
             for name, value in quantity.outputs(motion, reactions).items()
-        }  # fmt: skip
+        }
 
     @property
     def population(self) -> int:

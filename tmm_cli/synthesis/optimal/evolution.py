@@ -73,9 +73,15 @@ class _Generations:
 
 
 def evolve(
-    evaluate: Evaluate, size: int, *, population: int, generations: int, seed: int, equalities: bool = False,
+    evaluate: Evaluate,
+    size: int,
+    *,
+    population: int,
+    generations: int,
+    seed: int,
+    equalities: bool = False,
     progress: Callable[[int, int], None] = lambda at, of: None,
-) -> Evolved:  # fmt: skip
+) -> Evolved:
     """Search 0..1 in `size` dimensions; the same seed gives the same answer. One that gathers early is begun anew."""
     from scipy.optimize import differential_evolution
 
@@ -94,10 +100,20 @@ def evolve(
                 last = share == TOLERANCES[-1] or not equalities
                 count = watched.left if last else min(watched.left, max(1, generations // len(TOLERANCES) // 2))
                 found = differential_evolution(
-                    watched, [(0.0, 1.0)] * size, init=x, maxiter=count - 1,
-                    strategy="currenttobest1bin", mutation=(0.5, 1.0), recombination=0.9, tol=GATHERED, atol=0.0,
-                    polish=False, updating="deferred", vectorized=True, rng=chance,
-                )  # fmt: skip
+                    watched,
+                    [(0.0, 1.0)] * size,
+                    init=x,
+                    maxiter=count - 1,
+                    strategy="currenttobest1bin",
+                    mutation=(0.5, 1.0),
+                    recombination=0.9,
+                    tol=GATHERED,
+                    atol=0.0,
+                    polish=False,
+                    updating="deferred",
+                    vectorized=True,
+                    rng=chance,
+                )
                 x = found.population
                 if equalities and not start:
                     start = float(np.quantile(np.minimum(watched.kept[0][2], 10.0), 0.2))

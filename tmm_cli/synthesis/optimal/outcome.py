@@ -55,10 +55,14 @@ def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, qu
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
     violated = Line(N_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
     return Diagram(
-        "history", title, (across, "number"), (Phrase("objective: {quantity}", quantity=quantity), kind),
-        tuple(lines), lower=(violated,) if np.any(missed) and not evolved.every else (),
+        "history",
+        title,
+        (across, "number"),
+        (Phrase("objective: {quantity}", quantity=quantity), kind),
+        tuple(lines),
+        lower=(violated,) if np.any(missed) and not evolved.every else (),
         lower_y=(N_("constraints missed, relative"), "number"),
-    )  # fmt: skip
+    )
 
 
 def reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
@@ -96,14 +100,17 @@ def _law(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Li
     kind = "angle" if swings else "length"
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
-        ("at", N_("driver at"), place), ("wanted", N_("wanted"), kind), ("reached", N_("reached"), kind),
+        ("at", N_("driver at"), place),
+        ("wanted", N_("wanted"), kind),
+        ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
-    )  # fmt: skip
+    )
     rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
     lines = (
-        Line(N_("found mechanism"), q, run), Line(N_("wanted"), at, wanted, dots=True),
+        Line(N_("found mechanism"), q, run),
+        Line(N_("wanted"), at, wanted, dots=True),
         Line(N_("reached"), at, there, dots=True),
-    )  # fmt: skip
+    )
     up = (N_("angle of the link") if swings else N_("run of the link"), kind)
     title = N_("Law of motion over the whole way of the driver")
     drawn = Diagram(_name(candidates, n), title, (N_("driver"), place), up, lines)
@@ -125,24 +132,33 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
     )
     columns: tuple[tuple[str, str, str], ...] = (
-        ("x", N_("x"), "length"), ("y", N_("y"), "length"), ("x_reached", N_("x reached"), "length"),
-        ("y_reached", N_("y reached"), "length"), ("off", N_("deviation"), "length"),
-    )  # fmt: skip
+        ("x", N_("x"), "length"),
+        ("y", N_("y"), "length"),
+        ("x_reached", N_("x reached"), "length"),
+        ("y_reached", N_("y reached"), "length"),
+        ("off", N_("deviation"), "length"),
+    )
     if quantity.places:
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
         columns = (("at", N_("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
-        Line(N_("path"), path.real, path.imag), Line(N_("wanted"), wanted.real, wanted.imag, dots=True),
+        Line(N_("path"), path.real, path.imag),
+        Line(N_("wanted"), wanted.real, wanted.imag, dots=True),
         Line(N_("reached"), there.real, there.imag, dots=True),
-    )  # fmt: skip
+    )
     drawn = Diagram(
-        _name(candidates, n), N_("Path of the point over the whole way of the driver"), (N_("x"), "length"),
-        (N_("y"), "length"), lines, equal=True,
-    )  # fmt: skip
+        _name(candidates, n),
+        N_("Path of the point over the whole way of the driver"),
+        (N_("x"), "length"),
+        (N_("y"), "length"),
+        lines,
+        equal=True,
+    )
     title = (
-        N_("Wanted points and those that are reached at these places of the driver") if quantity.places
+        N_("Wanted points and those that are reached at these places of the driver")
+        if quantity.places
         else N_("Wanted points and the nearest that are reached")
-    )  # fmt: skip
+    )
     return Listing(_name(candidates, n), title, columns, rows), drawn
 
 
@@ -177,10 +193,18 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
         asked = constraint is not None and constraint.equal
         value = constraint.least if constraint is not None and asked else found.values[n]
         deviates = kinds[n] in ("length", "angle") and quantity.moves
-        demands.append(Demand(
-            quantity.title(linkage), value or 0.0, kinds[n], partial(quantity.measure, ends=ends), asked=asked,
-            at=1e-6 if deviates else 0.0, open=quantity.open, of=quantity.of,
-        ))  # fmt: skip
+        demands.append(
+            Demand(
+                quantity.title(linkage),
+                value or 0.0,
+                kinds[n],
+                partial(quantity.measure, ends=ends),
+                asked=asked,
+                at=1e-6 if deviates else 0.0,
+                open=quantity.open,
+                of=quantity.of,
+            )
+        )
     listings = [_constraints(candidates, found, kinds)]
     title = candidates.quantities[0].title(linkage)
     drawings = [history(evolved, partial(_in_its_unit, candidates), found.values[0], title, kinds[0])]
@@ -194,24 +218,38 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     if evolved.stopped:
         notes.append(N_("stopped by hand: the best candidate so far, polished"))
     elif found.ends is not None and not found.ends.agree:
-        notes.append(Phrase(
-            "not sure to be the least: of {count} independent starts {same} ended at it and {near} within {share} % "
-            "of it; try another seed, for example seed: {seed}",
-            count=found.ends.count, same=found.ends.same, near=found.ends.near, share=f"{100 * many_starts.NEAR:g}",
-            seed=task.seed + 1,
-        ))  # fmt: skip
+        notes.append(
+            Phrase(
+                "not sure to be the least: of {count} independent starts {same} ended at it and {near} within "
+                "{share} % "
+                "of it; try another seed, for example seed: {seed}",
+                count=found.ends.count,
+                same=found.ends.same,
+                near=found.ends.near,
+                share=f"{100 * many_starts.NEAR:g}",
+                seed=task.seed + 1,
+            )
+        )
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
         notes.append(N_("the objective is the same for all candidates: what was found only keeps the constraints"))
     if sketch is not None:
-        notes.append(N_(
-            "the file's sketch does not show the mechanism that was found: it is assembled as linkages near it are "
-            "that the sketch does show"
-        ))  # fmt: skip
+        notes.append(
+            N_(
+                "the file's sketch does not show the mechanism that was found: it is assembled as linkages near it are "
+                "that the sketch does show"
+            )
+        )
     return Outcome(
-        _given(candidates, ends), _found(candidates, found), _source(candidates, found), tuple(demands),
-        tuple(drawings), tuple(notes), tuple(listings), sketch,
-    )  # fmt: skip
+        _given(candidates, ends),
+        _found(candidates, found),
+        _source(candidates, found),
+        tuple(demands),
+        tuple(drawings),
+        tuple(notes),
+        tuple(listings),
+        sketch,
+    )
 
 
 def _given(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[Value, ...]:
@@ -222,8 +260,9 @@ def _given(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[Va
         given.append(Value(p.name, p.high, p.kind, N_("varies to")))
     given += [
         Value(p.name, len(p.values), "number", N_("number of values to choose from"))
-        for p in candidates.task.parameters if p.values
-    ]  # fmt: skip
+        for p in candidates.task.parameters
+        if p.values
+    ]
     if ends is not None:
         kind = "length" if candidates.linkage.driver.kind == "slide" else "angle"
         given.append(Value("from", ends[0], kind, N_("the driver goes from")))
@@ -282,10 +321,15 @@ def _constraints(candidates: Candidates, found: Best, kinds: list[str]) -> Listi
                 left = None
             rows.append((quantity.title(linkage), _of(quantity), words, bound, value, left, kinds[n], state))
     columns = (
-        ("quantity", N_("quantity"), "word"), ("of", N_("of"), "name"), ("limit", N_("is to be"), "word"),
-        ("bound", N_("bound"), "mixed"), ("value", N_("value"), "mixed"), ("margin", N_("margin"), "mixed"),
-        ("unit", N_("unit"), "unit"), ("state", N_("state"), "word"),
-    )  # fmt: skip
+        ("quantity", N_("quantity"), "word"),
+        ("of", N_("of"), "name"),
+        ("limit", N_("is to be"), "word"),
+        ("bound", N_("bound"), "mixed"),
+        ("value", N_("value"), "mixed"),
+        ("margin", N_("margin"), "mixed"),
+        ("unit", N_("unit"), "unit"),
+        ("state", N_("state"), "word"),
+    )
     return Listing("constraints", N_("Objective and constraints"), columns, tuple(rows))
 
 

@@ -116,10 +116,15 @@ def polish(evaluate: Callable[[Real], Local], x: Real) -> Real:
             constraints.append({"type": "eq", "fun": lambda z: near(z)[2][0], "jac": even_slope})
         bounds = [(-own / scale, (1 - own) / scale) for own in x]
         found = minimize(
-            lambda z: z[n], np.append(start, np.max(f)), jac=lambda z: np.eye(n + 1)[n], method="SLSQP",
-            bounds=[*bounds, (None, None)], constraints=constraints, callback=take,
+            lambda z: z[n],
+            np.append(start, np.max(f)),
+            jac=lambda z: np.eye(n + 1)[n],
+            method="SLSQP",
+            bounds=[*bounds, (None, None)],
+            constraints=constraints,
+            callback=take,
             options={"ftol": DONE, "maxiter": MOST},
-        )  # fmt: skip
+        )
         take(found.x)
     except _End:
         pass
@@ -225,11 +230,13 @@ def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callab
         out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
         return [
             quantity.fine(
-                [(what, first, reader(out, n, where)) for what, first, where in parts[n]], reader(out, n, exact[n]),
-                candidates.overs[n], step,
+                [(what, first, reader(out, n, where)) for what, first, where in parts[n]],
+                reader(out, n, exact[n]),
+                candidates.overs[n],
+                step,
             )
             for n, quantity in enumerate(candidates.quantities)
-        ]  # fmt: skip
+        ]
 
     return pieces
 

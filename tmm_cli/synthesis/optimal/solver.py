@@ -46,10 +46,14 @@ def best(candidates: Candidates) -> Best:
         return _best_of(candidates, choices.starts(), evolved)
     many = many_starts.fits(candidates)
     evolved = evolve(
-        choices or candidates.evaluate, len(task.parameters), population=candidates.population,
-        generations=max(1, candidates.generations // (SHORTER if many else 1)), seed=task.seed,
-        equalities=any(constraint.equal for constraint in candidates.constraints), progress=task.progress,
-    )  # fmt: skip
+        choices or candidates.evaluate,
+        len(task.parameters),
+        population=candidates.population,
+        generations=max(1, candidates.generations // (SHORTER if many else 1)),
+        seed=task.seed,
+        equalities=any(constraint.equal for constraint in candidates.constraints),
+        progress=task.progress,
+    )
     starts = _apart(candidates, evolved)
     if many and not evolved.stopped:
         found = many_starts.from_many(candidates, starts)
@@ -108,8 +112,10 @@ def _best_of(candidates: Candidates, starts: Iterable[Real], evolved: Evolved) -
 def _none(candidates: Candidates, quantity: Goal) -> str:
     """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
     if quantity.forces and candidates.variant.accelerated:
-        return N_("the driver does not come to all places of its way with this acceleration: it stops before, or they "
-                 "lie before position 0")  # fmt: skip
+        return N_(
+            "the driver does not come to all places of its way with this acceleration: it stops before, or they "
+            "lie before position 0"
+        )
     return N_("no mechanism within the bounds was found that has this quantity")
 
 

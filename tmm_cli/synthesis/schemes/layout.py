@@ -159,19 +159,26 @@ class Draft:
         places = {name: place for points in self.where.values() for name, place in points.items()}
         if any(abs(p - q) < NEAREST for p, q in combinations(places.values(), 2)):
             raise Unfit
-        spans = [max((abs(p - q) for p, q in combinations(points.values(), 2)), default=0.0)
-                 for link, points in self.where.items() if link]  # fmt: skip
+        spans = [
+            max((abs(p - q) for p, q in combinations(points.values(), 2)), default=0.0)
+            for link, points in self.where.items()
+            if link
+        ]
         if max(spans) > LONGEST:
             raise Unfit
-        points = {link: {name: self.local(link, place) for name, place in known.items()}
-                  for link, known in self.where.items()}  # fmt: skip
+        points = {
+            link: {name: self.local(link, place) for name, place in known.items()} for link, known in self.where.items()
+        }
         slides = tuple(
             Guided(
-                carrier, runner, self.local(carrier, through),
-                _half_turn(round(math.degrees(turn - self.turn[carrier]))), point,
+                carrier,
+                runner,
+                self.local(carrier, through),
+                _half_turn(round(math.degrees(turn - self.turn[carrier]))),
+                point,
             )
             for carrier, runner, through, turn, point in self.slides
-        )  # fmt: skip
+        )
         moving = {name: whole(place) for name, place in places.items() if name not in self.where[0]}
         angles = {link: round(math.degrees(self.turn[link])) for link in self.slotted}
         cranks = tuple(CRANK_AT[crank - 1] for crank in self.cranks)
@@ -221,8 +228,15 @@ class _GroupByGroup(Draft):
             self.where[0][name] = pivot
             self.where[crank] = {name: pivot}
             self.turn[crank] = math.radians(CRANK_AT[crank - 1])
-        build = {"RRR": self.rrr, "RRP": self.rrp, "RPR": self.rpr, "PRP": self.prp, "RPP": self.rpp,
-                 "III": self.iii, "IV": self.iv}  # fmt: skip
+        build = {
+            "RRR": self.rrr,
+            "RRP": self.rrp,
+            "RPR": self.rpr,
+            "PRP": self.prp,
+            "RPP": self.rpp,
+            "III": self.iii,
+            "IV": self.iv,
+        }
         try:
             for group in self.scheme.groups:
                 build[group.type.name](group)
@@ -319,8 +333,9 @@ class _GroupByGroup(Draft):
         middle = sum(known) / len(known) + self.polar(120, 260)
         start = self.random.uniform(0, 360)
         corners = [middle + self.polar(60, 90, start + 120 * k, start + 120 * k) for k in range(3)]
-        outer = [end if end is not None else corner + self.polar(120, 240)
-                 for end, corner in zip(ends, corners, strict=True)]  # fmt: skip
+        outer = [
+            end if end is not None else corner + self.polar(120, 240) for end, corner in zip(ends, corners, strict=True)
+        ]
         ternary, *legs = group.links
         inner = {next(self.names): corner for corner in corners}
         self.link(ternary, cmath.phase(corners[1] - corners[0]), **inner)

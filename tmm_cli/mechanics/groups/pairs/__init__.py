@@ -8,5 +8,9 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.structure.group import Pair
 
 PAIRS: dict[str, Callable[[Pair, Linkage], Constraint]] = {
-    "R": Turning.of, "P": Sliding.of, "G": Gear.of, "K": Rack.of, "C": Cam.of,
-}  # fmt: skip
+    "R": Turning.of,
+    "P": Sliding.of,
+    "G": Gear.of,
+    "K": Rack.of,
+    "C": Cam.of,
+}

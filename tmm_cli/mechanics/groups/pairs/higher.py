@@ -51,8 +51,10 @@ class Gear(Teeth):
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         ratio = self.mesh.ratio
         return {
-            self.mesh.i: ((0j, -ratio),), self.mesh.j: ((0j, 1.0),), self.mesh.carrier: ((0j, ratio - 1.0),),
-        }  # fmt: skip
+            self.mesh.i: ((0j, -ratio),),
+            self.mesh.j: ((0j, 1.0),),
+            self.mesh.carrier: ((0j, ratio - 1.0),),
+        }
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
         mesh = self.mesh
@@ -254,9 +256,13 @@ def _polynomial7(x: Any) -> tuple[Any, Any, Any]:
 
 
 SHAPES: dict[str, Rise] = {
-    "linear": _linear, "parabolic": _parabolic, "cosine": _cosine, "sine": _sine, "3-4-5": _polynomial5,
+    "linear": _linear,
+    "parabolic": _parabolic,
+    "cosine": _cosine,
+    "sine": _sine,
+    "3-4-5": _polynomial5,
     "4-5-6-7": _polynomial7,
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)

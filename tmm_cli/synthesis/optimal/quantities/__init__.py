@@ -12,6 +12,17 @@ from tmm_cli.synthesis.optimal.quantities.strokes import K, Speed, Stroke
 from tmm_cli.synthesis.optimal.quantities.transmission import Margin, Moment, Pressure, Reaction
 
 ALL: Final[tuple[type[Goal], ...]] = (
-    Length, Mass, Box, Pressure, Moment, Reaction, Margin, Stroke, K, Speed, Path, Law,
-)  # fmt: skip
+    Length,
+    Mass,
+    Box,
+    Pressure,
+    Moment,
+    Reaction,
+    Margin,
+    Stroke,
+    K,
+    Speed,
+    Path,
+    Law,
+)
 QUANTITIES: Final[Mapping[str, type[Goal]]] = {quantity.of: quantity for quantity in ALL}  # as problem files write them

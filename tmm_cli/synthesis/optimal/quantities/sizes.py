@@ -59,9 +59,11 @@ class Box(Peak):
         x, y = [p.real for p in spots], [p.imag for p in spots]
         closely = {f"{CLOSELY}{axis}{k}": v for axis, vs in (("x", x), ("y", y)) for k, v in enumerate(vs)}
         return closely | {
-            "y0": reduce(np.maximum, x), "y1": -reduce(np.minimum, x),
-            "y2": reduce(np.maximum, y), "y3": -reduce(np.minimum, y),
-        }  # fmt: skip
+            "y0": reduce(np.maximum, x),
+            "y1": -reduce(np.minimum, x),
+            "y2": reduce(np.maximum, y),
+            "y3": -reduce(np.minimum, y),
+        }
 
     def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
         found: list[tuple[Any, int]] = []
