@@ -6,7 +6,7 @@ from typing import Final, Protocol
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.formats import linkage_v2, pmks_csv, pmks_link, pylinkage
+from tmm_cli.problem.formats import linkage_v2, pmks_link, pylinkage
 from tmm_cli.problem.formats.foreign import Foreign
 
 
@@ -19,7 +19,6 @@ class Format(Protocol):
 
 FORMATS: Final[dict[str, Format]] = {
     "pylinkage": pylinkage,
-    "PMKS+, CSV": pmks_csv,
     "PMKS+, a saved link": pmks_link,
     "linkage/v2": linkage_v2,
 }

@@ -1,4 +1,4 @@
-"""Mechanisms of PMKS+ (app.pmksplus.com): records of its saved links and CSV files, and what they describe.
+"""Mechanisms of PMKS+ (app.pmksplus.com): records of its saved links, and what they describe.
 
 Meaning of the records: mechanism-builder.ts, legacy-production-connections.ts, transcoder-data.ts and
 docs/force-analysis-units.md of PMKS-Web/Planar-Mechanism-Kinematic-Simulator.
