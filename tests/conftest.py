@@ -19,6 +19,8 @@ from hypothesis import settings
 from old_processor import confirm
 from xdist.scheduler import LoadFileScheduling
 
+from tmm_cli.locale.build import compile_catalogues
+
 ROOMS = ("from bank import NAMES", "from big_sheets import")  # files that hold one of these go to one process
 
 
@@ -65,6 +67,9 @@ def browser():
         yield opened
         opened.close()
 
+
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    compile_catalogues()  # a checkout has the sources of the translations alone
 
 gc.set_threshold(100_000)  # as the command does; what pytest holds is looked through less often
 sys.dont_write_bytecode = False  # or each process that a test starts would compile the whole product

@@ -1,8 +1,8 @@
 """The catalogues of translations: `python -m tests.messages` brings them up to what the sources say.
 
 Every message of the package goes into tmm_cli/locale/LANGUAGE/LC_MESSAGES/tmm.po: new ones without a translation, those
-that are said no more are dropped, translations stay. Then tmm.mo, which the program reads, is made of it. Run it after
-a message has changed, and after translating. Measurements (bench) are for maintainers and are not translated.
+that are said no more are dropped, translations stay. Then tmm.mo, which the program reads, is compiled. Run it after a
+message has changed, and after translating. Measurements (bench) are for maintainers and are not translated.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import ast
 import io
 import string
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
-from babel.messages.mofile import read_mo, write_mo
+from babel.messages.mofile import read_mo
 from babel.messages.pofile import read_po, write_po
 
 from tmm_cli.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
+from tmm_cli.locale.build import compile_catalogues
 from tmm_cli.problem.units import SYMBOLS
 
 ROOT = Path(__file__).parents[1]
@@ -127,14 +127,6 @@ def po_text(catalog: Catalog) -> bytes:
     return "\n".join([f"# Translations of tmm: {catalog.locale_identifier}.", *kept, "", body]).encode()
 
 
-def mo_bytes(catalog: Catalog) -> bytes:
-    """What the program reads; nothing in it says when it was made."""
-    stream = io.BytesIO()
-    catalog.creation_date = catalog.revision_date = datetime(2000, 1, 1, tzinfo=UTC)
-    write_mo(stream, catalog)
-    return stream.getvalue()
-
-
 def read(language: str) -> dict[tuple[str | None, str], str]:
     """What the program reads, by context and message."""
     with path_of(language, "mo").open("rb") as stream:
@@ -166,9 +158,9 @@ def main() -> None:
         new = updated(language)
         path_of(language).parent.mkdir(parents=True, exist_ok=True)
         path_of(language).write_bytes(po_text(new))
-        path_of(language, "mo").write_bytes(mo_bytes(catalogue(language)))
         left = missing(new)
         print(f"{language}: {len(new)} messages, {len(left)} not translated")
+    compile_catalogues()
 
 
 if __name__ == "__main__":

@@ -60,7 +60,8 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
 
 def modules() -> dict[str, Path]:
     """Modules by their names below the package; a package has the name of its folder."""
-    names = {path: ".".join(path.relative_to(PACKAGE).with_suffix("").parts) for path in PACKAGE.rglob("*.py")}
+    paths = (path for path in PACKAGE.rglob("*.py") if path.parent.name != "locale")  # there is a build hook
+    names = {path: ".".join(path.relative_to(PACKAGE).with_suffix("").parts) for path in paths}
     return {name if name == "__init__" else name.removesuffix(".__init__"): path for path, name in names.items()}
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
+from errno import ENOENT
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -148,7 +149,10 @@ def _catalogue(language: str) -> NullTranslations:
     if language not in CATALOGUES:
         from gettext import GNUTranslations  # English needs none
 
-        with (LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.mo").open("rb") as stream:
+        path = LOCALE / language / "LC_MESSAGES" / f"{DOMAIN}.mo"
+        if not path.exists():
+            raise FileNotFoundError(ENOENT, "the translations are not compiled: pip install -e . does it", str(path))
+        with path.open("rb") as stream:
             CATALOGUES[language] = GNUTranslations(stream)
     return CATALOGUES[language]
 
