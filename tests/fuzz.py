@@ -54,7 +54,7 @@ from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.schema import File, SpatialFile
 from tmm_cli.problem.shape_errors import FOREIGN
 from tmm_cli.problem.units import SYMBOLS
-from tmm_cli.reports.digits import accuracy, cells, computed_tables, keys_of
+from tmm_cli.reports.digits import accuracy, cells_with_digits, computed_tables, keys_of
 from tmm_cli.reports.register import walk
 from tmm_cli.reports.result_json import sections
 from tmm_cli.reports.table import json_text
@@ -364,7 +364,7 @@ def beyond(results: Any) -> str | None:
         places = np.stack(results.inputs.extended().request.places)
         q, first = places[list(results.numbers)], places[0]
     with np.errstate(all="ignore"):
-        found, wide = accuracy(results), cells(at(results, exact(results), q, first))
+        found, wide = accuracy(results), cells_with_digits(at(results, exact(results), q, first))
         for table in computed_tables(results):
             keys = keys_of(table, len(results.numbers))
             for k, column in enumerate(found.table(table).columns if keys else ()):

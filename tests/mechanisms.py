@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.formats.svg import svg
+from tmm_cli.drawing.formats.svg import write_svg
 from tmm_cli.drawing.run import sheets
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -128,7 +128,7 @@ def drawn(file: Path) -> bytes | None:
     """The scheme of a file with dimensions."""
     if "structure" in read(file):
         return None
-    return svg(dict(sheets(solve(load(str(file)), "structure")))["structure"])
+    return write_svg(dict(sheets(solve(load(str(file)), "structure")))["structure"])
 
 
 def main() -> None:

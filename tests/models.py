@@ -11,7 +11,7 @@ from typing import Any, Literal
 from tmm_cli import load, solve
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 DATA = Path(__file__).parent / "data"
@@ -43,13 +43,13 @@ SI = {"length": "m", "angle": "rad", "mass": "kg", "force": "N", "moment": "N*m"
 def results_of(content: dict[str, Any], stage: str = "forces", positions: list[int] | None = None) -> Results:
     """Write a problem file and solve it."""
     text = json.dumps(content, ensure_ascii=False)  # JSON is YAML
-    return solve(build(read_text(text, "case.yaml")), stage, positions)  # type: ignore[arg-type]
+    return solve(build_problem(read_text(text, "case.yaml")), stage, positions)  # type: ignore[arg-type]
 
 
 @cache
 def solved_text(text: str, stage: Literal["kinematics", "forces"] = "forces") -> Results:
     """The results of a problem file as a student writes it, solved once."""
-    return solve(build(read_text(text, "x.yaml")), stage)
+    return solve(build_problem(read_text(text, "x.yaml")), stage)
 
 
 def file_of(name: str) -> Path:

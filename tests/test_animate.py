@@ -13,9 +13,9 @@ from models import PROBLEMS
 
 from tmm_cli import solve
 from tmm_cli.animation.content import FRAMES, frames, picture_of
-from tmm_cli.animation.page import FEWEST, MOST, page
+from tmm_cli.animation.page import FEWEST, MOST, animation_page
 from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -25,7 +25,7 @@ HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'
 
 @cache
 def page_of(name):
-    return page(solved(name))
+    return animation_page(solved(name))
 
 
 def data_of(html):
@@ -45,7 +45,7 @@ def test_a_page_is_small_and_asks_for_nothing(name):
 def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
     whole = page_of("shaper")
     monkeypatch.setattr("tmm_cli.animation.page.MOST", len(whole.encode()) * 3 // 4)
-    fewer = page(solved("shaper"))
+    fewer = animation_page(solved("shaper"))
     assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
     assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
 
@@ -84,13 +84,13 @@ def test_a_single_position_of_a_mechanism_that_does_not_turn_is_no_motion():
     text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M)
     with pytest.raises(ProblemError, match="nothing moves"):
-        page(solve(build(read_text(text, "x.yaml"))))
+        animation_page(solve(build_problem(read_text(text, "x.yaml"))))
 
 
 def test_names_from_files_are_data():
     text = (PROBLEMS / "crank-slider.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^title: .*$", lambda _: f"title: {json.dumps(HOSTILE)}", text, flags=re.M)
-    html = page(solve(build(read_text(text, "x.yaml"))))
+    html = animation_page(solve(build_problem(read_text(text, "x.yaml"))))
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)

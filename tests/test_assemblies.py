@@ -26,7 +26,7 @@ from tmm_cli.mechanics.kinematics.driver_range import find_range
 from tmm_cli.mechanics.kinematics.motion import move
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -45,7 +45,7 @@ sketch: {at: 0 deg}
 
 
 def problem(text):
-    return build(read_text(text, "case.yaml"))
+    return build_problem(read_text(text, "case.yaml"))
 
 
 def undecided(text):

@@ -10,7 +10,7 @@ from models import PARALLELOGRAM
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -29,7 +29,7 @@ driver: {link: 1, speed: 1 rad/s}
 def refusal(text):
     """The message for a file's text."""
     with pytest.raises(ProblemError) as caught:
-        solve(build(read_text(text, "x.yaml")))
+        solve(build_problem(read_text(text, "x.yaml")))
     return str(caught.value)
 
 
@@ -228,7 +228,7 @@ def test_files_that_are_no_problem_files(text, message):
 
 
 def test_leading_zeros_times_of_day_and_the_key_on_are_what_they_look_like():
-    assert build(read_text(changed("DE: 210", "DE: 0210"), "x.yaml")).linkage.links["4"].points["E"] == 0.21
+    assert build_problem(read_text(changed("DE: 210", "DE: 0210"), "x.yaml")).linkage.links["4"].points["E"] == 0.21
     assert "this is not arithmetic" in refusal(changed("DE: 210", "DE: 12:30"))
 
 

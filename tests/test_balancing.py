@@ -18,7 +18,7 @@ from tmm_cli import load, solve
 from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.mechanics.dynamics.balancing import BalancingTask, Place, Plane, Rotor, balanced, shaking
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -38,7 +38,7 @@ def task(*links, **more):
 def written(name, block):
     """A problem of the bank with a block `balancing`, solved."""
     text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
-    return solve(build(read_text(f"{text}\nbalancing: {block}\n", f"{name}.yaml")))
+    return solve(build_problem(read_text(f"{text}\nbalancing: {block}\n", f"{name}.yaml")))
 
 
 def test_two_counterweights_balance_the_forces_of_a_four_bar():
@@ -104,7 +104,7 @@ def test_a_balanced_four_bar_does_not_move_its_common_centre_of_mass():
 def test_what_shakes_is_what_the_reactions_of_the_frame_leave_without_loads():
     text = (PROBLEMS / "crank-rocker.yaml").read_text(encoding="utf-8")
     text = text[: text.index("loads:")] + "gravity: 0\nsketch: {at: 30 deg, B: [370, 245]}\nbalancing: {}\n"
-    results = solve(build(read_text(text.replace("sketch: {at: 30 deg, B: [370, 245]}\n", "", 1), "free.yaml")))
+    results = solve(build_problem(read_text(text.replace("sketch: {at: 30 deg, B: [370, 245]}\n", "", 1), "free.yaml")))
     frame = -sum(
         r.onto(r.on) if r.by == FRAME else r.onto(r.by) for r in results.reactions.all if FRAME in (r.on, r.by)
     )
@@ -142,7 +142,7 @@ positions: {at: [60]}
 output: 3
 balancing: {counterweights: {1: {radius: 400}}, share: 2/3}
 """
-    results = solve(build(read_text(text, "engine.yaml")))
+    results = solve(build_problem(read_text(text, "engine.yaml")))
     (weight,) = results.balancing.cycle.counterweights
     assert weight.mass == pytest.approx(26.38, abs=0.005)
     assert abs(results.balancing.after.force[0]) == pytest.approx(2849, rel=2e-3)
@@ -249,7 +249,7 @@ sketch: {at: 60, B: [245, 0]}
 masses: {1: {mass: 1, centre: O}, 2: {mass: 1, centre: {on: AB, at: 0.3}}, 3: {mass: 1}}
 balancing: {counterweights: {1: {}, 4: {}}}
 """
-    found = solve(build(read_text(text, "lanchester.yaml"))).balancing.cycle
+    found = solve(build_problem(read_text(text, "lanchester.yaml"))).balancing.cycle
     before, after = (np.abs(np.fft.fft(shaking.force)) / 720 for shaking in (found.before, found.after))
     assert max(after[1], after[-1]) < 1e-12 * before[1] and after[2] == pytest.approx(before[2], rel=1e-9)
 
@@ -258,7 +258,7 @@ def test_a_counterweight_on_a_link_that_only_translates_does_nothing():
     """The coupler of a parallelogram: no mass on it changes where its own centre of mass goes but by its weight."""
     text = (PROBLEMS / "parallel-couplers.yaml").read_text(encoding="utf-8").partition("shows:")[0]
     with np.errstate(over="raise", invalid="raise"):
-        results = solve(build(read_text(text + "balancing: {counterweights: {2: {radius: 20}}}\n", "x")))
+        results = solve(build_problem(read_text(text + "balancing: {counterweights: {2: {radius: 20}}}\n", "x")))
     (weight,) = results.balancing.cycle.counterweights
     assert weight.size == 0
     assert results.balancing.cycle.left == pytest.approx(1.0)

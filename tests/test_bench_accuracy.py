@@ -14,14 +14,14 @@ from test_commands import tmm
 from write_bench_references import BANK, DATA, answers, solved
 
 from tmm_cli.bench import rivals
-from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure, places
+from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure_accuracy, places
 from tmm_cli.bench.chart_accuracy import chart
 from tmm_cli.bench.methods import board
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, errors
 from tmm_cli.bench.methods.loops import Loops
 from tmm_cli.bench.methods.product import recast
-from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS
-from tmm_cli.bench.references import NAMES, reference
+from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS
+from tmm_cli.bench.references import REFERENCE_NAMES, reference
 from tmm_cli.mechanics.plans.record import sheet_scale
 from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
@@ -36,7 +36,7 @@ def error_of(method, name):
     return errors(BY_NAME[method].solve(true.case, true.q), true.exact)
 
 
-@pytest.fixture(params=NAMES)
+@pytest.fixture(params=REFERENCE_NAMES)
 def name(request):
     return request.param
 
@@ -142,7 +142,7 @@ def test_points_on_the_drawing_board_are_off_by_less_than_two_grids(name, millim
 
 
 def test_what_is_drawn_to_half_a_millimetre_comes_within_the_five_percent_rule_on_linkages_of_class_ii():
-    for name in NAMES[:4]:
+    for name in REFERENCE_NAMES[:4]:
         found = error_of("board-0.50", name)
         assert 1e-3 < found["balancing"] < 0.05
         assert 1e-3 < max(found.values()) < 0.05
@@ -171,7 +171,7 @@ def test_a_case_is_made_of_a_linkage_alone():
     true = reference("crank-rocker").case
     case = Case.of(true.linkage, "alone", true.start, true.strokes)
     q = places(case, 5)
-    one, other = OURS.solve(case, q), OURS.solve(true, q)
+    one, other = CLOSED_FORM.solve(case, q), CLOSED_FORM.solve(true, q)
     assert np.array_equal(one.balancing, other.balancing)
 
 
@@ -193,7 +193,9 @@ def test_a_missed_target_is_a_failure_and_reduced_ones_are_twice_as_wide():
 
 
 def test_the_chart_has_a_panel_for_every_quantity_and_every_family_in_its_legend():
-    measured = measure(["crank-slider"], reduced=True, methods=(OURS, BY_NAME["newton-4"], BY_NAME["board-0.50"]))
+    measured = measure_accuracy(
+        ["crank-slider"], reduced=True, methods=(CLOSED_FORM, BY_NAME["newton-4"], BY_NAME["board-0.50"])
+    )
     figure = chart(measured, "crank-slider")
     panels = [axes for axes in figure.axes if axes.get_title(loc="left")]
     assert len(panels) == 5

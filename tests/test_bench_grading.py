@@ -8,7 +8,7 @@ from dataclasses import replace
 from test_commands import ROOT, tmm
 
 from tmm_cli.bench import grading
-from tmm_cli.bench.grading import Figure, Grades, text
+from tmm_cli.bench.grading import Figure, Grades, grading_task_text
 from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.solving import load
@@ -16,7 +16,7 @@ from tmm_cli.synthesis.solving import load
 
 def test_the_task_is_the_six_bar_of_the_bank_with_twelve_answers():
     bank = load(str(ROOT / "problems" / "six-bar.yaml"))
-    assert problem_of(read_text(text(), "six-bar")).linkage == bank.linkage
+    assert problem_of(read_text(grading_task_text(), "six-bar")).linkage == bank.linkage
     assert len(grading.group(2).task.asked) == 12
 
 

@@ -19,7 +19,7 @@ from tmm_cli.bench.speed_of_iterated import Iterated
 from tmm_cli.bench.speed_of_sweeps import Sweeping
 from tmm_cli.mechanics.assembly.choose import assemble
 from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.forces.lever import compute_lever
 from tmm_cli.mechanics.forces.loads import applied
 from tmm_cli.mechanics.forces.plan import power, react
 from tmm_cli.mechanics.groups.sequence import DriverMotion
@@ -48,7 +48,9 @@ def test_a_long_chain_of_dyads_moves_and_balances():
     assert len(structure.groups) == 30 and bool(np.all(motion.moving))
     loads = applied(motion, None)
     drivers = power(motion, react(motion, structure, loads))
-    assert np.allclose(lever(motion, loads, drivers).balancing, drivers, rtol=0, atol=1e-9 * np.max(np.abs(drivers)))
+    assert np.allclose(
+        compute_lever(motion, loads, drivers).balancing, drivers, rtol=0, atol=1e-9 * np.max(np.abs(drivers))
+    )
 
 
 def once(monkeypatch):

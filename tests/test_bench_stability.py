@@ -15,12 +15,12 @@ from test_commands import tmm
 from write_stability_references import Closely, circles, closed, starts, written
 
 from tmm_cli.bench import stability
-from tmm_cli.bench.chart_stability import charts
+from tmm_cli.bench.chart_stability import stability_charts
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, Unable
 from tmm_cli.bench.methods.loops import close
-from tmm_cli.bench.references import KEYS, known, seeds
+from tmm_cli.bench.references import KEYS, known_scenes, seeds
 from tmm_cli.bench.scenes import BY_NAME, FAMILIES
-from tmm_cli.bench.stability import OURS, RIVALS, WRONG, limit, measure, ours
+from tmm_cli.bench.stability import PRODUCT, RIVALS, WRONG, limit, measure_stability, ours
 from tmm_cli.mechanics.linkage import FRAME
 
 METHODS = {method.name: method for method in RIVALS}
@@ -34,11 +34,11 @@ def many_digits():
 
 def near(family, distance, seed=0):
     """The scene of a family at a distance."""
-    return next(at for at in known(family) if at.seed == seed and at.distance == Decimal(distance))
+    return next(at for at in known_scenes(family) if at.seed == seed and at.distance == Decimal(distance))
 
 
 def rows(family, *names, reduced=True):
-    return measure([family], reduced=reduced, methods=[METHODS[name] for name in names], own=False)
+    return measure_stability([family], reduced=reduced, methods=[METHODS[name] for name in names], own=False)
 
 
 # the answers in 50 digits
@@ -164,7 +164,7 @@ def test_a_long_rod_takes_all_digits_from_differences():
 def test_size_and_three_points_in_line_harm_no_formula():
     for family in ("size", "three-in-line"):
         found = rows(family, "closed", "cosines", "freudenstein")
-        assert all(row.error < 1e-9 and row.right == row.scenes for row in found.rows if row.method != OURS)
+        assert all(row.error < 1e-9 and row.right == row.scenes for row in found.rows if row.method != PRODUCT)
 
 
 # ours
@@ -175,12 +175,12 @@ def own():
     """The product alone, in few scenes of all families."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stability, "SEEDS_WHEN_REDUCED", 1)
-        return measure(methods=(), reduced=True)
+        return measure_stability(methods=(), reduced=True)
 
 
 @pytest.mark.parametrize("family", [family.name for family in FAMILIES if family.name != "two-assemblies-lost"])
 def test_no_value_of_ours_is_outside_its_bound(family):
-    for at in known(family, 2, 7):
+    for at in known_scenes(family, 2, 7):
         if at.seed == 0:
             continue  # among those of `own`
         shot = ours(Case.of(at.scene.linkage), at)
@@ -189,7 +189,7 @@ def test_no_value_of_ours_is_outside_its_bound(family):
 
 
 def test_no_value_of_a_class_iii_group_is_outside_its_bound_where_it_loses_two_assemblies(own):
-    found = own.of("two-assemblies-lost", OURS)
+    found = own.of("two-assemblies-lost", PRODUCT)
     assert [row.distance for row in found] == [0.1, 1e-5, 1e-9, 1e-13, 1e-15]
     assert all(row.wrong == 0 for row in found) and all(row.right == 1 for row in found[:3])
 
@@ -210,8 +210,8 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
         return values, found
 
     monkeypatch.setattr(stability, "bounds", boasting)
-    found = measure(["stone-over-pivot"], methods=(), reduced=True)
-    assert found.lies("stone-over-pivot", OURS) == 0.1
+    found = measure_stability(["stone-over-pivot"], methods=(), reduced=True)
+    assert found.lies("stone-over-pivot", PRODUCT) == 0.1
     assert "stone-over-pivot: 2 of 2 outside their bounds at 0.1" in found.failures
 
 
@@ -224,8 +224,8 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
         return values, found
 
     monkeypatch.setattr(stability, "bounds", timid)
-    found = measure(["size"], methods=(), reduced=True)
-    assert found.lies("size", OURS) is None
+    found = measure_stability(["size"], methods=(), reduced=True)
+    assert found.lies("size", PRODUCT) is None
     assert len(found.failures) == 1 and "of the bounds are within 100 times the true error" in found.failures[0]
 
 
@@ -263,7 +263,9 @@ def test_a_method_that_raises_says_so():
     def raising(case):
         raise np.linalg.LinAlgError("singular")
 
-    found = measure(["long-rod"], reduced=True, methods=[Method("x", "x", raising)], own=False).of("long-rod", "x")
+    found = measure_stability(["long-rod"], reduced=True, methods=[Method("x", "x", raising)], own=False).of(
+        "long-rod", "x"
+    )
     assert all(row.said == row.scenes and row.why == ("LinAlgError",) for row in found)
 
 
@@ -303,14 +305,14 @@ def test_the_command_meets_its_targets_and_writes_what_it_found(tmp_path):
     assert content["sharp"] >= 0.9 and content["failures"] == []
     assert all(row["right"] + row["said"] + row["wrong"] == row["scenes"] for row in content["rows"])
     with (tmp_path / "stability.csv").open(encoding="utf-8") as stream:
-        (product,) = [line for line in csv.DictReader(stream) if line["method"] == OURS]
+        (product,) = [line for line in csv.DictReader(stream) if line["method"] == PRODUCT]
     assert product["dead-position"] == "never"
 
 
 def test_the_table_says_where_each_method_lies_first(own):
     (table,) = own.tables
     method, *families = ([column.header, *column.values] for column in table.columns)
-    assert method == ["method", OURS] and all(told[1] == "never" for told in families)
+    assert method == ["method", PRODUCT] and all(told[1] == "never" for told in families)
 
 
 def test_an_unknown_family_is_one_clear_error():
@@ -321,9 +323,9 @@ def test_an_unknown_family_is_one_clear_error():
 
 def test_a_sheet_has_a_panel_a_family_and_a_row_a_method():
     some = [METHODS[name] for name in ("closed", "cosines")]
-    found = measure(["long-rod", "size"], reduced=True, methods=some)
-    (figure,) = charts(found).values()
+    found = measure_stability(["long-rod", "size"], reduced=True, methods=some)
+    (figure,) = stability_charts(found).values()
     assert len(figure.axes) == 4
     rows_of = [label.get_text() for label in figure.axes[1].get_yticklabels()]
-    assert rows_of[0] == OURS and set(rows_of) <= set(found.methods)
+    assert rows_of[0] == PRODUCT and set(rows_of) <= set(found.methods)
     assert all(set(row.errors) == set(QUANTITIES) and set(KEYS) == set(QUANTITIES) for row in found.rows)

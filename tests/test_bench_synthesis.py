@@ -13,17 +13,17 @@ from test_commands import ROOT, tmm
 
 from tmm_cli.bench import searches
 from tmm_cli.bench.searches import (
-    NAMES,
     PER_SECOND,
     REDUCED_PATHS,
+    SEARCH_NAMES,
     SEARCHED,
     Found,
     PathFound,
     Searches,
     SearchRate,
-    known,
+    best_known,
     prepared,
-    text,
+    search_problem_text,
 )
 from tmm_cli.synthesis.optimal.polish import exactly
 
@@ -32,7 +32,9 @@ FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
 
 
 def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_72_positions():
-    assert text(SEARCHED) == (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
+    assert search_problem_text(SEARCHED) == (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(
+        encoding="utf-8"
+    )
     search = prepared(SEARCHED)
     assert (len(search.low), len(search.constraints) - 1, len(search.places.shares)) == (
         5,
@@ -42,7 +44,7 @@ def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_7
 
 
 def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
-    best, search = known(), prepared(SEARCHED)
+    best, search = best_known(), prepared(SEARCHED)
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
     values = exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)
@@ -50,7 +52,7 @@ def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
     assert best["objective"] == min(run["objective"] for run in best["runs"]) and len(best["runs"]) == 10
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SEARCH_NAMES)
 def test_a_generation_at_once_is_what_its_candidates_are_one_by_one(name):
     search = prepared(name)
     x = np.random.default_rng(1).random((300, len(search.low)))
@@ -93,7 +95,9 @@ def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):
     done = tmm("bench", "synthesis", "--reduced", "--json", "-o", tmp_path)
     assert done.returncode in (0, 1), done.stderr  # 1: a target missed, as on a busy machine
     found = json.loads(done.stdout)
-    assert {r["problem"] for r in found["rates"]} == set(NAMES) and all(r["per_second"] > 0 for r in found["rates"])
+    assert {r["problem"] for r in found["rates"]} == set(SEARCH_NAMES) and all(
+        r["per_second"] > 0 for r in found["rates"]
+    )
     assert found["near"] == len(found["found"]) == 1
     assert [path["problem"] for path in found["paths"]] == list(REDUCED_PATHS[:1])
     assert (done.returncode == 0) == (not found["failures"])

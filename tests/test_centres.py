@@ -10,10 +10,10 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.mechanics.analysis.in_detail import with_centres
-from tmm_cli.mechanics.kinematics.centres import centres
+from tmm_cli.mechanics.kinematics.centres import find_centres
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics.vectors import cross
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.register import walk
 
@@ -30,7 +30,7 @@ def solved(name):
 @cache
 def found(name, k):
     results = solved(name)
-    return {centre.links: centre for centre in centres(results.motion, results.structure, k)}
+    return {centre.links: centre for centre in find_centres(results.motion, results.structure, k)}
 
 
 @pytest.mark.parametrize("name", LINKAGES)
@@ -107,8 +107,8 @@ positions: {at: [45]}
 
 
 def of_text(text):
-    results = solve(build(read_text(text, "textbook.yaml")), "kinematics")
-    return results.motion, {c.links: c for c in centres(results.motion, results.structure, 0)}
+    results = solve(build_problem(read_text(text, "textbook.yaml")), "kinematics")
+    return results.motion, {c.links: c for c in find_centres(results.motion, results.structure, 0)}
 
 
 def test_a_four_bar_as_a_textbook_measures_it():
@@ -131,7 +131,7 @@ def test_a_crank_slider_as_a_textbook_measures_it():
 
 def test_the_mechanical_advantage_is_the_load_over_what_balances_it():
     text = CRANK_SLIDER.replace("at: [45]", "count: 12, from: 15").replace("tmm: 1", "tmm: 1\noutput: 4\ngravity: 0")
-    results = solve(build(read_text(f"{text}loads: {{Q: {{on: 4, force: [-250, 0]}}}}\n", "press.yaml")))
+    results = solve(build_problem(read_text(f"{text}loads: {{Q: {{on: 4, force: [-250, 0]}}}}\n", "press.yaml")))
     (table,) = walk(with_centres(results), ["advantage"])
     assert 250 / np.abs(results.reactions.balance.moment) == pytest.approx(table.columns[-1].array, rel=1e-12)
 

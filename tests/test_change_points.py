@@ -15,7 +15,7 @@ import pytest
 from models import SI, results_of
 
 from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 DIGITS = 1e-12  # rad
 
@@ -246,6 +246,6 @@ def test_with_a_rod_that_is_longer_the_driver_turns_back(longer):
 
 def test_the_reader_is_told_that_the_motion_goes_on_smoothly():
     results = moved(DRAG_LINK)
-    said = [line for line in warnings(results) if "dead position" in line]
+    said = [line for line in collect_warnings(results) if "dead position" in line]
     assert len(said) == 2
     assert all(results.dead[0].group in line and "smooth" in line for line in said)

@@ -22,10 +22,10 @@ from tmm_cli.drawing.paper.chart import (
     Panel,
     Plot,
     across,
-    chart,
+    axis_room,
     decades,
+    draw_chart,
     equal,
-    room,
     round_up,
     upwards,
 )
@@ -33,9 +33,9 @@ from tmm_cli.drawing.paper.fonts import corners
 from tmm_cli.drawing.paper.picture import Space, within
 from tmm_cli.drawing.paper.record import POINT, Circle, Line, Text
 from tmm_cli.drawing.paper.sheet import Sheet
-from tmm_cli.drawing.sheets.diagrams import LINES, diagrams
+from tmm_cli.drawing.sheets.diagrams import LINES, draw_diagrams
 from tmm_cli.mechanics.plans.record import LANDSCAPE
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
@@ -43,13 +43,15 @@ def shaper(*changes):
     text = SHAPER.read_text(encoding="utf-8")
     for old, new in changes:
         text = re.sub(old, new, text)
-    return solve(build(read_text(text, "shaper.yaml")))
+    return solve(build_problem(read_text(text, "shaper.yaml")))
 
 
 @cache
 def drawn(name):
-    problem = build(read_text(PROBLEMS[name], "x.yaml")) if name in PROBLEMS else load(f"{ROOT}/problems/{name}.yaml")
-    return dict(diagrams(solve(problem)))
+    problem = (
+        build_problem(read_text(PROBLEMS[name], "x.yaml")) if name in PROBLEMS else load(f"{ROOT}/problems/{name}.yaml")
+    )
+    return dict(draw_diagrams(solve(problem)))
 
 
 def curves(drawing):
@@ -115,7 +117,7 @@ def test_strokes_of_a_cycle_of_two_turns_are_counted_and_not_said_to_work_by_tur
 def test_a_stroke_in_which_position_0_lies_has_one_number_at_both_ends():
     engine = load(f"{ROOT}/problems/four-stroke-engine.yaml")
     late = solve(replace(engine, request=replace(engine.request, start=math.radians(90.0))))
-    texts = dict(diagrams(late))["diagrams"].texts()
+    texts = dict(draw_diagrams(late))["diagrams"].texts()
     assert [text for text in texts if text.startswith("stroke")] == [f"stroke {number}" for number in (1, 2, 3, 4, 1)]
 
 
@@ -131,7 +133,7 @@ def test_a_load_of_the_working_stroke_leaves_a_gap_in_the_balancing_moment_with_
     results = shaper(
         (r"  F: .*", "  brake: {on: 1, moment: -120, when: working stroke}"), (r"from: working stroke, ", "")
     )
-    drawing = dict(diagrams(results))["diagrams"]
+    drawing = dict(draw_diagrams(results))["diagrams"]
     moment = [line for line in curves(drawing) if line.places[0].imag < 100]
     ends = [place for line in moment for place in (line.places[0], line.places[-1])]
     inner = sorted(ends, key=lambda place: place.real)[1:-1]
@@ -175,7 +177,7 @@ def test_a_panel_of_many_curves_has_a_legend_of_several_rows_above_it():
     sheet = Sheet("title", "caption", paper=LANDSCAPE)
     x = np.linspace(0, 10, 5)
     every = [Curve(x, k * x, f"a curve with a long name, number {k}", LINES[k % len(LINES)]) for k in range(9)]
-    (panel,) = chart(sheet, [Plot("value, N", every)], Across(across(0, 10, *room(sheet)), "time, s"))
+    (panel,) = draw_chart(sheet, [Plot("value, N", every)], Across(across(0, 10, *axis_room(sheet)), "time, s"))
     named = [m for m in sheet.marks if isinstance(m, Text) and m.text.startswith("a curve")]
     assert len(named) == 9 and len({round(m.at.imag, 3) for m in named}) > 1
     assert all(m.at.imag > panel.y.end and corners(m)[1].real < LANDSCAPE[0] for m in named)
@@ -187,7 +189,7 @@ def test_panels_that_a_sheet_is_too_low_for_go_to_further_sheets():
     """A radial engine of seven cylinders has 22 reactions; the field of a note is half as high as a page."""
     results = solve(load(DATA / "radial-seven.yaml"))
     with within(Space(170, (165, 235), written=False)):
-        sheets = dict(diagrams(results))
+        sheets = dict(draw_diagrams(results))
     named = [sheet.texts() for stem, sheet in sheets.items() if re.fullmatch(r"reactions(-\d)?", stem)]
     entries = [text for texts in named for text in texts if re.fullmatch(r"R.*\(.*\)", text)]
     assert len(entries) == len(set(entries)) == len(results.structure.pairs) == 22
@@ -200,8 +202,8 @@ def test_a_legend_that_leaves_no_height_for_its_panel_is_cut():
     sheet = Sheet("title", "caption", paper=LANDSCAPE)
     x = np.linspace(0, 10, 5)
     every = [Curve(x, k * x, f"a curve with a long name, number {k}") for k in range(200)]
-    over = Across(across(0, 10, *room(sheet)), "time, s")
-    (panel,) = chart(sheet, [Plot("value, N", every)], over)
+    over = Across(across(0, 10, *axis_room(sheet)), "time, s")
+    (panel,) = draw_chart(sheet, [Plot("value, N", every)], over)
     assert panel.y.length >= LOWEST
     assert 50 < sum(isinstance(m, Text) and m.text.startswith("a curve") for m in sheet.marks) < 200
 
@@ -209,7 +211,7 @@ def test_a_legend_that_leaves_no_height_for_its_panel_is_cut():
 def test_values_that_there_are_not_interrupt_a_curve():
     sheet = Sheet("title", "caption", paper=LANDSCAPE)
     ys = [1, 2, math.nan, 3, 4]
-    chart(sheet, [Plot("y", [Curve(np.arange(5.0), ys)])], Across(across(0, 4, *room(sheet)), "x"))
+    draw_chart(sheet, [Plot("y", [Curve(np.arange(5.0), ys)])], Across(across(0, 4, *axis_room(sheet)), "x"))
     drawn_lines = [m for m in sheet.marks if isinstance(m, Line) and m.width == pytest.approx(1.3 * POINT)]
     assert [len(line.places) for line in drawn_lines] == [2, 2]
 
@@ -232,4 +234,4 @@ def test_a_reaction_jumps_where_friction_turns_about_within_a_stroke():
 
     rubbed = shaper((r"\Z", "\nfriction: {coefficient: 0.12, radius: 20 mm}\n"))
     assert not jumps(drawn("shaper")["reactions"])
-    assert len(jumps(dict(diagrams(rubbed))["reactions"])) == 1
+    assert len(jumps(dict(draw_diagrams(rubbed))["reactions"])) == 1

@@ -24,7 +24,7 @@ from rich.console import Console
 
 from tmm_cli.cli.app import COMMANDS, main
 from tmm_cli.cli.bench import MEASUREMENTS
-from tmm_cli.problem.templates import template_text, templates, translations
+from tmm_cli.problem.templates import list_templates, template_text, translations
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.reports.compare import Difference, difference_table, differences
 from tmm_cli.reports.register import tables
@@ -319,11 +319,11 @@ def test_templates_run_as_they_are(tmp_path):
 @pytest.mark.parametrize("language", ["ru", "sr"])
 def test_templates_are_the_same_problems_in_every_language(language):
     used = set()
-    for name, title in templates().items():
+    for name, title in list_templates().items():
         english, other = (template_text(name, tongue) for tongue in ("en", language))
         data, translated = (yaml.safe_load(text) for text in (english, other))
         assert translated.pop("lang") == language
-        assert translated["title"] == templates(language)[name] and data["title"] == title
+        assert translated["title"] == list_templates(language)[name] and data["title"] == title
         for problem in (data, translated):
             problem.pop("title")
             for link in problem["links"].values():

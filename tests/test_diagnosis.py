@@ -9,7 +9,7 @@ from test_commands import SHAPER
 
 from tmm_cli.batch.family import families
 from tmm_cli.batch.task import read_task
-from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.sheet import Written, predicted, right
 from tmm_cli.mechanics.quantities import ANGULAR_SPEED, LENGTH
@@ -54,7 +54,7 @@ def drawn(values):
 
 def test_right_answers_off_a_drawing_accuse_nobody():
     family, known = group()
-    assert not diagnose(family, known, drawn(known.value))
+    assert not diagnose_students(family, known, drawn(known.value))
 
 
 def test_what_one_mistake_makes_of_a_sheet_is_explained_by_it():
@@ -66,7 +66,7 @@ def test_what_one_mistake_makes_of_a_sheet_is_explained_by_it():
         moved = np.max(np.abs(values - known.value) / known.scale, axis=2)
     moves = np.isfinite(moved) & (moved > 4 * DRAWING * 5 / 3)
     made = [int(random.choice(np.flatnonzero(moves[:, n]))) for n in range(STUDENTS)]
-    found = diagnose(family, known, drawn(values[made, np.arange(STUDENTS)]))
+    found = diagnose_students(family, known, drawn(values[made, np.arange(STUDENTS)]))
     rightly = wrongly = 0
     for n, case in enumerate(made):
         named = {type(one) for claim in found.get(n, []) for one in claim.alternatives}

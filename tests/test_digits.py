@@ -28,7 +28,7 @@ from test_commands import ROOT, SHAPER, described, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.mechanics.accuracy.digits import Digits, at, bare, bounds, exact, quantities, relative, sizes
-from tmm_cli.mechanics.accuracy.lengths import changed, lengths
+from tmm_cli.mechanics.accuracy.lengths import changed, list_lengths
 from tmm_cli.mechanics.accuracy.searches import Wide, searched
 from tmm_cli.mechanics.assembly.choose import assemble
 from tmm_cli.mechanics.forces.lever import Item, Lever
@@ -48,12 +48,12 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
 )
 from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build, problem_of
+from tmm_cli.problem.build import build_problem, problem_of
 from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.digits import accuracy, cells, computed_tables
+from tmm_cli.reports.digits import accuracy, cells_with_digits, computed_tables
 from tmm_cli.reports.register import tables_of
 from tmm_cli.reports.table import true_digits
-from tmm_cli.reports.terminal import cells as shown
+from tmm_cli.reports.terminal import terminal_cells as shown
 
 BARRED = """tmm: 1
 units: {length: m, angle: rad}
@@ -304,7 +304,7 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
     end = mp.acos((mp.mpf("0.64") + 1 - mp.mpf("1.69")) / mp.mpf("1.6"))  # coupler and rocker in line
     text = BARRED.replace("angle: rad", "angle: deg").replace("at: 1,", "at: 1 rad,")
     places = f"output: 3\npositions: {{at: [0.2 rad, 0.5 rad, {mp.nstr(end - mp.mpf(left), 25)} rad]}}\n"
-    results = solve(build(read_text(text + places, "barred.yaml")), "kinematics")
+    results = solve(build_problem(read_text(text + places, "barred.yaml")), "kinematics")
     quality, pressure = accuracy(results).with_bounds(tables_of(results, ("quality", "pressure")))
     units = results.problem.units
     told = dict(zip(quality.columns[0].values, shown(quality.columns[1], units, range(quality.rows)), strict=True))
@@ -354,7 +354,7 @@ def test_a_largest_pressure_angle_goes_with_crank_and_rod_as_its_sine_their_rati
 
 def test_an_end_of_the_way_moves_with_the_lengths_as_the_stretched_rod_and_rocker_say():
     a, b, c, d = 0.8, 0.7, 0.6, 1.0
-    results = solve(build(read_text(BARRED, "barred.yaml")), "kinematics")
+    results = solve(build_problem(read_text(BARRED, "barred.yaml")), "kinematics")
     found = searched(results, lambda r: {"end": np.array([r.driver_range.end])}, Wide(results), 0.001)
     cosine = (a**2 + d**2 - (b + c) ** 2) / (2 * a * d)
     slopes = [1 / d - cosine / a, (b + c) / (a * d), (b + c) / (a * d), 1 / a - cosine / d]
@@ -367,11 +367,12 @@ def test_sensitivity_is_that_of_a_larger_change_of_the_data():
     places = replace(problem.request, places=tuple(0.3 + 0.7 * k for k in range(8)))
     problem = replace(problem, request=places, extended=None)
     found = accuracy(solve(problem), full=True)
-    base, total = cells(found.there), {}
-    for length in lengths(problem.linkage):
+    base, total = cells_with_digits(found.there), {}
+    for length in list_lengths(problem.linkage):
         by = 1e-3 * abs(length.value)
         moved = [
-            cells(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by)))) for sign in (1, -1)
+            cells_with_digits(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by))))
+            for sign in (1, -1)
         ]
         for key in base:
             if key[1] == "link-motion" and not key[0]:
@@ -446,7 +447,7 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)
-    wide = cells(at(results, exact(results), exactly(results.motion.q), results.start))
+    wide = cells_with_digits(at(results, exact(results), exactly(results.motion.q), results.start))
     for header in ("s", "v relative", "a relative"):
         k, column = next((k, c) for k, c in enumerate(told.columns) if c.header == header)
         expected = [wide[False, "slides", k, row] for row in range(2)]
@@ -464,7 +465,7 @@ def test_a_moment_by_the_swing_of_its_rocker_is_judged():
     text = (ROOT / "problems" / "crank-rocker.yaml").read_text(encoding="utf-8")
     constant, table = "moment: -40 N*m", "{against: share of stroke, table: [[0, -10], [0.4, -30], [1, -5]]}"
     assert constant in text
-    results = solve(build(read_text(text.replace(constant, f"moment: {table}"), "x.yaml")))
+    results = solve(build_problem(read_text(text.replace(constant, f"moment: {table}"), "x.yaml")))
     name = next(one for one in computed_tables(results) if one.name == "balance")
     moment = next(column for column in accuracy(results).table(name).columns if column.header == "M_b")
     assert 0 < np.max(moment.bound) < 1e-10 * np.max(np.abs(moment.array))

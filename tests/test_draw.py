@@ -14,9 +14,9 @@ from tmm_cli.drawing.paper.labels import Label, extent, place
 from tmm_cli.drawing.paper.sheet import Sheet
 from tmm_cli.drawing.run import files, remarks, sheets
 from tmm_cli.drawing.sheets.mechanism import detailed, position
-from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
 from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
@@ -25,7 +25,7 @@ def shaper(*changes):
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return build(read_text(text, "shaper.yaml"))
+    return build_problem(read_text(text, "shaper.yaml"))
 
 
 def plain(drawing):
@@ -78,7 +78,7 @@ def test_any_size_is_drawn(unit):
     assert {"O", "A, S2", "C", "D", "E"} <= ram  # every named point, a centre of mass in one of them with it
     assert {"μ", "l"} <= ram and any(text.startswith(" = ") and text.endswith(" m/mm") for text in ram)
     (here,) = detailed(results)
-    assert {"p", "p′"} & plain(dict(motion_plans(here))["velocity-03"])
+    assert {"p", "p′"} & plain(dict(draw_motion_plans(here))["velocity-03"])
 
 
 def test_kinematics_alone_has_no_sheets_of_forces():
@@ -97,7 +97,7 @@ def test_a_title_is_never_read_as_mathematics_and_is_cut():
 def test_nothing_moves_and_nothing_weighs_is_drawn_too():
     text = SHAPER.read_text(encoding="utf-8")
     text = text[: text.index("masses:")] + text[text.index("output:") :]
-    still = build(read_text(text.replace("speed: n1", "speed: 0"), "still.yaml"))
+    still = build_problem(read_text(text.replace("speed: n1", "speed: 0"), "still.yaml"))
     drawn = dict(sheets(solve(still)))
     assert "energy" not in drawn
     assert "everything is at rest" in plain(drawn["velocity-03"])
@@ -128,7 +128,7 @@ def test_every_sheet_is_written_in_every_other_format(kind):
 
 
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
-    stems = [stem for stem, _ in sheets(solve(build(read_text(PARALLELOGRAM, "x.yaml"))))]
+    stems = [stem for stem, _ in sheets(solve(build_problem(read_text(PARALLELOGRAM, "x.yaml"))))]
     assert "velocity-01" in stems and "velocity-00" not in stems
 
 
@@ -151,5 +151,5 @@ def test_positions_that_the_file_names_are_drawn_in_full_and_nothing_is_said():
 def test_where_nothing_acts_the_position_after_the_first_is_drawn_in_full():
     text = SHAPER.read_text(encoding="utf-8")
     text = (text[: text.index("masses:")] + text[text.index("output:") :]).replace(", detail: [3]", "")
-    (here,) = detailed(solve(build(read_text(text, "light.yaml"))))
+    (here,) = detailed(solve(build_problem(read_text(text, "light.yaml"))))
     assert here.k == 1

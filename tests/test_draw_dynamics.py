@@ -20,9 +20,10 @@ from test_commands import tmm
 from tmm_cli import load, solve
 from tmm_cli.drawing.layout.contents import CONTENTS, chosen
 from tmm_cli.drawing.paper.record import Circle, Line, Text
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION
-from tmm_cli.drawing.sheets.law_of_motion import law_of_motion, stretches_on_paper
-from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION
+from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion, stretches_on_paper
+from tmm_cli.drawing.sheets.single_run import draw_single_run
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.dynamics.motors import Linear
 from tmm_cli.mechanics.dynamics.task import Rim, SteadyTask
@@ -30,7 +31,7 @@ from tmm_cli.mechanics.linkage import Load
 from tmm_cli.note.dynamics import parts as words
 from tmm_cli.note.formats.html import html
 from tmm_cli.note.register import note
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 
 THIN = 0.05  # mm: less than half of a line
 TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor
@@ -51,7 +52,7 @@ def running(name, kind):
 
 @cache
 def drawn(name, kind):
-    return dict(law_of_motion(running(name, kind)))
+    return dict(draw_law_of_motion(running(name, kind)))
 
 
 def curve(sheet, colour, style="-"):
@@ -127,7 +128,7 @@ def test_a_load_that_jumps_is_drawn_as_a_jump():
     shaper = problem("shaper")
     brake = Load("brake", "1", moment=-80.0, when="working stroke")
     loaded = replace(shaper, linkage=replace(shaper.linkage, loads=(*shaper.linkage.loads, brake)), extended=None)
-    sheet = dict(law_of_motion(solve(replace(loaded, dynamics=SteadyTask(8.6, 1 / 30)))))["law-moments"]
+    sheet = dict(draw_law_of_motion(solve(replace(loaded, dynamics=SteadyTask(8.6, 1 / 30)))))["law-moments"]
     steps = [np.diff(line.places) for line in sheet.marks if isinstance(line, Line) and len(line.places) > 20]
     steep = [step for every in steps for step in every if abs(step.real) < 0.01 and abs(step.imag) > 1]
     rings = [m for m in sheet.marks if isinstance(m, Circle) and m.face == "white"]
@@ -154,8 +155,8 @@ def test_a_single_run_is_drawn_from_its_beginning_to_its_end():
     press = problem("press-single-run")
     results = solve(replace(press, dynamics=replace(press.dynamics, brake=5.0)))
     run = results.single.run
-    sheet = dict(single_run(results))["single-run"]
-    assert not covered(sheet) and not list(law_of_motion(results))
+    sheet = dict(draw_single_run(results))["single-run"]
+    assert not covered(sheet) and not list(draw_law_of_motion(results))
     energy = curve(sheet, REACTION, ":")
     mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
     assert (energy[-1] - energy[0]).imag * mu == pytest.approx(run.kinetic[-1] - run.kinetic[0], abs=mu * THIN)
@@ -171,7 +172,7 @@ def test_letters_of_the_law_of_motion_are_those_of_the_course():
 
 
 def test_the_data_of_the_motor_are_told():
-    (table,) = (one for one in given(problem("shaper-motor")) if one.name == "machine")
+    (table,) = (one for one in input_tables(problem("shaper-motor")) if one.name == "machine")
     rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
     assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
     assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
@@ -194,7 +195,7 @@ def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_
     torque = np.array([0.0, 2000, 0, 1500, 0])
     places = np.linspace(0, 2 * np.pi, 720_001)
     work = cumulative_trapezoid(np.interp(places, phi, torque) - 875.0, places, initial=0.0)  # 875 = (2000 + 1500) / 4
-    sheet = dict(law_of_motion(results))["energy-mass"]
+    sheet = dict(draw_law_of_motion(results))["energy-mass"]
     ends = [curve(sheet, colour, "--")[0] for colour in (LOAD, INERTIA)]
     mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
     assert abs(ends[0] - ends[1]) * mu == pytest.approx(np.ptp(work), rel=1e-6)
@@ -219,7 +220,7 @@ def test_rows_a_thousandth_of_a_millimetre_apart_are_drawn_as_a_jump(tmp_path):
     """The law of motion has 2 000 panels in that row; each was a jump whose values wanted a place on the sheet."""
     results = solve(load(DATA / "steep-table.yaml"))
     assert len(results.steady.steady.law.energy.edges) > 1000
-    sheet = dict(law_of_motion(results))["law-moments"]
+    sheet = dict(draw_law_of_motion(results))["law-moments"]
     assert max(len(mark.places) for mark in sheet.marks if isinstance(mark, Line)) < 2000
     jumps = [mark for mark in sheet.marks if isinstance(mark, Circle) and mark.face == "white"]
     assert 0 < len(jumps) < 20

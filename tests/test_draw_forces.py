@@ -12,11 +12,12 @@ from test_draw import plain
 from tmm_cli.drawing.paper.record import Area, Line
 from tmm_cli.drawing.paper.script import plain as line
 from tmm_cli.drawing.paper.script import wrapped
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION, Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.acting import ARM, Forces
 from tmm_cli.drawing.sheets.beneath import Beneath, Table
-from tmm_cli.drawing.sheets.force_plans import forces, lanes, table
-from tmm_cli.drawing.sheets.group_loads import figure, group_loads, table_of_forces, written
+from tmm_cli.drawing.sheets.force_plans import force_plan_rows, forces, lanes
+from tmm_cli.drawing.sheets.group_loads import draw_group_loads, figure, table_of_forces, written
 from tmm_cli.drawing.sheets.mechanism import detailed
 from tmm_cli.mechanics.forces.equilibrium import loaded_parts
 from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol
@@ -32,7 +33,7 @@ def sheets_of(name, kind):
 
 @pytest.fixture(scope="module")
 def loaded():
-    return sheets_of("shaper", group_loads)
+    return sheets_of("shaper", draw_group_loads)
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,7 @@ def test_arms_are_listed_with_their_length_and_as_they_measure_on_paper(loaded):
 
 @pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "lifting-boom", "cam-lever", "planetary-dwell-press"])
 def test_groups_of_every_class_are_drawn(name):
-    for stem, sheet in sheets_of(name, group_loads).items():
+    for stem, sheet in sheets_of(name, draw_group_loads).items():
         assert stem.startswith("group-loads-") and "Σ" in plain(sheet)
 
 
@@ -110,7 +111,7 @@ def left(written, across):
 def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
     here = detailed(solved(name))[0]
     for plan in force_plans(here.results.reactions, here.k, here.motion):
-        rows = [row.cells for row in table(plan, 7.5) if not row.head]
+        rows = [row.cells for row in force_plan_rows(plan, 7.5) if not row.head]
         vectors = [*plan.plan.vectors, *plan.full]
         assert [line(cells[0]) for cells in rows] == [line(vector.symbol) for vector in vectors]
         for (__, size, length, angle), vector in zip(rows, vectors, strict=True):

@@ -14,7 +14,7 @@ from PIL import Image
 from pypdf import PdfReader
 
 from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.formats.pdf import cut, pdf
+from tmm_cli.drawing.formats.pdf import cut, write_pdf
 from tmm_cli.drawing.paper.fonts import corners, font, font_file, lacking, width
 from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
 
@@ -92,7 +92,7 @@ def _descriptors(page):
 
 
 def test_several_drawings_are_pages_of_one_file():
-    assert len(PdfReader(io.BytesIO(pdf(drawn(), drawn(), drawn()))).pages) == 3
+    assert len(PdfReader(io.BytesIO(write_pdf(drawn(), drawn(), drawn()))).pages) == 3
 
 
 def test_the_same_drawing_gives_the_same_bytes_in_every_process():

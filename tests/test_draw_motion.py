@@ -12,7 +12,7 @@ from tmm_cli.drawing.paper.fonts import corners
 from tmm_cli.drawing.paper.record import Circle, Text
 from tmm_cli.drawing.paper.script import plain
 from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.drawing.sheets.motion_plans import motion_plans, sorts, table
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans, motion_plan_rows, sorts
 
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 
@@ -22,7 +22,7 @@ def plans(name):
     """The first position in detail, and its two sheets with what they are of."""
     results = solved(name)
     here = detailed(results)[0]
-    return here, [(sort, sheet) for sort, (__, sheet) in zip(sorts(), motion_plans(here), strict=True)]
+    return here, [(sort, sheet) for sort, (__, sheet) in zip(sorts(), draw_motion_plans(here), strict=True)]
 
 
 def scale(sheet):
@@ -51,7 +51,7 @@ def test_the_table_has_the_results_to_the_digits_it_shows(name):
     motion, k = here.motion, here.k
     for sort, sheet in drawn:
         mu = scale(sheet)
-        rows = table(here, sort, sort.plan(motion, k), mu)
+        rows = motion_plan_rows(here, sort, sort.plan(motion, k), mu)
         found = {sign: row.cells for row in rows if not row.head for sign in plain(row.cells[0]).split(" = ")}
         for point in motion.linkage.moving_points:
             value = abs(getattr(motion.named(point), sort.letter)[k])
@@ -92,7 +92,10 @@ def test_parts_of_accelerations_have_their_indices_on_the_sheet():
 def test_a_vector_too_short_to_be_seen_is_in_the_table_with_its_value():
     here, drawn = plans("shaper")
     sort, sheet = drawn[1]
-    rows = {plain(row.cells[0]): row.cells for row in table(here, sort, sort.plan(here.motion, here.k), scale(sheet))}
+    rows = {
+        plain(row.cells[0]): row.cells
+        for row in motion_plan_rows(here, sort, sort.plan(here.motion, here.k), scale(sheet))
+    }
     assert float(rows["a^n_ED"][2]) < 4 and float(rows["a^n_ED"][3]) == pytest.approx(
         0.21 * here.motion.link("4").omega[3] ** 2, rel=1e-3
     )

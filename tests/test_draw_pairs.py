@@ -21,7 +21,7 @@ from tmm_cli.mechanics.numerics.vectors import cross, dot
 from tmm_cli.mechanics.plans.forces import force_plans
 from tmm_cli.mechanics.plans.lever import lever_plan
 from tmm_cli.mechanics.plans.motion import acceleration_plan, letters, velocity_plan
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 WHEELS = ["gear", "inner", "planet", "rack"]
@@ -30,7 +30,7 @@ CAMS = ["flat follower", "swinging follower"]
 
 @cache
 def solved(name):
-    return solve(build(read_text(PROBLEMS[name], f"{name}.yaml")))
+    return solve(build_problem(read_text(PROBLEMS[name], f"{name}.yaml")))
 
 
 @cache
@@ -137,7 +137,7 @@ def test_the_roller_of_a_swinging_follower_rolls_on_the_disk(k):
 def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
     text = PROBLEMS["flat follower"].replace("offset: 60", "offset: 5")
     text = text.replace("B: [0, 140]", "B: [0, 85]").replace("D: [120, 230]", "D: [120, 175]")
-    results = solve(build(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
+    results = solve(build_problem(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
     found = outline(scene(results, 0), results.linkage.meshes[0])
     assert not found.true
     turns = np.unwrap(np.angle(np.diff(found.disk[::6])))
@@ -213,7 +213,7 @@ def test_every_force_polygon_closes_with_teeth_springs_friction_and_drivers(name
 
 def test_a_driver_between_two_plans_is_in_both_of_them():
     """Piston 2 is driven along crank 1: the cylinder's force stands in the plan of 2 and, reversed, in that of 1."""
-    results = solve(build(read_text(TELESCOPE, "telescope.yaml")))
+    results = solve(build_problem(read_text(TELESCOPE, "telescope.yaml")))
     names = {plan.links: [v.name for v in plan.plan.vectors] for plan in force_plans(results.reactions, 1)}
     assert "Fb₂" in names["2",] and "F′b₂" in names["1",]
     for plan in force_plans(results.reactions, 1):

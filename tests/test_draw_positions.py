@@ -20,7 +20,7 @@ from tmm_cli.drawing.sheets.mechanism import detailed, position
 from tmm_cli.drawing.sheets.positions import all_positions, extreme_states, extremes, output_track, ratio
 from tmm_cli.mechanics.plans.record import ground_of
 from tmm_cli.mechanics.quantities import LENGTH
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
@@ -166,7 +166,7 @@ def test_numbers_beside_the_way_do_not_cover_one_another(name):
 def test_the_way_of_a_point_or_of_a_coupler_is_told_in_words():
     """Its ends lie on a curve, not on a line or about a pivot."""
     text = (ROOT / "problems" / "six-bar.yaml").read_text(encoding="utf-8")
-    results = solve(build(read_text(text.replace("output: 5", "output: K"), "x.yaml")), "kinematics")
+    results = solve(build_problem(read_text(text.replace("output: 5", "output: K"), "x.yaml")), "kinematics")
     ((__, sheet),) = all_positions(results)
     assert f"H = {1000 * results.strokes.travel:.4g} mm" in sheet.texts()
     assert not dimensions(sheet, Area)

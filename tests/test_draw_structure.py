@@ -24,7 +24,7 @@ from tmm_cli.drawing.symbols.wheels import outline, replacement
 from tmm_cli.mechanics.groups.state import Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
@@ -263,7 +263,7 @@ def test_where_the_sketch_hides_a_pair_another_place_of_the_driver_is_drawn():
     def drawn_at(at):
         text = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
         text = text.replace("output: 3", f"sketch: {{at: {at} deg}}\noutput: 3")
-        words, _ = at_sketch(solve(build(read_text(text, "x.yaml")), "structure"))
+        words, _ = at_sketch(solve(build_problem(read_text(text, "x.yaml")), "structure"))
         return float(words.removeprefix("crank at ").removesuffix(" deg"))
 
     assert drawn_at(40) == pytest.approx(40)

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from bank import NAMES, solved
 
-from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.labels import gather_labels
 from tmm_cli.drawing.paper.record import Area, Circle, Line
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet
+from tmm_cli.drawing.paper.sheet import THIN, Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.structure import at_sketch
 from tmm_cli.drawing.symbols.parts import MEASURED, PLATE, STRUCTURAL, WELD, free_runs, mass_centre, support_side, tint
-from tmm_cli.drawing.symbols.render import render
+from tmm_cli.drawing.symbols.render import render_scene
 from tmm_cli.drawing.symbols.scene import fitted, to_scale
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics.vectors import cross, dot
@@ -33,7 +34,7 @@ def drawn(name, look):
     else:
         sheet = Sheet("", "")
         scene = fitted(sheet, scene, links, 20, 150)
-    found = render(sheet, scene, links, scene.structure.pairs, look, dict.fromkeys((FRAME, *links), DARK))
+    found = render_scene(sheet, scene, links, scene.structure.pairs, look, dict.fromkeys((FRAME, *links), DARK))
     return sheet, found
 
 
@@ -131,7 +132,7 @@ def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(name, look):
 def test_a_hinge_has_a_circle_for_every_pair_in_it(name, look):
     sheet, found = drawn(name, look)
     circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links" and m.face == "white"]
-    hinges = gathered((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
+    hinges = gather_labels((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
     for at, pairs in hinges:
         radii = {round(m.radius, 3) for m in circles if abs(m.centre - at) < NEAR}
         assert len(radii) >= len(pairs), pairs

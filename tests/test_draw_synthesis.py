@@ -11,8 +11,8 @@ from bank import moved
 from tmm_cli.drawing.paper.fonts import corners
 from tmm_cli.drawing.paper.record import Area, Line, Text
 from tmm_cli.drawing.paper.sheet import LOAD, THIN, border
-from tmm_cli.drawing.sheets.construction import PAD, SMALLER, construction, granted, inside, rename
-from tmm_cli.drawing.sheets.synthesis import sheets
+from tmm_cli.drawing.sheets.construction import PAD, SMALLER, draw_construction, granted, inside, rename
+from tmm_cli.drawing.sheets.synthesis import draw_synthesis
 from tmm_cli.mechanics.plans.record import sheet_scale
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.synthesis import crank_slider, shaper, slotted_lever
@@ -97,7 +97,7 @@ def boxes(drawing):
 def test_points_and_labels_are_on_the_sheet_and_no_two_labels_overlap(case):
     make, values = CASES[case]
     for one in make(*values):
-        sheet = construction("A task", one, UnitSystem())
+        sheet = draw_construction("A task", one, UnitSystem())
         low, high = sheet.ground.low, sheet.ground.high
         for spot in one.spots:
             at = sheet.on(spot.at)
@@ -122,10 +122,10 @@ def test_the_mechanism_is_large_however_large_the_circle_is(k):
 
 def test_the_centre_of_a_circle_that_is_too_large_is_told_by_an_arrow_and_the_radius():
     (far,), (near,) = slider(1.02, 4.0), slider(1.35, 2.2)
-    texts = [text[0] for text in boxes(construction("", far, UnitSystem()).finish())]
+    texts = [text[0] for text in boxes(draw_construction("", far, UnitSystem()).finish())]
     radius = 120 / 2 / math.sin(math.pi * 0.02 / 2.02)
     assert f"to M, R = {radius:.4g} mm" in texts and "M" not in texts
-    texts = [text[0] for text in boxes(construction("", near, UnitSystem()).finish())]
+    texts = [text[0] for text in boxes(draw_construction("", near, UnitSystem()).finish())]
     assert "M" in texts and "R" in texts
 
 
@@ -164,7 +164,7 @@ def test_joints_are_called_as_in_the_file_and_the_centre_otherwise():
 def test_both_extreme_positions_have_letters():
     results = moved("press-synthesis")
     found = results.problem.synthesis
-    figure = dict(sheets("", found.outcome, results, results.problem.units, found.names))["synthesis-extremes"]
+    figure = dict(draw_synthesis("", found.outcome, results, results.problem.units, found.names))["synthesis-extremes"]
     assert {"Aᴵ", "Bᴵ", "Aᴵᴵ", "Bᴵᴵ", "O"} <= {text[0] for text in boxes(figure)}
 
 
@@ -198,7 +198,7 @@ def test_the_history_is_never_empty():
 @pytest.mark.parametrize("k", [1.1, 2.0])
 def test_neither_label_nor_rod_stands_on_the_hatching_of_a_guide(k):
     for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.6)):
-        sheet = construction("", one, UnitSystem())
+        sheet = draw_construction("", one, UnitSystem())
         strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
         middles = [(stroke[0] + stroke[-1]) / 2 for stroke in strokes]
         stones = [sheet.on(spot.at) for spot in one.spots if spot.mark == "slider"]
@@ -253,7 +253,7 @@ def test_a_curve_that_comes_back_is_on_the_sheet_as_a_whole():
 
 def test_a_size_too_short_for_its_text_has_it_beside_or_beyond_the_arrows():
     (one,) = slider(1.02, 4.0)
-    sheet = construction("", one, UnitSystem())
+    sheet = draw_construction("", one, UnitSystem())
     size = next(s for s in one.sizes if s.name == "e")
     first, last = sorted((sheet.on(size.start).imag, sheet.on(size.end).imag))
     _, left, right, low, high = next(text for text in boxes(sheet.finish()) if text[0].startswith("e = "))
@@ -264,7 +264,7 @@ def test_a_size_too_short_for_its_text_has_it_beside_or_beyond_the_arrows():
 @pytest.mark.parametrize("k, ratio, cut", [(1.08, 3.5, 1), (1.2, 3.0, 1), (1.8, 1.5, 0)])
 def test_an_arc_ends_in_an_arrow_where_the_edge_cuts_it(k, ratio, cut):
     (one,) = slider(k, ratio)
-    sheet = construction("", one, UnitSystem())
+    sheet = draw_construction("", one, UnitSystem())
     low, high = sheet.field
     bold = [a for a in one.arcs if a.style == "bold"]
     ends = [sheet.on(a.centre + a.radius * np.exp(1j * t)) for a in bold for t in (a.start, a.end)]

@@ -9,7 +9,7 @@ import pytest
 from test_commands import SHAPER
 
 from tmm_cli import solve
-from tmm_cli.batch.choices import choices, with_vary
+from tmm_cli.batch.choices import read_choices, with_vary
 from tmm_cli.batch.task import read_task
 from tmm_cli.grading import draw_variants
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for
@@ -94,7 +94,7 @@ def test_one_by_one_they_are_judged_as_together():
     ],
 )
 def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
-    found = {choice.name: choice.texts for choice in choices(task(vary=[vary]))}
+    found = {choice.name: choice.texts for choice in read_choices(task(vary=[vary]))}
     assert found[vary.partition("=")[0]] == texts
 
 
@@ -121,5 +121,5 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
 )
 def test_ranges_that_are_none_are_refused(vary, message):
     with pytest.raises(ProblemError) as caught:
-        choices(task(vary=[vary]))
+        read_choices(task(vary=[vary]))
     assert str(caught.value) == message

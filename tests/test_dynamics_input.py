@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 MACHINE = """tmm: 1
 points: {O: [0, 0]}
@@ -28,7 +28,7 @@ INDUCTION = "kind: asynchronous, synchronous: 1500 rpm, moment: 20"
 
 def refused(dynamics):
     with pytest.raises(ProblemError) as caught:
-        solve(build(read_text(f"{MACHINE}{CRANK}dynamics: {dynamics}\n", "x.yaml")))
+        solve(build_problem(read_text(f"{MACHINE}{CRANK}dynamics: {dynamics}\n", "x.yaml")))
     return str(caught.value)
 
 
@@ -82,7 +82,9 @@ def test_a_mistake_is_told_with_what_to_write_instead(dynamics, told):
 
 def test_a_density_may_have_its_unit():
     bare, said = (
-        build(read_text(f"{MACHINE}{CRANK}dynamics: {{flywheel: {{density: {density}}}}}\n", "x.yaml")).dynamics.size
+        build_problem(
+            read_text(f"{MACHINE}{CRANK}dynamics: {{flywheel: {{density: {density}}}}}\n", "x.yaml")
+        ).dynamics.size
         for density in (7200, "7.2 g/cm^3")
     )
     assert said.density == pytest.approx(bare.density) == 7200
@@ -94,7 +96,8 @@ def test_rest_in_a_table_of_speeds_needs_no_unit_and_other_bare_rows_are_told_by
     )
     at = "positions: {at: [0, 90, 180]}\n"
     named, bare = (
-        list(doubts(build(read_text(MACHINE + table.format(speed) + at, "x.yaml")))) for speed in ("90 rpm", "90")
+        list(doubts(build_problem(read_text(MACHINE + table.format(speed) + at, "x.yaml"))))
+        for speed in ("90 rpm", "90")
     )
     assert not any("no unit" in text for text in named)
     assert any("write `90 rad/s`, or `90 rpm` if turns a minute are meant" in text for text in bare)
@@ -102,8 +105,8 @@ def test_rest_in_a_table_of_speeds_needs_no_unit_and_other_bare_rows_are_told_by
 
 def test_positions_that_a_run_does_not_come_to_are_named():
     run = "dynamics: {run: {from: 90, to: 450, speed: 400 rpm}}\npositions: {count: 6}\nsketch: {at: 60, B: [220, 0]}\n"
-    results = solve(build(read_text(MACHINE + CRANK + run, "x.yaml")))
-    stops = [text for text in warnings(results) if "stops" in text]
+    results = solve(build_problem(read_text(MACHINE + CRANK + run, "x.yaml")))
+    stops = [text for text in collect_warnings(results) if "stops" in text]
     assert stops == [
         "driver 1 slows down and stops on its way: no velocities and forces in positions 0, 1, 5, which "
         "it does not come to"
@@ -114,7 +117,7 @@ def test_positions_that_a_run_does_not_come_to_are_named():
 def test_a_driver_that_stands_has_no_fluctuation():
     text = f"{MACHINE}{CRANK}dynamics: {{delta: 0.02}}\n".replace("600 rpm", "0 rpm")
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
+        build_problem(read_text(text, "x.yaml"))
     assert str(caught.value) == (
         "x.yaml:11:1: dynamics: a driver that stands has no fluctuation of speed\n  allowed: mean speed"
     )

@@ -16,8 +16,8 @@ from tmm_cli import load, solve
 from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.mechanics.dynamics.laws import Cycle
 from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
-from tmm_cli.mechanics.dynamics.reduced import fitted, reduced
-from tmm_cli.mechanics.dynamics.steady import fluctuation, reduced_machine, running, steady
+from tmm_cli.mechanics.dynamics.reduced import fitted, reduce_machine
+from tmm_cli.mechanics.dynamics.steady import find_steady_running, fluctuation, reduced_machine, running
 from tmm_cli.mechanics.dynamics.task import SteadyTask
 from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.forces.loads import applied
@@ -44,7 +44,7 @@ def machine(load=-100.0, swing=20.0, ripple=0.5, until=np.pi):
         inertia, slope = 2 + ripple * np.cos(2 * x), -2 * ripple * np.sin(2 * x)
         return inertia, slope, np.where(x < until, load, 0.0) + swing * np.sin(x)
 
-    return reduced(sample, [0, until, TURN])
+    return reduce_machine(sample, [0, until, TURN])
 
 
 MACHINES = st.builds(machine, st.floats(-500, -10), st.floats(-50, 50), st.floats(0.01, 1.5), st.floats(0.3, 6.0))
@@ -67,7 +67,7 @@ def test_a_sum_of_a_function_with_a_jump_is_exact():
 @settings(max_examples=20)
 def test_the_flywheel_keeps_the_fluctuation(own, delta, mean):
     try:
-        found = steady(own, SteadyTask(mean, delta))
+        found = find_steady_running(own, SteadyTask(mean, delta))
     except NoFlywheelError as small:
         assert small.own < delta
         return
@@ -81,7 +81,7 @@ def test_the_flywheel_keeps_the_fluctuation(own, delta, mean):
 @settings(max_examples=5)
 def test_speed_is_that_of_the_equation_of_motion(own, delta):
     try:
-        found = steady(own, SteadyTask(10.0, delta))
+        found = find_steady_running(own, SteadyTask(10.0, delta))
     except NoFlywheelError:
         return
     law, flywheel = found.law, found.law.flywheel
@@ -106,7 +106,7 @@ def test_speed_is_that_of_the_equation_of_motion(own, delta):
 
 
 def test_energy_comes_back_after_a_cycle():
-    found = steady(machine(), SteadyTask(10.0, 1 / 30))
+    found = find_steady_running(machine(), SteadyTask(10.0, 1 / 30))
     ends = found.law.energy(np.array([0.0, TURN]))
     assert ends[1] - ends[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(ends)))
 
@@ -163,7 +163,7 @@ def test_a_motor_however_strong_turns_near_its_speed_without_load(times):
 
 def test_a_flywheel_is_found_for_a_motor_too():
     motor = Kloss.rated(12.0, 11.6, 60.0, 2.2)
-    found = steady(machine(), SteadyTask(11.0, 0.05, motor))
+    found = find_steady_running(machine(), SteadyTask(11.0, 0.05, motor))
     assert found.delta == pytest.approx(0.05, rel=1e-10)
     assert fluctuation(Cycle.of(machine(), motor).law(found.law.flywheel)) == pytest.approx(0.05, rel=1e-9)
 
@@ -184,7 +184,7 @@ def test_an_asynchronous_motor_has_its_rated_and_its_breakdown_moment():
 
 def test_a_motor_that_gives_less_than_the_mean_of_the_loads_cannot_carry_them():
     with pytest.raises(WeakMotorError) as weak:
-        steady(machine(load=-800.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
+        find_steady_running(machine(load=-800.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
     assert weak.value.wanted == pytest.approx(400.0) and weak.value.most == pytest.approx(78.0)
 
 
@@ -202,18 +202,18 @@ def test_a_machine_that_its_load_pushes_beyond_its_motor_runs_away():
 
 def test_a_motor_that_a_load_stalls_on_the_way_stands_still():
     with pytest.raises(StandstillError) as stands:
-        steady(machine(load=-200.0, until=2.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
+        find_steady_running(machine(load=-200.0, until=2.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
     assert 0 <= stands.value.place <= np.pi
 
 
 def test_a_fluctuation_that_is_small_enough_needs_no_flywheel():
     with pytest.raises(NoFlywheelError) as none:
-        steady(machine(load=-10.0), SteadyTask(100.0, 0.9))
+        find_steady_running(machine(load=-10.0), SteadyTask(100.0, 0.9))
     assert none.value.own < 0.9
 
 
 def test_ways_of_a_course_are_near_to_the_exact_one():
-    found = steady(machine(), SteadyTask(10.0, 1 / 30))
+    found = find_steady_running(machine(), SteadyTask(10.0, 1 / 30))
     assert found.wittenbauer == pytest.approx(found.law.flywheel, rel=1e-3)  # w^2 (1 + delta) for w^2 (1 + delta/2)^2
     assert found.mertsalov == pytest.approx(found.law.flywheel, rel=0.1)
 

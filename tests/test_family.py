@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch.prepare import everything, prepare
+from tmm_cli.batch.prepare import everything, prepare_batch
 from tmm_cli.batch.tape import record
 from tmm_cli.batch.tape.traced import TracedNumber
 from tmm_cli.batch.taped import OneByOne, Taped
@@ -60,7 +60,7 @@ def test_a_family_is_what_the_file_builds_for_the_same_numbers(name):
     columns = np.array(first) * (1 + 0.02 * np.random.default_rng(1).uniform(-1, 1, (5, len(first))))
     q = np.linspace(0.1, 6.1, 12)
     found = Taped(make, first, everything, forces=True)(columns, Places(np.zeros(0), q))
-    known = prepare([make(row).linkage for row in columns], everything)
+    known = prepare_batch([make(row).linkage for row in columns], everything)
     expected, sound = known(q), known.sound(q)["moving"]
     linkage = make(first).linkage
     if linkage.driver.acceleration:
@@ -115,6 +115,6 @@ def test_groups_followed_beside_their_neighbours_are_those_followed_alone():
     found = OneByOne(make, first, everything)(columns, Places(np.zeros(0), q))
     for k, row in enumerate(columns):
         linkage = make(row).linkage
-        batch = replace(prepare(linkage, everything, forces=False), program=None)
+        batch = replace(prepare_batch(linkage, everything, forces=False), program=None)
         for key, alone in batch(q).items():
             assert np.allclose(found[key][k], alone, rtol=0, atol=1e-12 * np.nanmax(np.abs(alone)), equal_nan=True)

@@ -8,7 +8,7 @@ import pytest
 
 from tmm_cli import load
 from tmm_cli.mechanics.groups.closed_forms import CLOSED
-from tmm_cli.mechanics.numerics.roots import bisect, roots
+from tmm_cli.mechanics.numerics.roots import bisect, find_roots
 from tmm_cli.mechanics.numerics.vectors import leaves, mapped
 from tmm_cli.mechanics.structure.assur import analyse
 
@@ -16,7 +16,7 @@ from tmm_cli.mechanics.structure.assur import analyse
 @pytest.mark.parametrize("kind", [np.float64, np.longdouble])
 def test_roots_are_found_to_the_last_bit_of_their_own_precision(kind):
     low, high = np.array([1, 0.5], kind), np.array([2, 3], kind)
-    found = roots(lambda x: x * x - 2, low, high)
+    found = find_roots(lambda x: x * x - 2, low, high)
     assert found.dtype == kind
     assert np.all(np.abs(found - np.sqrt(kind(2))) <= np.finfo(kind).eps)
 

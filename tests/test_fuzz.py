@@ -12,7 +12,7 @@ from models import PROBLEMS
 from test_commands import tmm
 
 from tmm_cli.mechanics.groups.state import State
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -39,7 +39,7 @@ def test_every_kind_of_block_fits_some_problem() -> None:
         for seed in range(40):
             data = dict(trees[seed % 2].data)
             try:
-                build(read_text(str(data | block(Parts(Random(seed), data))), "block.yaml"))
+                build_problem(read_text(str(data | block(Parts(Random(seed), data))), "block.yaml"))
                 fitting += 1
             except ProblemError:
                 pass

@@ -16,7 +16,7 @@ from test_commands import tmm
 
 from tmm_cli.animation.content import picture_of
 from tmm_cli.animation.gallery.card import card
-from tmm_cli.animation.gallery.page import page
+from tmm_cli.animation.gallery.page import gallery_page
 from tmm_cli.animation.gallery.turning import PLACE, ROW, TURN, places_of
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.analysis.pipeline import at_positions
@@ -35,7 +35,7 @@ def card_of(name):
 
 @cache
 def page_of():
-    return page([card_of(name) for name in NAMES])
+    return gallery_page([card_of(name) for name in NAMES])
 
 
 def data_of(html):
@@ -121,7 +121,7 @@ def hostile_folder(folder):
 
 
 def test_texts_of_files_are_data(tmp_path):
-    html = page([card(str(hostile_folder(tmp_path) / "a.yaml"))])
+    html = gallery_page([card(str(hostile_folder(tmp_path) / "a.yaml"))])
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)
@@ -132,10 +132,10 @@ def test_the_page_says_nothing_of_the_machine_that_it_was_written_on(tmp_path):
     files = [tmp_path / "bank" / "sine.yaml", tmp_path / "bank" / "presses" / "press.yaml"]
     for file in files:
         shutil.copy(PROBLEMS / "sine.yaml", file)
-    html = page([card(str(file)) for file in files])
+    html = gallery_page([card(str(file)) for file in files])
     assert str(tmp_path) not in html and "<code>sine.yaml</code>" in html
     assert f"<code>{Path('presses', 'press.yaml')}</code>" in html
-    assert "<code>sine.yaml</code>" in page([card(str(files[0]))])
+    assert "<code>sine.yaml</code>" in gallery_page([card(str(files[0]))])
 
 
 def test_a_broken_file_is_said_and_left_out(tmp_path):
@@ -158,7 +158,7 @@ def test_a_broken_file_is_said_and_left_out(tmp_path):
 
 def test_the_page_speaks_other_languages():
     with spoken("ru"):
-        html = page([card(str(PROBLEMS / "slotted-lever.yaml"))])
+        html = gallery_page([card(str(PROBLEMS / "slotted-lever.yaml"))])
     assert '<html lang="ru">' in html and "ускоренный обратный ход" in html and "1,552" in html
 
 

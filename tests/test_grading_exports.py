@@ -23,7 +23,7 @@ from tmm_cli.grading.exports import EXPORTS, write, xlsx
 from tmm_cli.grading.exports.book import ANSWERS_HEADER, Gradebook, direction, points_text, share_text
 from tmm_cli.grading.group_chart import chart
 from tmm_cli.grading.record import Mark, StudentMarks
-from tmm_cli.grading.statistics import commonest, hardest, histogram, tables
+from tmm_cli.grading.statistics import commonest, hardest, histogram, statistics_tables
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.terminal import show
 
@@ -338,7 +338,7 @@ def test_statistics_are_of_those_who_handed_in(own):
     assert histogram(group).tolist() == [0, 0, 0, 0, 0, 2, 0, 0, 0, 0]
     assert [(one.name, one.share) for one in hardest(own, group)][:2] == [("class", 0), ("v of E", 0)]
     assert commonest(group) == [("Coriolis", 2, 2)]
-    found = {table.name: table for table in tables(own, group)}
+    found = {table.name: table for table in statistics_tables(own, group)}
     assert list(found) == ["group", "histogram", "hardest", "mistakes", "copies", "problems"]
     assert found["group"].notes == ("students: 3", "without an answer, and not counted: 1")
     console = Console(file=io.StringIO(), width=100)
@@ -348,6 +348,6 @@ def test_statistics_are_of_those_who_handed_in(own):
 
 
 def test_a_group_without_an_answer_has_no_figures(own):
-    assert [table.name for table in tables(own, [absent("Ann", "no such file")])] == ["problems"]
-    assert [table.name for table in tables(own, [])] == []
+    assert [table.name for table in statistics_tables(own, [absent("Ann", "no such file")])] == ["problems"]
+    assert [table.name for table in statistics_tables(own, [])] == []
     assert "none was recognised" in chart(own, [absent("Ann")]).texts()

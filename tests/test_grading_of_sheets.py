@@ -10,7 +10,7 @@ from test_variants_of_task import family_of
 
 from tmm_cli.batch.task import read_task
 from tmm_cli.grading.copies import with_copies
-from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.mistakes.data import OtherZero, Sense
 from tmm_cli.grading.own_answers import following, own_answer
 from tmm_cli.grading.record import Given, Submission, VariantTable
@@ -78,7 +78,7 @@ def test_an_early_mistake_costs_its_own_points_only(wrong, follow):
     mixed[:, same] = values[:, same]
     mixed[:, k] = value[:, 0]
     written = Written(mixed, np.zeros(mixed.shape, bool))
-    found = following(family, known, written, diagnose(family, known, written))
+    found = following(family, known, written, diagnose_students(family, known, written))
     failed = known.error(written) > known.allowed
     for n in range(len(family)):
         lost = [known.asked[j].name for j in np.flatnonzero(failed[n]) if (n, int(j)) not in found]

@@ -14,8 +14,15 @@ from tmm_cli import solve
 from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.four_bar import TYPES, FourBar, turning
-from tmm_cli.synthesis.grashof import LEVERS, SLIDERS, CrankSlider, SlottedLever, crank_slider, slotted_lever
+from tmm_cli.synthesis.four_bar import FOUR_BAR_TYPES, FourBar, turning
+from tmm_cli.synthesis.grashof import (
+    LEVERS,
+    SLIDERS,
+    CrankSlider,
+    SlottedLever,
+    classify_crank_slider,
+    classify_slotted_lever,
+)
 from tmm_cli.synthesis.reading import build
 
 FOUR_BAR = """
@@ -32,15 +39,15 @@ many = st.integers(0, 2**32 - 1).map(lambda seed: np.random.default_rng(seed).un
 def test_the_margin_at_a_change_point_is_zero_and_no_rounding():
     assert 0.3 - (0.1 + 0.2) != 0  # in binary numbers
     assert turning(FourBar(0.1, 0.3, 0.2, 0.4)).excess == 0
-    assert crank_slider(CrankSlider(0.1, 0.3, 0.2)).margin == 0
-    assert slotted_lever(SlottedLever(0.1, 0.3, 0.2)).margin == 0
+    assert classify_crank_slider(CrankSlider(0.1, 0.3, 0.2)).margin == 0
+    assert classify_slotted_lever(SlottedLever(0.1, 0.3, 0.2)).margin == 0
 
 
 def named(*lengths):
     """The type of a four-bar with frame, input, coupler and output of these lengths."""
     g, a, b, c = lengths
     kind = int(turning(FourBar(a, b, c, g)).kind)
-    return TYPES[kind] if kind >= 0 else None
+    return FOUR_BAR_TYPES[kind] if kind >= 0 else None
 
 
 @pytest.mark.parametrize(
@@ -153,7 +160,7 @@ def test_the_ordinary_stages_find_the_same_links_turning(seed):
 @given(many)
 def test_the_crank_of_a_crank_slider_turns_where_the_rod_reaches_the_guide_at_every_angle(lengths):
     r, rod, e, _ = lengths
-    found = crank_slider(CrankSlider(r, rod, e))
+    found = classify_crank_slider(CrankSlider(r, rod, e))
     angles = np.linspace(-np.pi / 2, np.pi / 2, 19)[:, None]
     reaches = np.all(np.abs(r * np.sin(angles) + e) <= rod, axis=0)
     assert np.array_equal(found.kind == 0, reaches)
@@ -167,7 +174,7 @@ def test_the_crank_of_a_crank_slider_turns_where_the_rod_reaches_the_guide_at_ev
 @given(many)
 def test_the_crank_of_a_slotted_lever_turns_where_the_stone_stays_beyond_the_slots_offset(lengths):
     crank, frame, e, _ = lengths
-    found = slotted_lever(SlottedLever(crank, frame, e))
+    found = classify_slotted_lever(SlottedLever(crank, frame, e))
     stone = np.abs(frame + crank * np.exp(1j * np.linspace(0, np.pi, 19)[:, None]))
     assert np.array_equal(found.kind < 2, np.all(stone >= e, axis=0))
     assert np.array_equal((found.kind == 1), np.all(stone >= e, axis=0) & (crank > frame))
@@ -175,10 +182,10 @@ def test_the_crank_of_a_slotted_lever_turns_where_the_stone_stays_beyond_the_slo
 
 def test_conditions_of_crank_slider_and_slotted_lever_by_name():
     def slider(*lengths):
-        return list(SLIDERS)[int(crank_slider(CrankSlider(*lengths)).kind)]
+        return list(SLIDERS)[int(classify_crank_slider(CrankSlider(*lengths)).kind)]
 
     def lever(*lengths):
-        return list(LEVERS)[int(slotted_lever(SlottedLever(*lengths)).kind)]
+        return list(LEVERS)[int(classify_slotted_lever(SlottedLever(*lengths)).kind)]
 
     assert [slider(50, 190, 40), slider(50, 10, 20), slider(50, 60, 40)] == ["crank", "rod", "none"]
     assert [slider(50, 90, 40), slider(0.1, 0.3, 0.2), slider(1, 1)] == ["change", "change", "change"]

@@ -8,12 +8,12 @@ from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.mechanics.structure.redundancy import space
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
 def in_space(text):
-    results = solve(build(read_text(text, "x.yaml")), "structure")
+    results = solve(build_problem(read_text(text, "x.yaml")), "structure")
     return space(results.linkage, results.structure)
 
 

@@ -13,7 +13,7 @@ from bank import drawn, moved
 from models import PROBLEMS, solved_text
 from test_commands import tmm
 
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.properties import properties_shown
@@ -310,6 +310,6 @@ def test_a_link_that_goes_round_never_lets_go():
 
 
 def test_the_block_is_read_without_its_settings_in_double_doubles():
-    problem = build(read_text(RATCHET, "x.yaml"))
+    problem = build_problem(read_text(RATCHET, "x.yaml"))
     assert problem.wheels[0].settings[1].linkage is not None
     assert problem.extended().wheels == ()

@@ -25,7 +25,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.forces.loads import losses
 from tmm_cli.reports.result_json import to_json
 from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import warnings as words
+from tmm_cli.reports.warnings import collect_warnings as words
 
 # ---------------------------------------------------------------- wheels
 

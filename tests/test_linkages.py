@@ -20,7 +20,7 @@ from tmm_cli.mechanics.forces.plan import react
 from tmm_cli.mechanics.groups.sequence import DriverMotion
 from tmm_cli.mechanics.kinematics.motion import move
 from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.solving import redrive
 
@@ -273,7 +273,9 @@ def test_geared_cranks_draw_an_exact_straight_line():
 def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
     """The sector only swings, so that its wheel is back when it is; of wheels that go round teeth would tell."""
     text = file_of("sector-and-wheel").read_text(encoding="utf-8")
-    results = solve(build(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics")
+    results = solve(
+        build_problem(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics"
+    )
     assert (results.driver_range.full, results.driver_range.turns, results.driver_range.repeats) == (True, 1, True)
     run = at_places(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x
     assert np.max(np.abs(run - run[0])) < 1e-14

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.batch.prepare import prepare as prepare_all
+from tmm_cli.batch.prepare import prepare_batch as prepare_all
 from tmm_cli.batch.task import Task
 from tmm_cli.drawing.sheets.diagrams import closely
 from tmm_cli.mechanics.accuracy.digits import bounds, judged
@@ -22,8 +22,8 @@ from tmm_cli.mechanics.numerics.interpolation import Table
 from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.templates import template_text
-from tmm_cli.reports.given import given
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.given import input_tables
+from tmm_cli.reports.warnings import collect_warnings
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.run import swept
@@ -121,7 +121,7 @@ def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path
 @pytest.mark.parametrize(("last", "short", "long"), [(99, 1, 0), (100, 0, 0), (101, 0, 0), (103, 0, 1)])
 def test_a_table_that_ends_with_the_stroke_has_no_warning(last, short, long):
     results = slider("stroke", [("0", 0), (last, 900)])
-    said = list(warnings(results))
+    said = list(collect_warnings(results))
     assert sum("its end value is held; rows in shares" in one for one in said) == short
     assert sum(f"goes on to {last} mm, but the stroke is 100 mm" in one for one in said) == long
 
@@ -183,7 +183,7 @@ def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
 
 
 def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
-    *_, told = given(load(str(ROOT / "problems/toggle-press.yaml")))
+    *_, told = input_tables(load(str(ROOT / "problems/toggle-press.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
     assert told.title == "press against the stroke" and told.notes == ("Its direction is 90 deg.",)
@@ -209,7 +209,7 @@ def test_a_law_of_motion_tells_of_a_table_that_does_not_close(last, told):
     text = CRANK_SLIDER.format(against="crank angle", table=f"[[0, 500], [90, 800], [360, {last}]]")
     text += "masses: {3: {mass: 1}}\ndynamics: {flywheel: {inertia: 9}}\n"
     results = solve(problem_of(read_text(text, "x.yaml")))
-    said = [one for one in warnings(results) if "begins with 500 N and ends with 100 N" in one]
+    said = [one for one in collect_warnings(results) if "begins with 500 N and ends with 100 N" in one]
     assert len(said) == told
 
 
@@ -309,7 +309,7 @@ def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
 
 def test_shares_are_told_as_they_are_written():
     text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [5 %, 5 kN], [1, 2 kN]]")
-    *_, told = given(problem_of(read_text(text, "x.yaml")))
+    *_, told = input_tables(problem_of(read_text(text, "x.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
     assert told.title == "gas against the share of the stroke"
@@ -468,7 +468,7 @@ def test_the_template_of_a_shaper_shows_a_table_in_shares_that_runs():
     table = "\n".join(line.replace("  #", "  ", 1) for line in lines[first : first + 2])
     whole = text.replace("  F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}", table)
     results = solve(problem_of(read_text(whole, "shaper.yaml")))
-    assert not [one for one in warnings(results) if "table" in one]
+    assert not [one for one in collect_warnings(results) if "table" in one]
     (load,) = [one for one in results.loads if one.name == "F"]
     share = (results.motion.named("E").x.real - results.strokes.strokes[0].low) / results.strokes.strokes[0].run
     works = results.strokes.share(results.motion.q, 1)
@@ -479,7 +479,7 @@ def test_tables_of_the_bank_against_the_stroke_end_with_it():
     names = [name for name in EVERY if "against: stroke" in (PROBLEMS / f"{name}.yaml").read_text("utf-8")]
     assert len(names) >= 2
     for name in names:
-        assert not [one for one in warnings(solved(name)) if "table of load" in one], name
+        assert not [one for one in collect_warnings(solved(name)) if "table of load" in one], name
 
 
 def test_variants_of_one_mechanism_may_jump_at_different_angles():

@@ -14,9 +14,9 @@ from tmm_cli.mechanics.numerics.interpolation import Table
 from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}
@@ -231,7 +231,7 @@ def test_point_masses_make_one_body():
 
 def test_what_was_understood_of_loads_is_told():
     results = solved("loads: {f: {on: 2, from: 3, moment: {resists: 2}, when: [0, 90]}}")
-    table = next(table for table in given(results.problem) if table.name == "loads")
+    table = next(table for table in input_tables(results.problem) if table.name == "loads")
     assert [column.values[0] for column in table.columns] == [
         "f",
         "2 from 3",
@@ -310,7 +310,7 @@ def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
 
 def work_warnings(tail, output="3"):
     text = f"{MACHINE}output: {output}\n{tail}"
-    return [w for w in warnings(solve(problem_of(read_text(text, "x.yaml")))) if w.startswith("load F ")]
+    return [w for w in collect_warnings(solve(problem_of(read_text(text, "x.yaml")))) if w.startswith("load F ")]
 
 
 @pytest.mark.parametrize(("turns", "window"), [("ccw", (84.401, 259.985)), ("cw", (-100.016, 84.402))])
@@ -339,12 +339,12 @@ positions: {{from: working stroke}}
     assert window == pytest.approx(expected, abs=1e-3) and window[0] <= expected[0] and window[1] >= expected[1]
     driving = solve(problem_of(read_text(text.format(turns=turns, when="working stroke"), "x.yaml")))
     when = f"when: [{window[0]:.10g} deg, {window[1]:.10g} deg]"
-    assert [w for w in warnings(driving) if w.startswith("load gas")] == [
+    assert [w for w in collect_warnings(driving) if w.startswith("load gas")] == [
         "load gas acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
         f"other stroke: output: {{link: 3, working: forward}}. In an engine, where the gas drives the piston: {when}"
     ]
     windowed = solve(problem_of(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))
-    assert not [w for w in warnings(windowed) if w.startswith("load gas")]
+    assert not [w for w in collect_warnings(windowed) if w.startswith("load gas")]
     rod, same_rod = (solved.reactions.of("A").force for solved in (driving, windowed))
     assert np.all(np.abs(same_rod - rod) <= 1e-9 * np.max(np.abs(rod))) and np.max(np.abs(rod)) > 20_000
 

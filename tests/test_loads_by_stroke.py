@@ -12,10 +12,10 @@ from tmm_cli.batch.task import Task, read_task
 from tmm_cli.grading.record import Given, Submission, VariantTable
 from tmm_cli.grading.run import grade
 from tmm_cli.mechanics.accuracy.digits import judged
-from tmm_cli.problem.build import build, problem_of
+from tmm_cli.problem.build import build_problem, problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 from tmm_cli.sweep.grid import read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 from tmm_cli.sweep.run import swept
@@ -44,7 +44,7 @@ positions: {count: 12, from: 0}
 
 
 def solved(text):
-    return solve(build(read_text(text, "pistons.yaml")))
+    return solve(build_problem(read_text(text, "pistons.yaml")))
 
 
 def sizes(text):
@@ -165,7 +165,7 @@ def test_grading_gives_each_student_the_strokes_of_his_own_pistons():
 
 
 def test_tables_of_the_file_name_the_link_whose_stroke_it_is():
-    tables = {table.name: table for table in given(build(read_text(TWO_PISTONS, "pistons.yaml")))}
+    tables = {table.name: table for table in input_tables(build_problem(read_text(TWO_PISTONS, "pistons.yaml")))}
     assert "stroke of link 5" in str([column.values for column in tables["loads"].columns])
 
 

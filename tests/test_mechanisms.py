@@ -13,7 +13,7 @@ from models import PROBLEMS
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.properties import properties_shown
 
@@ -76,7 +76,7 @@ def test_what_files_expect_is_what_is_found():
 def test_double_rocker_goes_its_own_range_and_swings_as_circles_say():
     l1, l2, l3, l4 = 160, 90, 140, 180
     text = (PROBLEMS / "four-bars/double-rocker.yaml").read_text(encoding="utf-8")
-    free = solve(build(read_text(text.replace(", stroke: [34, 76]", ""), "free.yaml")), "kinematics")
+    free = solve(build_problem(read_text(text.replace(", stroke: [34, 76]", ""), "free.yaml")), "kinematics")
     ends = [math.acos((l1**2 + l4**2 - (l3 + s * l2) ** 2) / (2 * l1 * l4)) for s in (-1, 1)]
     assert (free.driver_range.start, free.driver_range.end) == pytest.approx(tuple(ends), abs=1e-12)
     assert {free.roles[link] for link in "13"} == {"rocker"}
@@ -166,7 +166,7 @@ def test_stroke_of_the_double_stroke_press_by_circles():
 
 def test_reversing_lever_turns_the_slider_round_over_the_whole_turn():
     text = (PROBLEMS / "cranks/reversing.yaml").read_text(encoding="utf-8")
-    other = solve(build(read_text(text.replace("side: 1", "side: -1"), "other.yaml")), "kinematics")
+    other = solve(build_problem(read_text(text.replace("side: 1", "side: -1"), "other.yaml")), "kinematics")
     one, two = (r.motion.named("E").v.imag for r in (solved("cranks/reversing"), other))
     assert one[3] == pytest.approx(-0.03 * 2 * math.pi * math.tan(math.pi / 6), abs=1e-14)
     assert np.sum(one * two < 0) >= 10  # of 12: not near the ends of its strokes

@@ -11,7 +11,7 @@ from models import PROBLEMS
 from test_mechanisms import meet, shown, slope, unit
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 
@@ -28,7 +28,7 @@ def changed(name, before, after):
     """A problem of the bank with another text in one place."""
     text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
     assert text.count(before) == 1
-    return solve(build(read_text(text.replace(before, after), name)))
+    return solve(build_problem(read_text(text.replace(before, after), name)))
 
 
 def test_positioner_brings_both_jaws_together_on_one_axis():
@@ -200,7 +200,7 @@ def test_a_cam_on_the_crank_changes_the_length_of_the_coupler():
 
 def test_without_a_rise_it_is_the_four_bar():
     text = (PROBLEMS / "cam-coupler.yaml").read_text(encoding="utf-8").partition("shows:")[0]
-    still = solve(build(read_text(text.replace("rise: 18", "rise: 0").replace("rise: -18", "rise: 0"), "x")))
+    still = solve(build_problem(read_text(text.replace("rise: 18", "rise: 0").replace("rise: -18", "rise: 0"), "x")))
     a = 50 * np.exp(1j * still.motion.q)
     b = np.array([meet(z, 170 - 20j, 150, 120, 187 + 98j) for z in a])
     assert still.motion.angle("4") == pytest.approx(np.angle(b - (170 - 20j)), abs=1e-12)
@@ -222,7 +222,7 @@ masses: {2: {mass: 1 kg, inertia: 0.001}}
 gravity: 0
 positions: {count: 8}
 """
-    results = solve(build(read_text(text, "x")))
+    results = solve(build_problem(read_text(text, "x")))
     q = results.motion.q
     run = 115 - 15 * np.cos(np.mod(-q, 2 * np.pi))  # 30 mm along the cosine law, there and back
     assert np.abs(results.motion.named("P").x) * 1e3 == pytest.approx(run, abs=1e-9)

@@ -17,11 +17,11 @@ from tmm_cli.drawing.run import remarks, sheets
 from tmm_cli.language import CATALOGUES, spoken
 from tmm_cli.note.formats.html import html
 from tmm_cli.note.register import note
-from tmm_cli.reports.explain import explain, in_words
+from tmm_cli.reports.explain import explain_tables, in_words
 from tmm_cli.reports.register import tables
-from tmm_cli.reports.spreadsheets import cells
-from tmm_cli.reports.understood import doubts, understood
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.spreadsheets import spreadsheet_cells
+from tmm_cli.reports.understood import doubts, summarise_file
+from tmm_cli.reports.warnings import collect_warnings
 
 PROBLEMS = ("shaper", "planetary-dwell-press", "crank-rocker-synthesis", "press-class-iii", "cylinder", "valve-drive")
 WORD = re.compile(r"(?<!\w)[A-Za-z]{3,}(?!\w)")
@@ -58,7 +58,9 @@ def of_tables(found, units):
         yield table.title
         yield from table.notes
         yield from (column.heading(units) for column in table.columns)
-        yield from (cell for column in table.columns for cell in cells(column, units) if isinstance(cell, str))
+        yield from (
+            cell for column in table.columns for cell in spreadsheet_cells(column, units) if isinstance(cell, str)
+        )
 
 
 def drawn(results, problem):
@@ -67,14 +69,14 @@ def drawn(results, problem):
 
 def tabled(results, problem):
     structure = solve(load(f"problems/{problem}.yaml"), "structure")
-    return of_tables([*tables(results), *explain(structure, True)], results.problem.units)
+    return of_tables([*tables(results), *explain_tables(structure, True)], results.problem.units)
 
 
 def said(results, problem):
     return (
-        *understood(results.problem),
+        *summarise_file(results.problem),
         *doubts(results.problem),
-        *warnings(results),
+        *collect_warnings(results),
         *in_words(results),
         *remarks(results),
     )

@@ -16,7 +16,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found
 from tmm_cli.note.formats.html import html
 from tmm_cli.note.register import note
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 HEADINGS = {"Balancing", "Instantaneous centres"}
@@ -29,7 +29,7 @@ SHAFT = """{masses: [{mass: 200, radius: 80}, {mass: 300, radius: 70, angle: 45,
 def written(name: str, block: str) -> Note:
     """Of a problem of the bank with another block `balancing`."""
     text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8").split("\nbalancing:")[0]
-    return note(solve(build(read_text(f"{text}\nbalancing: {block}\n", f"{name}.yaml"))), drawn=False)
+    return note(solve(build_problem(read_text(f"{text}\nbalancing: {block}\n", f"{name}.yaml"))), drawn=False)
 
 
 def found(blocks: Note) -> Iterator[tuple[str, float]]:

@@ -12,7 +12,7 @@ from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -26,7 +26,7 @@ def with_outputs(path, *outputs):
 
 
 def strokes_of(text):
-    results = solve(build(read_text(text, "x.yaml")), "kinematics")
+    results = solve(build_problem(read_text(text, "x.yaml")), "kinematics")
     return results, {s.link: s for s in (results.strokes, *results.further) if s is not None}
 
 
@@ -67,7 +67,7 @@ def test_extremes_of_a_coupler_and_of_its_point_are_where_they_rest_and_nothing_
 
 def test_with_cylinders_the_extremes_lie_between_the_positions_asked():
     text = with_outputs(Path("problems/cylinder.yaml"), "2", "3")
-    results = solve(build(read_text(text, "x.yaml")), "kinematics")
+    results = solve(build_problem(read_text(text, "x.yaml")), "kinematics")
     assert not results.driver_range.full
     for travel in results.travels:
         assert travel.low < travel.high
@@ -95,13 +95,13 @@ def test_of_an_output_that_turns_on_it_is_said_by_how_much():
 
 def test_loads_in_the_working_stroke_of_a_coupler_are_understood():
     text = with_outputs(SIX_BAR, "4")
-    results = solve(build(read_text(text, "x.yaml")))
+    results = solve(build_problem(read_text(text, "x.yaml")))
     assert results.strokes.link == "4" and results.start == results.strokes.strokes[0].start
 
 
 def test_an_output_that_is_not_there_is_refused():
     with pytest.raises(ProblemError) as caught:
-        build(read_text(with_outputs(SIX_BAR, "Q"), "x.yaml"))
+        build_problem(read_text(with_outputs(SIX_BAR, "Q"), "x.yaml"))
     assert str(caught.value).endswith(
         "output: there is no link or point of that name\n  found:   'Q'\n  allowed: 1, 2, 3, 4, 5, A, B, K, F"
     )

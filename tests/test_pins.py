@@ -19,7 +19,7 @@ from tmm_cli.grading.record import Given, Submission, VariantTable
 from tmm_cli.grading.run import grade
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.result_json import to_json
@@ -32,7 +32,7 @@ PUSH = complex(300, -700)  # N, on the pin B
 
 def pins(text):
     """The force of pin B on each link, N, and the largest of them."""
-    results = solve(build(read_text(text, "pins.yaml")))
+    results = solve(build_problem(read_text(text, "pins.yaml")))
     found = {pin.link: pin.force for pin in results.reactions.pins(results.linkage)}
     return found, max(np.max(np.abs(force)) for force in found.values())
 
@@ -70,7 +70,7 @@ def test_the_links_bear_the_load_on_their_pin_whichever_of_them_it_is_put_down_t
 
 def test_the_pin_bears_each_link_with_all_that_acts_on_it():
     """Rod 4 hangs on pin B and pin F: both forces, its weight and its inertia are in equilibrium."""
-    results = solve(build(read_text(TEXT, "pins.yaml")))
+    results = solve(build_problem(read_text(TEXT, "pins.yaml")))
     force = next(pin.force for pin in results.reactions.pins(results.linkage) if pin.link == "4")
     total = force + results.reactions.of("F").onto("4") + sum(x.force for x in results.loads if x.link == "4")
     assert np.max(np.abs(total)) < 1e-15 * np.max(np.abs(force))
@@ -78,7 +78,7 @@ def test_the_pin_bears_each_link_with_all_that_acts_on_it():
 
 @pytest.mark.parametrize("link", ["2", "3"])
 def test_the_pin_forces_do_not_depend_on_the_link_to_which_the_others_are_attached(link):
-    results = [solve(build(read_text(text, "pins.yaml"))) for text in (TEXT, attached(TEXT, "B", link))]
+    results = [solve(build_problem(read_text(text, "pins.yaml"))) for text in (TEXT, attached(TEXT, "B", link))]
     usual, other = ({pin.link: pin for pin in r.reactions.pins(r.linkage)} for r in results)
     assert other[link].pairs == ("B", "B''")
     for name, pin in usual.items():
@@ -92,7 +92,7 @@ def test_tables_and_result_json_have_a_row_a_link(tmp_path):
     tmm("run", SIX_BAR, "--no-drawings", "-o", tmp_path)
     with next(tmp_path.rglob("pins.csv")).open(encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
-    written = to_json(solve(build(read_text(TEXT, "pins.yaml"))))["forces"]["compound_hinges"]["B"]
+    written = to_json(solve(build_problem(read_text(TEXT, "pins.yaml"))))["forces"]["compound_hinges"]["B"]
     for row in rows:
         position = int(row["position"])
         assert float(row["Fx, N"]) == pytest.approx(written[row["link"]]["x"][position], rel=1e-8)
@@ -133,7 +133,7 @@ def rod_on_crank_pin(results, rod, piston, pin, guide, push, position):
 
 def test_both_rods_of_a_v_engine_are_attached_to_the_crank():
     """Two rods on one crank pin: R_12 is the force of rod 2 alone, not that of the whole pin."""
-    results = solve(build(read_text(V_ENGINE, "v-compressor.yaml")))
+    results = solve(build_problem(read_text(V_ENGINE, "v-compressor.yaml")))
     position = 10
     assert pairs_at("A", results.structure) == [("A", "1", "2"), ("A''", "1", "4")]
     assert results.structure.formula == "I(0,1) -> II(2,3), I(0,1) -> II(4,5)"
@@ -150,9 +150,9 @@ def test_both_rods_of_a_v_engine_are_attached_to_the_crank():
 
 def test_attached_to_a_rod_the_crank_bears_the_whole_pin_in_one_pair():
     """The force of each pair is the vector sum of the forces of the pin on the links beyond it."""
-    results = solve(build(read_text(attached(V_ENGINE, "A", 2), "v-compressor.yaml")))
+    results = solve(build_problem(read_text(attached(V_ENGINE, "A", 2), "v-compressor.yaml")))
     pin = {pin.link: pin.force for pin in results.reactions.pins(results.linkage)}
-    usual = solve(build(read_text(V_ENGINE, "v-compressor.yaml"))).reactions
+    usual = solve(build_problem(read_text(V_ENGINE, "v-compressor.yaml"))).reactions
     whole = usual.of("A").onto("2") + usual.of("A''").onto("4")
     largest = np.max(np.abs(whole))
     assert pairs_at("A", results.structure) == [("A", "1", "2"), ("A''", "2", "4")]
@@ -164,7 +164,7 @@ def test_attached_to_a_rod_the_crank_bears_the_whole_pin_in_one_pair():
 
 def test_a_later_rod_may_be_attached_first():
     """Attached to rod 4 its group is solved first, and the other rod is attached to it."""
-    structure = solve(build(read_text(attached(V_ENGINE, "A", 4), "v-compressor.yaml")), "structure").structure
+    structure = solve(build_problem(read_text(attached(V_ENGINE, "A", 4), "v-compressor.yaml")), "structure").structure
     assert pairs_at("A", structure) == [("A", "1", "4"), ("A''", "4", "2")]
     assert structure.formula == "I(0,1) -> II(4,5) -> II(2,3)"
 
@@ -183,8 +183,8 @@ sketch: {at: 300, A: [0, 150], C: [-290, 150]}
 
 
 def test_links_are_attached_to_the_driven_piston_before_the_lever_that_it_swings():
-    usual = analyse(build(read_text(CYLINDER, "x.yaml")).linkage)
-    to_lever = analyse(build(read_text(attached(CYLINDER, "A", 1), "x.yaml")).linkage)
+    usual = analyse(build_problem(read_text(CYLINDER, "x.yaml")).linkage)
+    to_lever = analyse(build_problem(read_text(attached(CYLINDER, "A", 1), "x.yaml")).linkage)
     assert [(p.i, p.j) for p in usual.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("3", "4")]
     assert [(p.i, p.j) for p in to_lever.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("1", "4")]
 
@@ -192,7 +192,7 @@ def test_links_are_attached_to_the_driven_piston_before_the_lever_that_it_swings
 def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached():
     """On each rod mu r R of its own force, R_12 and R_14; the drivers' work is what friction takes more."""
     text = V_ENGINE + "friction: {coefficient: 0.1, radius: 20, pairs: {x: {coefficient: 0}, y: {coefficient: 0}}}\n"
-    results = solve(build(read_text(text, "v-compressor.yaml")))
+    results = solve(build_problem(read_text(text, "v-compressor.yaml")))
     motion = results.motion
     for pair, rod in (("A", "2"), ("A''", "4")):
         slip = motion.link(rod).omega - motion.link("1").omega
@@ -214,7 +214,7 @@ def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached()
 )
 def test_a_wrong_attachment_is_refused(point, link, message, found, allowed):
     with pytest.raises(ProblemError) as error:
-        build(read_text(attached(V_ENGINE, point, link), "v-compressor.yaml"))
+        build_problem(read_text(attached(V_ENGINE, point, link), "v-compressor.yaml"))
     assert (error.value.message, error.value.found) == (message, found)
     assert allowed is None or error.value.allowed == allowed
 
@@ -222,7 +222,7 @@ def test_a_wrong_attachment_is_refused(point, link, message, found, allowed):
 def test_an_attachment_that_joins_groups_is_refused():
     """Rod 4 is placed by pin B, which coupler and rocker place: attached to it they would make one group of four."""
     with pytest.raises(ProblemError) as error:
-        build(read_text(attached(TEXT, "B", 4), "six-bar.yaml"))
+        build_problem(read_text(attached(TEXT, "B", 4), "six-bar.yaml"))
     assert error.value.message == "with the links attached to 4 the mechanism does not fall into the same groups"
     assert error.value.allowed == "2, 3"
 
@@ -242,7 +242,7 @@ def expected_link(linkage, structure, hinge):
 
 @pytest.mark.parametrize("name", ["six-bar", "engine-four", "toggle-press", "cranks/reversing", "slotted/intermittent"])
 def test_the_order_of_links_in_the_file_does_not_change_what_is_attached(name):
-    linkage = build(read_text(Path(f"problems/{name}.yaml").read_text(encoding="utf-8"), name)).linkage
+    linkage = build_problem(read_text(Path(f"problems/{name}.yaml").read_text(encoding="utf-8"), name)).linkage
     found = set()
     for order in islice(permutations(linkage.moving), 0, None, max(1, factorial(len(linkage.moving)) // 60)):
         links = {name: linkage.links[name] for name in (FRAME, *order)}
@@ -289,7 +289,7 @@ def test_grading_accepts_a_reaction_under_either_attachment(answers, states):
 
 def test_a_reaction_given_by_components_has_the_direction_of_its_attachment():
     """R_12 of the rod alone and of the whole pin, and the whole pin with the sign of R_21."""
-    results = solve(build(read_text(V_ENGINE, "v-compressor.yaml")))
+    results = solve(build_problem(read_text(V_ENGINE, "v-compressor.yaml")))
     pin = {pin.link: pin.force[10] for pin in results.reactions.pins(results.linkage)}
     task = read_task(read_text(V_ENGINE + "grading: {drawn: false, answers: [{of: R_12, at: 10}]}\n", "task.yaml"))
     states = []

@@ -12,7 +12,7 @@ from test_properties import CHAINS, SEEDS, generic
 from test_properties import solved as solved_for
 
 from tmm_cli.mechanics.forces.free_bodies import Symbol, named, reaction_symbol
-from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.forces.lever import compute_lever
 from tmm_cli.mechanics.numerics.vectors import cross, dot
 from tmm_cli.mechanics.plans.forces import force_plans
 from tmm_cli.mechanics.plans.lever import lever_plan
@@ -114,7 +114,7 @@ def test_reactions_are_named_from_link_to_link():
 
 def test_nothing_is_left_of_the_lever_when_nothing_acts():
     _, motion, *_ = solved_for(linkage(3, ("RRR",)))
-    assert lever(motion, (), np.zeros(3)).items == ()
+    assert compute_lever(motion, (), np.zeros(3)).items == ()
 
 
 def test_each_vector_is_read_off_once_and_equal_ones_together():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from random_linkages import TYPES, linkage
 
 from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.forces.lever import compute_lever
 from tmm_cli.mechanics.forces.loads import applied
 from tmm_cli.mechanics.forces.plan import react
 from tmm_cli.mechanics.groups.sequence import DriverMotion
@@ -142,7 +142,7 @@ def test_every_link_is_in_equilibrium_under_loads_and_reactions(seed, kinds):
 def test_the_lever_agrees_with_the_force_plan(seed, kinds):
     it = linkage(seed, kinds)
     _, motion, loads, reactions = generic(it)
-    check = lever(motion, loads, reactions.balance.moment)
+    check = compute_lever(motion, loads, reactions.balance.moment)
     scale = np.max(np.sum([np.abs(item.moment) for item in check.items], axis=0))
     assert np.max(np.abs(check.balancing - reactions.balance.moment)) < 1e-12 * scale / GENERIC
 

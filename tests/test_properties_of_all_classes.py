@@ -8,8 +8,8 @@ from random_linkages import any_linkage
 from transforms import mirrored, renamed, reversed_in_time, sized, turned
 
 from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.energy import energy
-from tmm_cli.mechanics.forces.lever import lever
+from tmm_cli.mechanics.forces.energy import compute_energy
+from tmm_cli.mechanics.forces.lever import compute_lever
 from tmm_cli.mechanics.forces.loads import applied
 from tmm_cli.mechanics.forces.plan import power, react
 from tmm_cli.mechanics.groups.sequence import DriverMotion
@@ -152,10 +152,10 @@ def in_equilibrium(it, motion, loads, reactions, name):
 def test_lever_and_powers_agree_with_the_force_plan(found):
     _, motion, loads, reactions = found
     drivers = power(motion, reactions)
-    check = lever(motion, loads, drivers)
+    check = compute_lever(motion, loads, drivers)
     scale = np.max(np.sum([np.abs(item.moment) for item in check.items], axis=0), initial=1.0)
     same(check.balancing, drivers, scale)
-    same(energy(motion, loads, drivers).balance, 0, 10)
+    same(compute_energy(motion, loads, drivers).balance, 0, 10)
 
 
 def test_a_position_alone_is_that_position_among_others(found):

@@ -11,8 +11,8 @@ import pytest
 from test_loads import MACHINE
 
 from tmm_cli import solve
-from tmm_cli.mechanics.dynamics.reduced import reduced
-from tmm_cli.mechanics.dynamics.steady import steady as running
+from tmm_cli.mechanics.dynamics.reduced import reduce_machine
+from tmm_cli.mechanics.dynamics.steady import find_steady_running as running
 from tmm_cli.mechanics.dynamics.task import SteadyTask
 from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_text
@@ -93,7 +93,7 @@ loads:
 
 def machine(moment, edges):
     """From a moment (N m) by the crank's angle (rad), that of a load negative; edges: where it bends or jumps."""
-    return reduced(lambda x: (0 * x, 0 * x, moment(x)), edges)
+    return reduce_machine(lambda x: (0 * x, 0 * x, moment(x)), edges)
 
 
 def polygon(*corners):

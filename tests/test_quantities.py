@@ -8,17 +8,17 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.lever import draw_lever
 from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
 from tmm_cli.mechanics.accuracy.digits import quantities
 from tmm_cli.mechanics.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.digits import accuracy
 from tmm_cli.reports.register import tables
 from tmm_cli.reports.result_json import schema, to_json
-from tmm_cli.reports.terminal import cells
+from tmm_cli.reports.terminal import terminal_cells
 
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
     "kinematics.points": (POINT, set()),
@@ -92,7 +92,7 @@ loads:
 
 def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
     """Three forces that balance each other leave the rod AB and its slider without any; the rod AK bears Q."""
-    results = solve(build(read_text(BALANCED, "balanced.yaml")))
+    results = solve(build_problem(read_text(BALANCED, "balanced.yaml")))
     reactions, table = to_json(results)["forces"]["reactions"], {t.name: t for t in tables(results)}["reactions"]
     assert 0 < max(np.abs(results.reactions.of("B").force)) < 1e-12
     for pair in ("B", "x"):
@@ -101,7 +101,9 @@ def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
     np.testing.assert_allclose(reactions["K"]["angle"][1:3], np.angle(results.reactions.of("K").force[1:3]), rtol=0)
     (told,) = accuracy(results).with_bounds([table])
     angles = next(column for column in told.columns if column.header == "angle")
-    shown = dict(zip(told.columns[2].values, cells(angles, results.problem.units, range(told.rows)), strict=True))
+    shown = dict(
+        zip(told.columns[2].values, terminal_cells(angles, results.problem.units, range(told.rows)), strict=True)
+    )
     assert shown["B"] == shown["x"] == "-" and float(shown["K"])
 
 
@@ -110,7 +112,7 @@ def test_units_are_written_one_way_in_tables_and_the_schema_and_one_way_on_drawi
     told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
     described = json.dumps(schema(), ensure_ascii=False)
     position = detailed(shaper)[0]
-    notes = [text for draw in (motion_plans, lever) for __, sheet in draw(position) for text in sheet.texts()]
+    notes = [text for draw in (draw_motion_plans, draw_lever) for __, sheet in draw(position) for text in sheet.texts()]
     assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("(m/s²)/mm") for note in notes)
     assert any(note.endswith(" N·m") for note in notes)
     for other in ("m/s2", "m/s²", "N·m", "N m"):

@@ -13,7 +13,7 @@ from models import results_of
 
 from tmm_cli import solve
 from tmm_cli.mechanics.groups.pairs.higher import SHAPES
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.register import tables
 
@@ -87,7 +87,7 @@ def test_dwells_of_a_cam_are_no_part_of_the_strokes_between_them(cam, output, tu
     text = PROBLEMS[cam].replace("output: 4", f"output: {output}").replace("speed: 60 rpm", f"speed: 1, turns: {turns}")
     text = text.replace("    follower: 2\n", f"    follower: 2\n    start: {start}\n")
     text = text.replace("at: 0 deg", f"at: {start} deg")
-    strokes = solve(build(read_text(text, "cam.yaml")), "kinematics").strokes
+    strokes = solve(build_problem(read_text(text, "cam.yaml")), "kinematics").strokes
     assert strokes.k == pytest.approx(1.2, rel=1e-12)
     found = [math.degrees(x) for stroke in strokes.strokes for x in (stroke.length, stroke.rest)]
     assert found == pytest.approx([120, 60, 100, 80] if turns == "ccw" else [120, 80, 100, 60], abs=1e-9)
@@ -100,7 +100,7 @@ def test_a_dwell_within_the_rise_makes_one_stroke_of_it_and_one_at_the_top_is_to
     law = "[{over: 60, rise: 20, law: linear}, {over: 30}, {over: 50, rise: 20}, {over: 20}, {over: 200, rise: -40}]"
     text = PROBLEMS["flat follower"]
     old = text[text.index("[{over: 120") : text.index("\ndriver")]
-    results = solve(build(read_text(text.replace(old, law).replace("output: 4", "output: 2"), "cam.yaml")))
+    results = solve(build_problem(read_text(text.replace(old, law).replace("output: 4", "output: 2"), "cam.yaml")))
     back, forth = results.strokes.strokes
     assert [math.degrees(x) for x in (back.length, forth.length)] == pytest.approx([200, 140], abs=1e-9)
     assert (back.run, forth.run) == pytest.approx((-0.04, 0.04), abs=1e-15)
@@ -116,7 +116,7 @@ def test_the_strokes_of_a_cam_of_constant_velocities_end_at_its_hard_impacts(dwe
     text = PROBLEMS["flat follower"]
     old = text[text.index("[{over: 120") : text.index("\ndriver")]
     text = text.replace(old, law.replace("{over: 0}, ", "")).replace("output: 4", "output: 2")
-    back, forth = solve(build(read_text(text, "cam.yaml")), "kinematics").strokes.strokes
+    back, forth = solve(build_problem(read_text(text, "cam.yaml")), "kinematics").strokes.strokes
     assert [math.degrees(s.length) for s in (back, forth)] == pytest.approx([200 - dwell, 160], abs=1e-9)
     assert math.degrees(forth.rest) == pytest.approx(dwell, abs=1e-9)
     assert (back.run, forth.run) == pytest.approx((-0.02, 0.02), abs=1e-15)
@@ -128,7 +128,7 @@ def flat_follower(law, **keys):
     text = text.replace(text[text.index("law: [{over: 120") : text.index("\ndriver")], f"law: {law}")
     for old, new in {"speed": "speed: 60 rpm", "at": "at: 0 deg", "count": "count: 12"}.items():
         text = text.replace(new, keys.get(old, new))
-    return solve(build(read_text(text, "cam.yaml")), "kinematics")
+    return solve(build_problem(read_text(text, "cam.yaml")), "kinematics")
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -165,7 +165,7 @@ def test_a_stroke_of_a_cam_begins_with_the_speed_and_the_acceleration_of_its_pie
 
 
 def test_the_useful_resistance_of_a_working_stroke_does_not_act_in_its_dwell():
-    strokes = solve(build(read_text(PROBLEMS["flat follower"], "cam.yaml")), "kinematics").strokes
+    strokes = solve(build_problem(read_text(PROBLEMS["flat follower"], "cam.yaml")), "kinematics").strokes
     assert strokes.share(np.radians([10, 110, 130, 170, 190, 300, 350]), 1).tolist() == [True] * 2 + [False] * 5
 
 
@@ -175,7 +175,7 @@ def test_a_stroke_over_places_asked_for_on_both_sides_of_a_gap_is_that_of_both_w
         "inertia: 0.006", "inertia: 0.0001"
     )
     text = re.sub(r"^positions: .*$", "positions: {at: [0, 20, 90, 180]}", text, flags=re.M)
-    (travel,) = solve(build(read_text(text, "two-ways"))).travels
+    (travel,) = solve(build_problem(read_text(text, "two-ways"))).travels
     assert travel.high == pytest.approx(0.11)  # at 0 deg, 60 + 50 mm
     # dead where the rod is across the guide: to where it is known, in steps of the driver
     assert -math.sqrt(0.06**2 - 0.05**2) <= travel.low < -0.03

@@ -8,9 +8,9 @@ from higher import PROBLEMS
 from test_draw_pairs import solved
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.explain import explain
+from tmm_cli.reports.explain import explain_tables
 from tmm_cli.reports.register import tables
 
 
@@ -75,7 +75,7 @@ def test_with_one_driver_the_cycle_says_plainly_what_balances_it():
 
 
 def told(name):
-    return {t.name: rows(t) for t in explain(solved(name))}
+    return {t.name: rows(t) for t in explain_tables(solved(name))}
 
 
 def test_explain_lists_wheels_with_their_law_and_pitch_radii():
@@ -150,7 +150,7 @@ masses: {1: {mass: 1 kg, centre: A}}
 loads: {F: {on: 1, at: A, force: [0, -100]}}
 positions: {at: [0]}
 """
-    ccw, cw = (solve(build(read_text(text.replace("WAY", way), "x.yaml"))) for way in ("ccw", "cw"))
+    ccw, cw = (solve(build_problem(read_text(text.replace("WAY", way), "x.yaml"))) for way in ("ccw", "cw"))
     assert ccw.reactions.balance.moment[0] == pytest.approx(6) == cw.reactions.balance.moment[0]
     assert ccw.lever.balancing[0] == pytest.approx(6) == cw.lever.balancing[0]
     assert (ccw.energy.drivers[0], cw.energy.drivers[0]) == (pytest.approx(60), pytest.approx(-60))

@@ -16,7 +16,7 @@ from bank import problem as read
 from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.bench.chart_savings import charts
+from tmm_cli.bench.chart_savings import savings_charts
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.savings import NAMED, Saving, Savings
 from tmm_cli.drawing.run import files as drawings
@@ -30,7 +30,7 @@ from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.reports.files import Staged, listed
-from tmm_cli.reports.stages import heavy, stages
+from tmm_cli.reports.stages import describe_stages, heavy
 from tmm_cli.reports.table import Column, Table, csv_text, json_bytes, json_text
 from tmm_cli.synthesis.solving import count, structure_of
 
@@ -227,7 +227,7 @@ def test_what_shows_tables_imports_no_drawing_and_no_optimisation():
 
 def test_explain_says_of_every_stage_what_the_stage_does():
     results = solve(load(str(SHAPER)), "kinematics")
-    rows = {row[0]: row for row in stages(results)}
+    rows = {row[0]: row for row in describe_stages(results)}
     with counted() as count:
         results.mechanism.strokes  # noqa: B018
         asked = count.places
@@ -254,7 +254,7 @@ def test_what_saves_nothing_is_said_so():
     found = Savings("shaper", "A shaper", (spared, wasted))
     assert found.failures == ("closed form where there is one",)
     assert found.tables[0].columns[-1].values == ["", "saves nothing"]
-    figure = charts(found)["savings.png"]
+    figure = savings_charts(found)["savings.png"]
     names = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
     assert names == ["groups on the way only", "closed form where there is one"]
 

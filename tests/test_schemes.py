@@ -24,7 +24,7 @@ from tmm_cli.drawing.sheets.group_table import EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure.assur import analyse
 from tmm_cli.mechanics.structure.group import ROMAN, group_class
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.reports.space_tables import schemes_table
@@ -32,7 +32,7 @@ from tmm_cli.reports.terminal import show
 from tmm_cli.synthesis.schemes.chains import KinematicChain, canonical
 from tmm_cli.synthesis.schemes.chains import chains as every_chain
 from tmm_cli.synthesis.schemes.schemes import MOST_SCHEMES
-from tmm_cli.synthesis.schemes.schemes import schemes as every_scheme
+from tmm_cli.synthesis.schemes.schemes import enumerate_schemes as every_scheme
 
 chains, schemes = cache(every_chain), cache(every_scheme)
 
@@ -220,7 +220,7 @@ def test_the_problem_of_a_class_ii_scheme_is_that_scheme_and_runs(links, groups,
 
 def is_that_scheme_and_runs(scheme):
     made = skeleton(scheme, "a scheme")
-    problem = build(read_text(made.text, "scheme.yaml"))
+    problem = build_problem(read_text(made.text, "scheme.yaml"))
     results = solve(problem)
     structure = results.structure
     assert (structure.formula, structure.mobility) == (scheme.formula, scheme.mobility)
@@ -239,7 +239,7 @@ def is_that_scheme_and_runs(scheme):
 def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, monkeypatch):
     monkeypatch.setattr(scheme_files, "FEW", 2)  # poses: the best of few is not as good, the structure is one
     for scheme in schemes(links, 1, named_types(groups))[some]:
-        problem = build(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
+        problem = build_problem(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
         structure = analyse(problem.linkage)
         assert structure.formula == scheme.formula
         assert (structure.mobility, structure.freedom) == (1, 1)
@@ -248,7 +248,7 @@ def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, m
 
 def test_a_crank_rocker_and_crank_sliders_of_all_kinds_turn_fully():
     for scheme in (*schemes(3)[:4], *schemes(5, 1, ("RRR", "RRP"))[::10]):
-        problem = build(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
+        problem = build_problem(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
         assert solve(problem, "kinematics").driver_range.full, scheme.joints
 
 
@@ -333,7 +333,7 @@ def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
     for scheme in schemes(links, mobility, named_types("RRR,RRP"))[::every]:
         made = skeleton(scheme, scheme.formula)
         assert made is not None
-        results = solve(build(read_text(made.text, "scheme.yaml")))
+        results = solve(build_problem(read_text(made.text, "scheme.yaml")))
         assert len(results.linkage.drivers) == results.structure.mobility == mobility
         assert np.max(results.lever.difference[results.motion.moving]) < 1e-9
 

@@ -22,7 +22,7 @@ from tmm_cli.drawing.paper.fonts import corners
 from tmm_cli.drawing.paper.record import Drawing, Text
 from tmm_cli.drawing.sheets.mechanism import detailed
 from tmm_cli.drawing.symbols.scene import Scene
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 
@@ -93,7 +93,7 @@ HOSTILE = {
 def test_texts_of_the_title_block_stay_in_it_whatever_they_are(block):
     texts = ", ".join(f"{key}: {value!r}" for key, value in HOSTILE.items())
     text = SHAPER.read_text(encoding="utf-8") + f"sheet: {{{texts}, block: {block}}}\n"
-    problem = build(read_text(text, "x.yaml"))
+    problem = build_problem(read_text(text, "x.yaml"))
     titles = Titles(problem.title_texts, "$x$ " * 50, "Forces", 2, 7)
     sheet = framed([], field_of(PAPERS["A3"], block), PAPERS["A3"], titles)
     __, high = inner(sheet.paper)
@@ -113,7 +113,7 @@ def _within(place, low, high):
 def test_a_text_of_the_title_block_that_is_none_is_refused(given):
     text = SHAPER.read_text(encoding="utf-8") + f"sheet: {{student: {given}}}\n"
     with pytest.raises(ProblemError) as refused:
-        build(read_text(text, "x.yaml"))
+        build_problem(read_text(text, "x.yaml"))
     assert refused.value.path == ("sheet", "student")
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from tmm_cli import load, solve
 from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
-from tmm_cli.mechanics.dynamics.reduced import reduced
+from tmm_cli.mechanics.dynamics.reduced import reduce_machine
 from tmm_cli.mechanics.dynamics.single_run import acceleration, run
 from tmm_cli.mechanics.dynamics.task import Profile, RunTask
 from tmm_cli.mechanics.errors import LongRunError, StandstillError
@@ -15,7 +15,7 @@ from tmm_cli.problem.build import problem_of
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.register import walk
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -26,7 +26,7 @@ def machine(inertia=2.0, load=0.0, until=np.pi, ripple=0.0):
         own, slope = inertia + ripple * np.cos(2 * x), -2 * ripple * np.sin(2 * x)
         return own, slope, np.where(x < until, load, 0.0)
 
-    return reduced(sample, [0, until, TURN])
+    return reduce_machine(sample, [0, until, TURN])
 
 
 def test_a_constant_moment_speeds_a_rotor_up_evenly():
@@ -152,7 +152,7 @@ def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
     assert summary.notes[0] == "the run ends: the time of 3600 s is over before its way is gone"
     assert np.all(np.isfinite(law.columns[2].values))
     assert "3" not in {load.link for load in results.loads if load.has_moment}  # a slider, with nan where it is not
-    assert any("the run of driver 1 ends before positions" in said for said in warnings(results))
+    assert any("the run of driver 1 ends before positions" in said for said in collect_warnings(results))
 
 
 BOOM = (PROBLEMS / "boom-lift.yaml").read_text().split("dynamics:")[0]
@@ -193,14 +193,14 @@ def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too
         tail = f"gravity: 0\noutput: 3\ndynamics: {{{run}}}\npositions: {{count: 4}}\n"
         results = solve(problem_of(read_text(text.replace("turns: ccw", f"turns: {turns}") + tail, "press.yaml")))
         assert results.running.run.driven[-1] == pytest.approx(40 * np.radians(30), rel=1e-9)
-        assert not [text for text in warnings(results) if "the run goes" in text]
+        assert not [text for text in collect_warnings(results) if "the run goes" in text]
     with pytest.raises(ProblemError, match="the run does not start") as refused:
         solve(problem_of(read_text(text + tail.replace("-40", "40"), "press.yaml")))
     assert "a larger drive (positive along the guide or counterclockwise)" in str(refused.value)
 
 
 def of_the_run(results):
-    return [text for text in warnings(results) if "run " in text or "the drive" in text]
+    return [text for text in collect_warnings(results) if "run " in text or "the drive" in text]
 
 
 def test_a_run_against_the_driver_s_sense_is_warned_of():

@@ -12,7 +12,7 @@ from test_bad_input import changed, refusal
 
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem.arithmetic import evaluate
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import ExtendedUnits
@@ -170,15 +170,15 @@ def test_long_lists_in_one_line_are_read_at_once(item: str) -> None:
     [("at: 60", "at: pi rad", "at: 180"), ("1 rad/s", "2*pi rad/s", "60 rpm")],
 )
 def test_pi_may_have_a_unit(old: str, new: str, same: str) -> None:
-    one, other = (build(read_text(FOUR_BAR.replace(old, text), "x.yaml")).linkage for text in (new, same))
+    one, other = (build_problem(read_text(FOUR_BAR.replace(old, text), "x.yaml")).linkage for text in (new, same))
     assert np.isclose(one.sketch.at, other.sketch.at) and np.isclose(one.driver.rate, other.driver.rate)
 
 
 def test_one_guide_one_position_and_one_place_need_no_list() -> None:
     short = changed("slides: {on: x}", "slides: x").replace("detail: [3]", "detail: 3")
-    whole, problem = (build(read_text(text, "x.yaml")) for text in (changed("OA: 110", "OA: 110"), short))
+    whole, problem = (build_problem(read_text(text, "x.yaml")) for text in (changed("OA: 110", "OA: 110"), short))
     assert (problem.linkage.slides, problem.request) == (whole.linkage.slides, whole.request)
-    assert build(read_text(FOUR_BAR + "positions: {at: 90}\n", "x.yaml")).request.places == (np.pi / 2,)
+    assert build_problem(read_text(FOUR_BAR + "positions: {at: 90}\n", "x.yaml")).request.places == (np.pi / 2,)
 
 
 def test_a_place_that_a_search_varies_is_an_angle() -> None:
@@ -293,7 +293,7 @@ def test_a_bare_number_and_one_with_a_unit_have_the_same_decimals() -> None:
 
 def test_a_guide_may_run_through_a_share_of_the_way_between_two_points() -> None:
     text = changed("along: CD", "through: {on: CD, at: 0.3}")
-    assert build(read_text(text, "x.yaml")).linkage.slides[0].through == pytest.approx(0.195)
+    assert build_problem(read_text(text, "x.yaml")).linkage.slides[0].through == pytest.approx(0.195)
     assert np.isfinite(solved_text(text).motion.poses["5"].x).all()
 
 
@@ -328,7 +328,7 @@ def test_a_share_may_be_written_as_a_distance_from_the_first_point() -> None:
     lengths = LOADED.replace("tmm: 1", "tmm: 1\nparameters: {l3: 200 mm}")
     for share, length in (("on: AB, at: 0.4", "100 mm"), ("on: BD, at: 0.25", "5 cm"), ("on: DB, at: 0.5", "l3/2")):
         lengths = lengths.replace(share, f"{share[: share.index('at: ')]}at: {length}")
-    one, other = (build(read_text(text, "x.yaml")).linkage for text in (LOADED, lengths))
+    one, other = (build_problem(read_text(text, "x.yaml")).linkage for text in (LOADED, lengths))
     assert other.links["2"].centre == pytest.approx(one.links["2"].centre, abs=1e-17)
     assert other.loads[0].at == pytest.approx(one.loads[0].at, abs=1e-17)
     assert other.springs[0].at_j == pytest.approx(one.springs[0].at_j, abs=1e-17)

@@ -11,7 +11,7 @@ from models import PARALLELOGRAM, solved_text
 from tmm_cli.mechanics.analysis.pipeline import at_positions
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.reports.quality_tables import quality_tables as tables
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 KITE = """tmm: 1
 points: {O: [0, 0], D: [100, 0]}
@@ -68,7 +68,7 @@ def test_an_antiparallelogram_stays_one_too():
 
 
 def test_the_warning_says_what_is_done_and_how_to_ask_for_the_other():
-    said = list(warnings(moved(PARALLELOGRAM)))
+    said = list(collect_warnings(moved(PARALLELOGRAM)))
     assert said[0] == (
         "change point of II(2,3) inside the cycle at 0 deg (margin 0): there the group may go over into another "
         "assembly; the results go smoothly through, as a machine that runs does (the other: `change points: keep side`)"
@@ -80,7 +80,7 @@ def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparall
     motion = everywhere(results)
     half = np.mod(motion.q, 2 * np.pi) < np.pi
     assert np.allclose(motion.first["3"].w[half], 1) and np.all(motion.first["3"].w[~half] < 0)
-    assert "the results keep to the side of the sketch" in next(iter(warnings(results)))
+    assert "the results keep to the side of the sketch" in next(iter(collect_warnings(results)))
     (quality,) = tables(results)
     assert (quality.columns[0].values[0], quality.columns[1].values[0]) == ("link 3 turns in a cycle by", 0)
 
@@ -189,7 +189,9 @@ def test_where_the_side_of_the_sketch_is_kept_velocities_jump_and_have_no_limit(
     text = PARALLELOGRAM.replace("driver:", "change points: keep side\ndriver:")
     results = moved(at_places(text, "[0, 60]"))
     assert results.motion.limits is None and results.motion.moving.tolist() == [False, True]
-    assert "position 0 (0 deg): II(2,3) is in its dead position; no velocities and forces" in list(warnings(results))
+    assert "position 0 (0 deg): II(2,3) is in its dead position; no velocities and forces" in list(
+        collect_warnings(results)
+    )
 
 
 def test_a_dead_position_in_which_the_driver_turns_back_has_no_limits():
@@ -208,7 +210,7 @@ def test_the_balancing_moment_has_its_limit_by_the_lever_and_reactions_have_none
     results = solved_text(at_places(text, "[0, 60]").replace("mass: 3 kg, inertia: 0.1", "mass: 0"))
     assert results.lever.balancing == pytest.approx([5, 5], rel=1e-10)
     assert np.isnan(results.reactions.balance.moment[0]) and results.lever_holds
-    said = list(warnings(results))
+    said = list(collect_warnings(results))
     assert (
         "position 0 (0 deg): II(2,3) is in a change point, which it passes smoothly; velocities and accelerations are "
         "limits, reactions have none there"

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.structure.graph import classification, contours
 from tmm_cli.mechanics.structure.redundancy import CHOICES, rank_of, space, spatial_chain
 from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair, examine
 from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_file, read_text
 from tmm_cli.synthesis.solving import count
@@ -427,7 +427,7 @@ def test_no_proposal_for_one_group_has_fewer_changes_or_fewer_freedoms(kind):
 
 
 def test_a_group_of_class_iii_is_served_too_and_no_proposal_is_shorter():
-    linkage = build(read_text(CLASS_III, "iii.yaml")).linkage
+    linkage = build_problem(read_text(CLASS_III, "iii.yaml")).linkage
     structure = analyse(linkage)
     found = space(linkage, structure)
     assert (found.redundant, found.redundant_then) == (6, 0)
@@ -456,7 +456,9 @@ def test_words_of_the_classification():
     assert words["crank-slider"] == ("closed", "simple")
     assert words["shaper"] == ("closed", "complex", "several types")
     alone = "tmm: 1\npoints: {O: [0, 0]}\nlinks: {1: {points: [O, A], length: 1}}\ndriver: {link: 1, speed: 1 rad/s}\n"
-    linkage = build(read_text(alone.replace("[O, A], length: 1", "{O: [0, 0], A: [1, 0]}"), "alone.yaml")).linkage
+    linkage = build_problem(
+        read_text(alone.replace("[O, A], length: 1", "{O: [0, 0], A: [1, 0]}"), "alone.yaml")
+    ).linkage
     assert classification(analyse(linkage)) == ("open", "elementary")
     assert space(linkage, analyse(linkage)).replacements == ()
     twice = analyse(random_linkages.linkage(4, ("RRR", "RRR")))

@@ -19,7 +19,7 @@ from tmm_cli.mechanics.analysis.pipeline import at_places
 from tmm_cli.mechanics.structure.assur import analyse
 from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
 from tmm_cli.mechanics.structure.naming import basic_schemes, four_link_scheme, link_motion, six_bar_schemes
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.structure_tables import (
     counted_by_classes,
@@ -27,7 +27,7 @@ from tmm_cli.reports.structure_tables import (
     counted_with_replacements,
     motion_in_words,
 )
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
 
@@ -87,7 +87,7 @@ def test_groups_do_not_depend_on_the_order_in_which_links_are_written(order):
 
 
 def test_a_class_iii_group_is_named_and_solved():
-    problem = build(read_text(CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}", "iii.yaml"))
+    problem = build_problem(read_text(CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}", "iii.yaml"))
     structure = analyse(problem.linkage)
     assert structure.formula == "I(0,5) -> III(1,2,3,4)"
     assert structure.groups[0].order == 3
@@ -112,8 +112,8 @@ def test_coefficient_of_change_of_mean_speed_follows_from_the_geometry():
 
 def test_strokes_are_the_same_whichever_way_the_crank_turns_but_for_their_order():
     text = SHAPER.read_text(encoding="utf-8")
-    one = solve(build(read_text(text, "x.yaml")), "kinematics").strokes
-    other = solve(build(read_text(text.replace("turns: ccw", "turns: cw"), "x.yaml")), "kinematics").strokes
+    one = solve(build_problem(read_text(text, "x.yaml")), "kinematics").strokes
+    other = solve(build_problem(read_text(text.replace("turns: ccw", "turns: cw"), "x.yaml")), "kinematics").strokes
     assert other.travel == pytest.approx(one.travel, rel=1e-12)
     assert other.strokes[0].length == pytest.approx(one.strokes[0].length, rel=1e-12)
     assert other.strokes[0].run == pytest.approx(-one.strokes[0].run, rel=1e-12)  # the slow stroke runs back now
@@ -135,7 +135,7 @@ def test_a_load_by_table_against_the_stroke_is_interpolated_and_held_at_its_ends
         "force: [1500, 0], when: working stroke",
         "force: {angle: 0, against: stroke, table: [[50, 100], [150, 300]]}, when: working stroke",
     )
-    results = solve(build(read_text(text, "x.yaml")))
+    results = solve(build_problem(read_text(text, "x.yaml")))
     load = next(x for x in results.loads if x.name == "F")
     run = results.motion.slide(results.linkage.slides[1]).run
     gone = np.abs(run - results.strokes.strokes[0].low) * 1000
@@ -146,7 +146,7 @@ def test_a_load_by_table_against_the_stroke_is_interpolated_and_held_at_its_ends
 
 def test_angular_acceleration_changes_speed_along_the_way_and_time_says_when():
     text = SHAPER.read_text(encoding="utf-8").replace("turns: ccw", "turns: ccw, acceleration: 3 rad/s^2")
-    motion = solve(build(read_text(text, "x.yaml")), "kinematics").motion
+    motion = solve(build_problem(read_text(text, "x.yaml")), "kinematics").motion
     turned = motion.q - motion.q[0]
     start = 82 * math.pi / 30
     assert motion.rate == pytest.approx(np.sqrt(start**2 + 2 * 3 * turned), rel=1e-14)
@@ -158,8 +158,10 @@ def test_angular_acceleration_changes_speed_along_the_way_and_time_says_when():
 
 def test_a_balancing_force_at_the_crank_s_end_has_the_balancing_moment_and_changes_the_frame_s_reaction_only():
     text = SHAPER.read_text(encoding="utf-8")
-    by_moment = solve(build(read_text(text, "x.yaml"))).reactions
-    by_force = solve(build(read_text(text.replace("turns: ccw", "turns: ccw, balance: force"), "x.yaml"))).reactions
+    by_moment = solve(build_problem(read_text(text, "x.yaml"))).reactions
+    by_force = solve(
+        build_problem(read_text(text.replace("turns: ccw", "turns: ccw, balance: force"), "x.yaml"))
+    ).reactions
     assert by_force.balance.force * 0.110 == pytest.approx(by_moment.balance.moment, rel=1e-14)
     for one, other in zip(by_moment.all[1:], by_force.all[1:], strict=True):
         assert np.array_equal(one.force, other.force)
@@ -202,7 +204,7 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
     for name in NAMES[1::4]:
         alone = solve(problem(name), positions=[0])
         assert alone.lever_holds, name
-        assert not any("in the direction of motion" in w for w in warnings(alone)), name
+        assert not any("in the direction of motion" in w for w in collect_warnings(alone)), name
 
 
 def kind(name):
@@ -228,7 +230,7 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
         "force: [1500, 0], when: working stroke",
         "force: {angle: 0, against: stroke, table: [[0, 100], [150, 300]]}, when: working stroke",
     )
-    said = list(warnings(solve(build(read_text(text, "x.yaml")))))
+    said = list(collect_warnings(solve(build_problem(read_text(text, "x.yaml")))))
     assert said == [
         "the table of load F does not reach as far as the stroke goes: its end value is held; rows in shares reach "
         "over every stroke (against: share of stroke)"
@@ -373,7 +375,7 @@ driver: {{link: 1, speed: 60 rpm}}
 sketch: {{at: 90, B: {c}}}
 positions: {{at: [60, 90, 120]}}
 """
-    results = solve(build(read_text(text, "x")), "structure")
+    results = solve(build_problem(read_text(text, "x")), "structure")
     assert motion_in_words(results, "2") == motion
 
 

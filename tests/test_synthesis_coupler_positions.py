@@ -9,12 +9,20 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.coupler_positions import dyads as search
-from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Poses, Task, beside, by_turn, centre, marks
+from tmm_cli.synthesis.coupler_positions.burmester import (
+    CouplerPositionsTask,
+    Dyads,
+    Poses,
+    beside,
+    by_turn,
+    centre,
+    marks,
+)
 from tmm_cli.synthesis.coupler_positions.curve import curve
 from tmm_cli.synthesis.coupler_positions.dyads import guiding
 from tmm_cli.synthesis.measures import measured
@@ -94,7 +102,7 @@ def on_mechanism(poses, one, other):
     left = ((d[:, None] - b).conj() * (c - b)).imag[:, 0] > 0  # a batch is assembled as its first linkage is
     places, angles = np.empty(b.shape, complex), np.empty(b.shape)
     for side in (left, ~left):
-        at = prepare([linkages[k] for k in np.flatnonzero(side)], forces=False, own_places=True)(phi[side])
+        at = prepare_batch([linkages[k] for k in np.flatnonzero(side)], forces=False, own_places=True)(phi[side])
         places[side] = at["P.x"]
         angles[side] = np.angle((at["C.x"] - at["B.x"]) / (n - m)[side, None])
     return places, angles
@@ -218,7 +226,7 @@ def test_the_best_transmission_on_the_curves_is_not_beaten_by_random_links_of_th
 def best_of(positions):
     """The search on Burmester's curves of positions (m, rad) itself: its dyads and how good they are."""
     places, angles = zip(*((complex(x, y), np.radians(angle)) for x, y, angle in positions), strict=True)
-    task = Task(places, angles)
+    task = CouplerPositionsTask(places, angles)
     limits = search.Limits(0.15 * task.size, *(3 * [2 * task.size]))
     return task.poses, search.best_on_curves(task.poses, task.size, limits, {})
 
@@ -268,7 +276,7 @@ def test_three_positions_of_one_angle_leave_a_circle_of_pins_and_parallelograms_
     radii = np.abs(poses.on_frame(pins.pin) - pins.pivot[:, None])
     assert np.ptp(radii, axis=1) == pytest.approx(0, abs=1e-15) and np.ptp(radii[:, 0]) == pytest.approx(0, abs=1e-15)
     with pytest.raises(Infeasible, match="branch defect"):
-        guiding(Task(tuple(map(complex, poses.places)), tuple(map(float, poses.angles))))
+        guiding(CouplerPositionsTask(tuple(map(complex, poses.places)), tuple(map(float, poses.angles))))
 
 
 ON_CIRCLE = ", ".join(f"[100*cos({t} deg), 100*sin({t} deg), 15]" for t in (0, 30, 70, 100))

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.crank_slider import Task, find, largest_theta, least_pressure, shortest
+from tmm_cli.synthesis.crank_slider import CrankSliderTask, find, largest_theta, least_pressure, shortest
 from tmm_cli.synthesis.measures import k_of, measured, theta_of
 from tmm_cli.synthesis.reading import build
 
@@ -66,19 +66,19 @@ def on_mechanism(found):
     Ends of strokes and the place of the steepest rod lie where the slider's speed and the rod's angular speed change
     sign; nothing of the synthesis is used.
     """
-    at = prepare(list(variants(found)), forces=False, own_places=True)
+    at = prepare_batch(list(variants(found)), forces=False, own_places=True)
     count = np.size(found.r)
     scan = np.tile(np.linspace(0, 2 * np.pi, 73)[:-1], (count, 1))
     step, run, ends = scan[0, 1], at(scan)["B.x"].real, []
     for pick in (np.argmax, np.argmin):
         q = np.take_along_axis(scan, pick(run, axis=1)[:, None], axis=1)
-        ends.append(roots(lambda x: at(x)["B.v"].real, q - step, q + step))
+        ends.append(find_roots(lambda x: at(x)["B.v"].real, q - step, q + step))
     far, near = ends
     stroke = (at(far)["B.x"].real - at(near)["B.x"].real)[:, 0]
     way = np.mod(near - far, 2 * np.pi)[:, 0]
     slow = np.maximum(way, 2 * np.pi - way)
     quarter = np.full((count, 1), np.pi / 2)
-    here = at(roots(lambda x: at(x)["2.omega"], quarter - 0.3, quarter + 0.4))
+    here = at(find_roots(lambda x: at(x)["2.omega"], quarter - 0.3, quarter + 0.4))
     rod = here["B.x"] - here["A.x"]
     return stroke, slow / (2 * np.pi - slow), np.arctan2(np.abs(rod.imag), rod.real)[:, 0]
 
@@ -97,7 +97,7 @@ def comes_back(asked):
 @given(thousand)
 def test_stroke_comes_back_from_ratio_and_offset(drawn):
     a, b, c = drawn
-    comes_back(Task(stroke=metres(c), ratio=1.05 + 9 * a, nu=0.95 * b * (0.05 + 9 * a)))
+    comes_back(CrankSliderTask(stroke=metres(c), ratio=1.05 + 9 * a, nu=0.95 * b * (0.05 + 9 * a)))
 
 
 @settings(max_examples=2)
@@ -105,7 +105,7 @@ def test_stroke_comes_back_from_ratio_and_offset(drawn):
 def test_stroke_and_k_come_back_from_the_ratio(drawn):
     a, b, c = drawn
     ratio = 1.05 + 9 * a
-    comes_back(Task(stroke=metres(c), ratio=ratio, k=k_of(0.97 * b * largest_theta(ratio))))
+    comes_back(CrankSliderTask(stroke=metres(c), ratio=ratio, k=k_of(0.97 * b * largest_theta(ratio))))
 
 
 @settings(max_examples=2)
@@ -114,8 +114,8 @@ def test_stroke_and_offset_come_back_from_the_ratio(drawn):
     a, b, c = drawn
     ratio, stroke = 1.05 + 9 * a, metres(c)
     e = 0.97 * b * stroke * (ratio - 1) / (2 * np.sqrt(ratio))
-    assert find(Task(stroke=stroke, ratio=ratio, e=e)).e == pytest.approx(e, rel=MET)
-    comes_back(Task(stroke=stroke, ratio=ratio, e=e))
+    assert find(CrankSliderTask(stroke=stroke, ratio=ratio, e=e)).e == pytest.approx(e, rel=MET)
+    comes_back(CrankSliderTask(stroke=stroke, ratio=ratio, e=e))
 
 
 def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
@@ -123,7 +123,7 @@ def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
     h, e, length = 150.0, 20.0, 3.7
     more = (length**2 + 1) * h**2
     r = math.sqrt((more + math.sqrt(more**2 - 4 * length**2 * h**2 * (h**2 + 4 * e**2))) / (8 * length**2))
-    found = find(Task(stroke=h, e=e, ratio=length))
+    found = find(CrankSliderTask(stroke=h, e=e, ratio=length))
     assert found.r == pytest.approx(r, rel=1e-14)
     assert (found.r, found.l) == pytest.approx((74.788276, 276.716621), abs=5e-7)
     assert math.degrees(found.pressure) == pytest.approx(20.0321, abs=5e-5)
@@ -154,14 +154,14 @@ def test_stroke_k_and_pressure_come_back_from_the_shortest_rod(drawn):
     a, b, c = drawn
     k = 1 + 1.2 * a
     least = least_pressure(theta_of(k))
-    comes_back(Task(stroke=metres(c), k=k, pressure=least + (0.02 + 0.9 * b) * (1.5 - least)))
+    comes_back(CrankSliderTask(stroke=metres(c), k=k, pressure=least + (0.02 + 0.9 * b) * (1.5 - least)))
 
 
 @settings(max_examples=2)
 @given(thousand)
 def test_stroke_and_pressure_come_back_from_the_offset(drawn):
     a, b, c = drawn
-    comes_back(Task(stroke=metres(c), nu=3 * a, pressure=0.1 + 1.3 * b))
+    comes_back(CrankSliderTask(stroke=metres(c), nu=3 * a, pressure=0.1 + 1.3 * b))
 
 
 @settings(max_examples=2)
@@ -169,7 +169,7 @@ def test_stroke_and_pressure_come_back_from_the_offset(drawn):
 def test_stroke_and_k_come_back_from_the_offset_in_metres(drawn):
     a, b, c = drawn
     theta, stroke = 0.02 + 1.2 * a, metres(c)
-    comes_back(Task(stroke=stroke, k=k_of(theta), e=(0.05 + 0.9 * b) * stroke / np.tan(theta)))
+    comes_back(CrankSliderTask(stroke=stroke, k=k_of(theta), e=(0.05 + 0.9 * b) * stroke / np.tan(theta)))
 
 
 @settings(max_examples=2)
@@ -177,7 +177,7 @@ def test_stroke_and_k_come_back_from_the_offset_in_metres(drawn):
 def test_the_mean_speed_comes_back(drawn):
     a, b, c = drawn
     ratio, speed = 1.2 + 5 * a, 1 + 90 * b
-    found = find(Task(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
+    found = find(CrankSliderTask(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
     assert on_mechanism(found)[0] * speed / np.pi == pytest.approx(c + 0.1, rel=MET, abs=0)
 
 
@@ -203,19 +203,19 @@ def test_no_other_length_keeps_the_pressure_angle_and_is_shorter():
     theta, limit = theta_of(1.15), math.radians(45)
     length = float(shortest(theta, limit))
     shorter = np.linspace(1.0001, length * (1 - 1e-9), 5000)
-    assert np.all(find(Task(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
+    assert np.all(find(CrankSliderTask(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
 
 
 def test_the_least_pressure_angle_is_the_least_over_all_lengths():
     for k in (1.01, 1.2, 1.5, 2.0, 2.8):
         longest = 1 / math.tan(float(theta_of(k)) / 2) ** 2
         lengths = np.geomspace(1, longest, 200_003)[1:-1]
-        least = np.min(find(Task(stroke=1.0, k=k, ratio=lengths)).pressure)
+        least = np.min(find(CrankSliderTask(stroke=1.0, k=k, ratio=lengths)).pressure)
         assert float(least_pressure(theta_of(k))) == pytest.approx(least, rel=1e-7)
 
 
 def test_h_and_nu_obey_the_relations_of_the_course():
-    found = find(Task(stroke=0.12, k=1.3, ratio=3.0))
+    found = find(CrankSliderTask(stroke=0.12, k=1.3, ratio=3.0))
     theta = math.pi * 0.3 / 2.3
     assert found.h == pytest.approx(math.sqrt(2 * (10 - 8 * math.cos(theta))), rel=1e-14)
     assert found.nu == pytest.approx(8 * math.sin(theta) / found.h, rel=1e-14)
@@ -227,22 +227,22 @@ def test_h_and_nu_obey_the_relations_of_the_course():
 
 
 def test_the_printed_nu_is_right_for_small_theta_only():
-    errors = [float(find(Task(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)]
+    errors = [float(find(CrankSliderTask(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)]
     assert errors == sorted(errors) and errors[0] < 1e-5 and errors[-1] > 0.05
 
 
 def test_the_mean_speed_gives_the_stroke_by_30_v_over_n():
     n, v = 300.0, 0.8
-    found = find(Task(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
+    found = find(CrankSliderTask(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
     assert found.stroke == pytest.approx(30 * v / n, rel=1e-15)
     assert found.r == pytest.approx(found.stroke / 2, rel=1e-15)
 
 
 def test_the_triangle_of_both_extreme_positions_worked_by_hand():
     # 3-4-5: A above B2 at e = 3 is the limit; sides l + r = 5, l - r = 3 with H = 4
-    found = find(Task(stroke=4.0, ratio=4.0, nu=2.999999))
+    found = find(CrankSliderTask(stroke=4.0, ratio=4.0, nu=2.999999))
     assert (found.r, found.l) == (pytest.approx(1, rel=1e-2), pytest.approx(4, rel=1e-2))
-    found = find(Task(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
+    found = find(CrankSliderTask(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
     assert (found.r, found.l) == (pytest.approx(2.5, rel=1e-14), pytest.approx(17.5, rel=1e-14))
 
 

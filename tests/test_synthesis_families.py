@@ -11,7 +11,7 @@ from test_synthesis_slotted_lever import lever
 
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics.vectors import settled
-from tmm_cli.synthesis.four_bar_by_k.arcs import Task
+from tmm_cli.synthesis.four_bar_by_k.arcs import FourBarByKTask
 
 
 @pytest.mark.parametrize("k", [1.01, 1.1, 1.5, 2.5])
@@ -21,7 +21,7 @@ def test_the_listed_family_goes_from_the_dead_rocker_to_the_dead_rocker_on_every
     assert family.long
     rows = np.array([row[1:] for row in family.rows])
     beta, x, y, l1, l2, l4, most, least = rows.T
-    one = Task(0.2, math.radians(50), math.radians(105), k)
+    one = FourBarByKTask(0.2, math.radians(50), math.radians(105), k)
     c1, c2 = (0.2 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
     for name in dict.fromkeys(row[0] for row in family.rows):
         here = np.array([row[0] == name for row in family.rows])

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, of_zeros, outputs, signed_bars, solutions
-from tmm_cli.synthesis.four_bar_by_angles.pairs import Task, chosen, quality, real, through
+from tmm_cli.synthesis.four_bar_by_angles.pairs import AnglePairsTask, chosen, quality, real, through
 from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.reading import build
 
@@ -86,7 +86,7 @@ def on_mechanism(bars, phi, psi):
     found = np.empty(phi.shape)
     for side in (left, ~left):
         numbers_of = np.flatnonzero(side)
-        at = prepare([linkages[k] for k in numbers_of], forces=False, own_places=True)
+        at = prepare_batch([linkages[k] for k in numbers_of], forces=False, own_places=True)
         angles = phi[side] + numbers[3][side, None]
         found[side] = np.angle((at(angles)["C.x"] - 1) * np.exp(-1j * (psi[side] + numbers[4][side, None])))
     return found + psi
@@ -224,7 +224,7 @@ def test_what_is_chosen_passes_all_pairs_on_one_assembly(count, zeros):
     every = solutions(phi, psi, *zeros)
     taken, rows = [], []
     for k in range(len(phi)):
-        task = Task(tuple(phi[k]), tuple(psi[k]), {"l4": 1.0}, *zeros)
+        task = AnglePairsTask(tuple(phi[k]), tuple(psi[k]), {"l4": 1.0}, *zeros)
         own = every.at(k)
         here = own.at(real(own))
         if not np.any(quality(here, task).defect == ""):
@@ -243,7 +243,7 @@ def test_two_pairs_and_the_ratio_of_two_links_come_back():
     phi, psi, taken = phi + phi0[:, None], psi + psi0[:, None], []
     for k in range(COUNT):
         lengths = [{"l1": l1[k], "l4": 1.0}, {"l3": l3[k], "l4": 1.0}, {"l1": l1[k], "l3": l3[k]}][k % 3]
-        ways = through(Task(tuple(phi[k]), tuple(psi[k]), lengths))
+        ways = through(AnglePairsTask(tuple(phi[k]), tuple(psi[k]), lengths))
         taken.append(ways.at(np.argmin(np.abs(ways.l1 - l1[k]) + np.abs(ways.l3 - l3[k]))))
         assert float(taken[-1].l1) == pytest.approx(l1[k], rel=1e-8)
     bars = Bars(*(np.array(numbers) for numbers in zip(*taken, strict=True)))
@@ -256,7 +256,8 @@ def test_three_pairs_with_the_frame_and_the_crank_or_the_rocker_come_back(held):
     phi, psi = (phi + phi0[:, None], psi) if held == "l1" else (phi, psi + psi0[:, None])
     zeros, known = ((0.0, None), l1) if held == "l1" else ((None, 0.0), l3)
     tasks = [
-        Task(tuple(a), tuple(b), {held: one, "l4": 1.0}, *zeros) for a, b, one in zip(phi, psi, known, strict=True)
+        AnglePairsTask(tuple(a), tuple(b), {held: one, "l4": 1.0}, *zeros)
+        for a, b, one in zip(phi, psi, known, strict=True)
     ]
     bars = Bars(*(np.concatenate(numbers) for numbers in zip(*map(through, tasks), strict=True)))
     for value, truth in ((bars.l1, l1), (bars.l2, l2), (bars.l3, l3)):
@@ -270,7 +271,7 @@ def test_more_pairs_of_a_four_bar_than_are_needed_find_it(count, zeros):
     for k in range(0, COUNT, 200):
         a = phi[k] + (0 if zeros[0] is None else phi0[k])
         b = psi[k] + (0 if zeros[1] is None else psi0[k])
-        found = through(Task(tuple(a), tuple(b), {"l4": 1.0}, *zeros))
+        found = through(AnglePairsTask(tuple(a), tuple(b), {"l4": 1.0}, *zeros))
         assert np.concatenate(found[:3]) == pytest.approx([one[k] for one in lengths], rel=1e-6)
 
 
@@ -309,13 +310,13 @@ def test_the_pairs_of_a_weaving_machine_are_met_better_than_by_least_squares_of_
     phi, psi = np.radians([[40, 45, 50, 55, 60], [70, 76, 83, 91, 100]])
     equation = signed_bars(np.append(of_zeros(phi[None], psi[None])[0], [0, 0]))
     assert float(equation.l1) == pytest.approx(0.980334, rel=1e-6)  # of Gauss's normal equations
-    found = through(Task(tuple(phi), tuple(psi), {"l4": 0.18})).at(0)
+    found = through(AnglePairsTask(tuple(phi), tuple(psi), {"l4": 0.18})).at(0)
     means = [np.degrees(np.sqrt(np.mean((outputs(one, phi, psi, -1.0) - psi) ** 2))) for one in (equation, found)]
     assert means == pytest.approx([0.0982, 0.0931], abs=1e-4)
 
 
 def test_two_pairs_alone_get_the_best_transmission():
-    task = Task((0.5, 1.4), (1.0, 1.6), {"l4": 1.0})
+    task = AnglePairsTask((0.5, 1.4), (1.0, 1.6), {"l4": 1.0})
     (least,) = quality(through(task), task).least
     for ratio in np.linspace(0.11, 9, 300):
         mark = quality(through(replace(task, lengths={"l1": ratio, "l4": 1.0})), task)

@@ -10,13 +10,13 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.mechanics.linkage import FRAME, Sketch
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.four_bar import FourBar, turning
-from tmm_cli.synthesis.four_bar_by_k.arcs import ARC, Found, Task, arcs, at, bound, places, widest
+from tmm_cli.synthesis.four_bar_by_k.arcs import ARC, Found, FourBarByKTask, arcs, at, bound, places, widest
 from tmm_cli.synthesis.four_bar_by_k.solver import choose
 from tmm_cli.synthesis.measures import k_of, measured
 from tmm_cli.synthesis.reading import build
@@ -50,7 +50,9 @@ def drawn(seed, way, count=1000, least=0.0):
     most = np.where(side > 0, np.pi / 2 - half, np.pi / 2 + half)
     theta = np.minimum(least + (0.9 * most - least) * a[2], 2.6)
     psi1 = 7 * a[3] - 3.5
-    task = Task(l3=0.02 * 100 ** a[4], psi1=psi1, psi2=psi1 + way * 2 * half, k=k_of(theta), support=a[5] - 0.5 + 0.3j)
+    task = FourBarByKTask(
+        l3=0.02 * 100 ** a[4], psi1=psi1, psi2=psi1 + way * 2 * half, k=k_of(theta), support=a[5] - 0.5 + 0.3j
+    )
     beta = widest(task, side) * (0.05 + 0.85 * a[6])
     w = np.where(theta > 0, np.sin(beta + theta / 2) / np.sin(np.maximum(theta, 1e-9) / 2), 1.1 + 10 * a[6])
     return task, w, side
@@ -74,7 +76,7 @@ def on_mechanism(task, found):
         }
         sketch = Sketch(float(np.angle(c - a)), {"C": complex(c)})
         variants.append(replace(first, links=first.links | links, sketch=sketch))
-    motion = prepare(variants, forces=False, own_places=True)
+    motion = prepare_batch(variants, forces=False, own_places=True)
     scan = np.tile(np.linspace(0, 2 * np.pi, 361)[:-1], (len(variants), 1))
     step, here = scan[0, 1], motion(scan)
     back = np.exp(-1j * middle)[:, None]
@@ -91,7 +93,7 @@ def on_mechanism(task, found):
     def extremes(values, speed):
         for pick in (np.argmax, np.argmin):
             q = np.take_along_axis(scan, pick(values, axis=1)[:, None], axis=1)
-            yield roots(lambda x: speed(motion(x)), q - step, q + step)
+            yield find_roots(lambda x: speed(motion(x)), q - step, q + step)
 
     last, first_end = extremes(rocker(here), lambda m: m["3.omega"])
     ends = [rocker(motion(q))[:, 0] + middle for q in (first_end, last)]
@@ -133,7 +135,7 @@ def test_what_hundreds_of_choices_ask_for_comes_back():
     task, w, side = drawn(4, 1, 300, least=0.05)
     family, chosen = at(task, w, side), []
     for n in range(300):
-        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         way = ("best", "l4", "near", "level", "xA", "yA")[n % 6]
         if way == "level":  # turned until the pivot of the family is as high as D
             turn = -float(np.angle(family.a[n] - task.support[n]))
@@ -161,7 +163,7 @@ def test_what_hundreds_of_choices_ask_for_comes_back():
 def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_positions_on_one_side():
     task, _, _ = drawn(5, 1, 50)
     for n in range(50):
-        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         c1, c2 = (one.support + one.l3 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
         for side in (-1, 1):
             beta = np.linspace(0, (np.pi - one.theta) / 2, 402)[1:-1]
@@ -181,7 +183,7 @@ def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_p
 def test_the_frame_grows_or_shrinks_all_along_an_arc_and_the_slope_is_that_of_the_pivot():
     task, _, _ = drawn(6, 1, 200, least=0.02)
     for n in range(200):
-        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
+        one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         for side in arcs(one):
             w = places(one, side)
             f = at(one, w, side)
@@ -193,7 +195,7 @@ def test_the_frame_grows_or_shrinks_all_along_an_arc_and_the_slope_is_that_of_th
 
 
 def test_the_pressure_angle_is_a_right_angle_at_the_ends_of_the_arcs():
-    one = Task(1.0, 0.3, 1.4, 1.25)
+    one = FourBarByKTask(1.0, 0.3, 1.4, 1.25)
     for side in arcs(one):
         assert float(at(one, bound(one, side), side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
         assert float(at(one, 1.0, side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
@@ -202,7 +204,7 @@ def test_the_pressure_angle_is_a_right_angle_at_the_ends_of_the_arcs():
 def test_the_best_transmission_of_goessner_to_his_printed_digits():
     # S. Goessner, crocker (crank-rocker design), Examples/optimal.js: d = 120, psi = 80 deg, k = 10/9 printed with
     # a = 46.7, b = 116, c = 73.9, least transmission angle 37.7 deg; any size of the rocker gives the same shape
-    f = choose(Task(1.0, 0.0, math.radians(80), 10 / 9))
+    f = choose(FourBarByKTask(1.0, 0.0, math.radians(80), 10 / 9))
     size = 120 / f.l4
     assert (round(f.l1 * size, 1), round(f.l2 * size), round(size, 1)) == (46.7, 116, 73.9)
     assert round(90 - math.degrees(f.pressure), 1) == 37.7
@@ -210,14 +212,14 @@ def test_the_best_transmission_of_goessner_to_his_printed_digits():
 
 def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
     # the same, Examples/simple.js: a = 60, d = 120 printed with b = 103, c = 94, least transmission angle 35 deg
-    one = Task(1.0, 0.0, math.radians(80), 10 / 9, sense=1)
+    one = FourBarByKTask(1.0, 0.0, math.radians(80), 10 / 9, sense=1)
     (side,) = arcs(one)
 
     def crank(x):
         f = at(one, x, side)
         return f.l1 / f.l4 - 0.5
 
-    w = roots(crank, np.array([1.001]), np.array([float(bound(one, side))]))
+    w = find_roots(crank, np.array([1.001]), np.array([float(bound(one, side))]))
     f = at(one, w, side)
     size = 120 / f.l4[0]
     assert (round(f.l2[0] * size), round(size)) == (103, 94)
@@ -362,7 +364,7 @@ def test_what_cannot_be_is_refused_with_the_reason_and_the_nearest_that_can(more
 
 def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_just_passes_it():
     # the pivots of this arc are from 2.2e-6 below D to 1.99 above it
-    one = Task(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
+    one = FourBarByKTask(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
     f = choose(one)
     assert abs(f.a.imag) < 1e-14 and f.pressure < np.radians(89)
     beta = widest(one, 1) * np.linspace(0, 1, 2_000_001)[1:-1]
@@ -374,7 +376,7 @@ def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_ju
 def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
     task, _, _ = drawn(9, 1, 50, least=0.02)
     for n in range(50):
-        one = Task(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
+        one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
         scan = [at(one, places(one, side), side).a.imag for side in arcs(one)]
         if any(np.any(np.diff(np.sign(offsets))) for offsets in scan):
             f = choose(one)
@@ -386,7 +388,7 @@ def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
 
 @pytest.mark.parametrize("way", ["best", "level", "near", "xA", "yA"])
 def test_a_support_that_is_far_away_takes_no_digits(way):
-    one = Task(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None, xA=1.5, yA=-0.5)
+    one = FourBarByKTask(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None, xA=1.5, yA=-0.5)
     here = choose(one)
     for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
         there = choose(
@@ -402,7 +404,7 @@ def test_a_support_that_is_far_away_takes_no_digits(way):
 
 
 def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
-    one = Task(0.2, math.radians(50), math.radians(105), 1.2)
+    one = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2)
     most = float(k_of(np.pi / 2 + one.swing / 2 - ARC))
     assert arcs(replace(one, k=most * (1 - 1e-6))) == [-1] and arcs(replace(one, k=most * (1 + 1e-9))) == []
     for side in arcs(one):
@@ -413,7 +415,7 @@ def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
 
 
 def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_arcs():
-    one = Task(0.2, math.radians(50), math.radians(105), 1.2)
+    one = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2)
     for name, value in (("l1", 0.088), ("l2", 0.25)):
         found = choose(replace(one, choose=name, **{name: value}))
         assert getattr(found, name) == pytest.approx(value, rel=1e-14)
@@ -422,7 +424,7 @@ def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_
 
 
 def test_a_wished_pressure_angle_is_met_by_the_smaller_of_all_mechanisms_that_have_it():
-    task = Task(0.2, math.radians(50), math.radians(105), 1.2, choose="pressure", pressure=math.radians(55))
+    task = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2, choose="pressure", pressure=math.radians(55))
     chosen = choose(task)
     assert chosen.pressure == pytest.approx(task.pressure, rel=1e-12)
     for side in arcs(task):

@@ -14,7 +14,7 @@ from tmm_cli import solve
 from tmm_cli.mechanics.numerics.roots import peak, zero
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.crank_slider import Task, find
+from tmm_cli.synthesis.crank_slider import CrankSliderTask, find
 from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.optimal.evolution import evolve
 from tmm_cli.synthesis.optimal.polish import DONE, Local, polish
@@ -60,7 +60,7 @@ def parameters(problem):
 @pytest.mark.parametrize("seed", ["", "  seed: 2\n"])
 def test_the_shortest_rod_that_keeps_a_pressure_angle_is_that_of_the_closed_formula(seed):
     problem = slider(ROD + seed)
-    known = find(Task(stroke=0.12, k=1.08, pressure=np.radians(32)))
+    known = find(CrankSliderTask(stroke=0.12, k=1.08, pressure=np.radians(32)))
     found = parameters(problem)
     assert [found["OA"], found["AB"], found["e"]] == pytest.approx([known.r, known.l, known.e], rel=1e-9)
 

@@ -26,7 +26,7 @@ from test_synthesis_four_bar_by_k import problem as by_k
 from test_synthesis_slotted_lever import lever, shaping
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.measures import measured
 from tmm_cli.synthesis.reading import build
@@ -167,7 +167,7 @@ def test_morgan_and_wampler_five_pairs_of_angles_give_the_printed_four_bar():
 
 def test_morgan_and_wampler_all_five_points_are_passed_by_the_linkage_of_three():
     problem = guided(f"positions: {poses(1, (1, 2, 3))}, A: [0, 0], D: [1 m, 0]")
-    places = prepare(problem.linkage, forces=False)(np.array(turns(1, range(5))[0]))["P.x"]
+    places = prepare_batch(problem.linkage, forces=False)(np.array(turns(1, range(5))[0]))["P.x"]
     assert np.max(np.abs(places - POINTS)) < 1e-12
 
 
@@ -237,7 +237,7 @@ def line(vary=(), synthesis=""):
 
 
 def test_the_best_four_bar_of_eca_passes_the_six_points():
-    places = prepare(line().linkage, forces=False)(np.array(CRANK) + BEST["t0"])["K.x"]
+    places = prepare_batch(line().linkage, forces=False)(np.array(CRANK) + BEST["t0"])["K.x"]
     assert np.max(np.abs(places * 1000 - (20 + 1j * np.arange(20, 50, 5)))) < 1e-10
 
 

@@ -10,9 +10,9 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.mechanics.linkage import FRAME, Sketch
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis import shaper, slotted_lever
@@ -64,7 +64,7 @@ def ends_of(motion, value, speed):
     here = value(motion(scan))
     for pick in (np.argmax, np.argmin):
         q = np.take_along_axis(scan, pick(here, axis=1)[:, None], axis=1)
-        yield roots(lambda x: speed(motion(x)), q - scan[0, 1], q + scan[0, 1])
+        yield find_roots(lambda x: speed(motion(x)), q - scan[0, 1], q + scan[0, 1])
 
 
 def lever_comes_back(found, k, side):
@@ -80,7 +80,7 @@ def lever_comes_back(found, k, side):
         turn = o - c
         sketch = Sketch(float(np.angle(turn)), {"B": complex(c + length * turn / abs(turn))})
         variants.append(replace(first, links=first.links | links, sketch=sketch))
-    motion = prepare(variants, forces=False, own_places=True)
+    motion = prepare_batch(variants, forces=False, own_places=True)
     c, axis = found.c[:, None], np.conj(found.o - found.c)[:, None]
 
     def angle(m):
@@ -148,7 +148,7 @@ def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
         slides = tuple(replace(s, through=complex(0, level)) if s.carrier == FRAME else s for s in first.slides)
         sketch = Sketch(math.pi / 2, {"D": complex(0, length - frame), "E": complex(rod, level)})
         variants.append(replace(first, links=first.links | links, slides=slides, sketch=sketch))
-    motion = prepare(variants, forces=False, own_places=True)
+    motion = prepare_batch(variants, forces=False, own_places=True)
     far, near = ends_of(motion, lambda m: m["E.x"].real, lambda m: m["E.v"].real)
     run = motion(far)["E.x"].real - motion(near)["E.x"].real
     assert run[:, 0] == pytest.approx(stroke, rel=MET, abs=0)

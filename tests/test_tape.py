@@ -15,7 +15,7 @@ from test_properties import CHAINS
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.batch.prepare import CHECKS, everything, prepare
+from tmm_cli.batch.prepare import CHECKS, everything, prepare_batch
 from tmm_cli.batch.tape import record
 from tmm_cli.batch.tape.program import CHUNK
 from tmm_cli.batch.tape.traced import DependsOnData
@@ -59,7 +59,7 @@ def plainly(batch, q):
 @settings(max_examples=12)
 def test_a_tape_plays_what_the_stages_do(seed, kinds):
     it = linkage(seed, kinds)
-    batch = prepare(it)
+    batch = prepare_batch(it)
     assert batch.program is not None
     q = it.sketch.at + np.linspace(-0.01, 0.01, 7)
     sound, alone = batch.sound(q), dict(replace(batch, program=None, checks=None)(q))
@@ -89,7 +89,7 @@ def test_variants_at_once_are_the_variants_one_by_one(seed, kinds):
         }
         return replace(it, links=links)
 
-    batch = prepare([it, other(), other()])
+    batch = prepare_batch([it, other(), other()])
     q = it.sketch.at + np.linspace(-0.002, 0.002, 4)
     found = batch(q)
     if np.all(batch.sound(q)["moving"]):
@@ -99,7 +99,7 @@ def test_variants_at_once_are_the_variants_one_by_one(seed, kinds):
 @pytest.mark.parametrize("name", ["crank-slider", "six-bar", "shaper", "crank-rocker", "engine-four", "sine"])
 @pytest.mark.parametrize("count", [1, 12, CHUNK, 2 * CHUNK + 5])
 def test_any_number_of_positions(name, count):
-    batch = prepare(linkage_of(name))
+    batch = prepare_batch(linkage_of(name))
     q = np.linspace(1, 6, count)
     found = batch(q)
     agree({n: found[n] for n in found}, plainly(batch, q))
@@ -112,12 +112,12 @@ def test_more_variants_than_positions_and_the_other_way_round():
         rod = it.links["2"]
         return replace(it, links=it.links | {"2": replace(rod, points={n: p * by for n, p in rod.points.items()})})
 
-    many = prepare([longer(1 + k / 1e5) for k in range(1500)])
-    few = prepare([longer(1 + k / 1e5) for k in range(3)])
+    many = prepare_batch([longer(1 + k / 1e5) for k in range(1500)])
+    few = prepare_batch([longer(1 + k / 1e5) for k in range(3)])
     for batch in (many, few):
         found = batch(Q)
         assert found["B.x"].shape == (len(batch.linkages), len(Q))
-        alone = prepare(batch.linkages[2])(Q)
+        alone = prepare_batch(batch.linkages[2])(Q)
         for name in alone:
             assert np.allclose(
                 found[name][2], alone[name], rtol=1e-12, atol=1e-12 * np.max(np.abs(alone[name])) + 1e-30
@@ -128,17 +128,17 @@ def test_places_of_their_own():
     it = linkage_of("shaper")
     other = replace(it, gravity=-1j)
     q = np.stack([Q, Q + 0.5])
-    found = prepare([it, other], own_places=True)(q)
+    found = prepare_batch([it, other], own_places=True)(q)
     for k, one in enumerate((it, other)):
-        alone = prepare(one)(q[k])
+        alone = prepare_batch(one)(q[k])
         assert np.allclose(found["R.A"][k], alone["R.A"], rtol=1e-12)
 
 
 def test_what_is_not_asked_is_not_computed():
     it = linkage_of("shaper")
-    one = prepare(it, lambda motion, _: {"x": motion.named_on("5", "E").x}, forces=False)
-    assert one.program.operations < prepare(it).program.operations / 8
-    assert np.allclose(one(Q)["x"], prepare(it)(Q)["E.x"])
+    one = prepare_batch(it, lambda motion, _: {"x": motion.named_on("5", "E").x}, forces=False)
+    assert one.program.operations < prepare_batch(it).program.operations / 8
+    assert np.allclose(one(Q)["x"], prepare_batch(it)(Q)["E.x"])
 
 
 def test_class_ii_problems_of_the_bank():
@@ -149,7 +149,7 @@ def test_class_ii_problems_of_the_bank():
             not isinstance(group.type, str) or group.drivers or len(group.links) > 2 for group in analyse(it).groups
         ):
             continue
-        batch = prepare(replace(it, loads=tuple(load for load in it.loads if load.table is None)))
+        batch = prepare_batch(replace(it, loads=tuple(load for load in it.loads if load.table is None)))
         if batch.program is None:
             continue
         taped += 1
@@ -195,6 +195,6 @@ def test_the_library_prepares_problem_files():
 
 def test_keys_name_what_they_are():
     it = linkage_of("crank-slider")
-    names = set(prepare(it)(Q))
+    names = set(prepare_batch(it)(Q))
     assert {"A.x", "B.v", "S2.a", "2.omega", "R.A", "M.x", "T.1"} <= names
     assert everything.__doc__ and "R.A" in everything.__doc__

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from models import CLASS_III, linkage_of
 from test_tape import agree, kind, largest_of_kinds, plainly
 
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.bench.methods import product as taped
 from tmm_cli.bench.methods.case import errors
 from tmm_cli.bench.references import reference
 from tmm_cli.mechanics.numerics.linear import Eliminated, Order
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 ROUND = np.linspace(0.123, 6.28, 90)
@@ -25,7 +25,7 @@ ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"
 
 @pytest.mark.parametrize("name", ["press-class-iii", "class-iv", "summing-lever", "triad-six-assemblies"])
 def test_groups_of_higher_class_close_all_round_in_one_step(name):
-    batch = prepare(linkage_of(name))
+    batch = prepare_batch(linkage_of(name))
     assert np.all(batch.closed(ROUND))
     found, plain = batch(ROUND), plainly(batch, ROUND)
     plain = {n: value for n, value in plain.items() if np.max(np.abs(value)) > 1e-12}  # of guides without a couple
@@ -36,7 +36,7 @@ def test_groups_of_higher_class_close_all_round_in_one_step(name):
     "name", ["sector-and-wheel", "planet-on-rocker", "rack-doubling", "three-lobes", "cardan-gear"]
 )
 def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
-    batch = prepare(linkage_of(name))
+    batch = prepare_batch(linkage_of(name))
     q = batch.linkages[0].sketch.at + 3 * ROUND - 8  # their angles go on beyond a turn
     assert batch.program is not None and np.all(batch.closed(q))
     found = batch(q)
@@ -51,12 +51,12 @@ def test_a_press_of_class_iii_is_right_to_the_last_digits():
 
 
 def test_margins_are_those_of_the_whole_jacobian():
-    batch = prepare(linkage_of("press-class-iii"))
+    batch = prepare_batch(linkage_of("press-class-iii"))
     assert np.allclose(batch.sound(ROUND)["margin"], replace(batch, checks=None).sound(ROUND)["margin"], rtol=1e-12)
 
 
 def test_the_rest_beside_and_beyond_the_ends_of_the_way_is_what_the_stages_say():
-    batch = prepare(build(read_text(ROCKED, "iii.yaml")).linkage)
+    batch = prepare_batch(build_problem(read_text(ROCKED, "iii.yaml")).linkage)
     low, high = batch.kernels[-1].trace.q[[0, -1]]
     q = np.sort([*np.linspace(low - 0.1, high + 0.1, 40), *(low + np.logspace(-12, -3, 10))])
     taped, alone = batch.closed(q), replace(batch, program=None, checks=None)
@@ -91,7 +91,7 @@ def varied(it, size, seed=3):
     [("press-class-iii", 0.05, 1e-13), ("class-iv", 0.05, 1e-13), ("planet-on-rocker", 0.1, 1e-12)],
 )
 def test_variants_are_followed_from_the_first_one_and_along_their_ways(name, size, tolerance):
-    batch = prepare(varied(linkage_of(name), size))
+    batch = prepare_batch(varied(linkage_of(name), size))
     q = ROUND[::9]
     assert np.all(batch.closed(q))
     found = batch(q)
@@ -102,8 +102,8 @@ def test_a_variant_that_does_not_go_so_far_is_solved_by_the_stages_where_it_ends
     it = linkage_of("press-class-iii")
     rod = it.links["7"]
     short = replace(it, links={**it.links, "7": replace(rod, points={n: 0.75 * p for n, p in rod.points.items()})})
-    batch, q = prepare([it, short]), ROUND[::9]
-    closed, sound, alone = batch.closed(q), batch.sound(q), prepare(short)
+    batch, q = prepare_batch([it, short]), ROUND[::9]
+    closed, sound, alone = batch.closed(q), batch.sound(q), prepare_batch(short)
     assert np.all(closed[0]) and not np.all(closed[1])
     assert np.array_equal(sound["placed"][1], alone.sound(q)["placed"]) and np.all(sound["placed"][0])
     agree({"S2.v": batch(q)["S2.v"][1]}, {"S2.v": alone(q)["S2.v"]}, 1e-13)
@@ -111,7 +111,7 @@ def test_a_variant_that_does_not_go_so_far_is_solved_by_the_stages_where_it_ends
 
 def test_a_group_that_no_tape_holds_is_solved_by_the_stages():
     for name in ("cam-lever", "crossed-slots"):  # the law of a cam; passive constraints
-        batch = prepare(linkage_of(name))
+        batch = prepare_batch(linkage_of(name))
         assert batch.program is None and batch(ROUND[:3])["T.1"].shape == (3,)
 
 

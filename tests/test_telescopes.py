@@ -13,7 +13,7 @@ from test_commands import ROOT
 from test_cylinders import SWINGING
 
 from tmm_cli import load, solve
-from tmm_cli.batch.prepare import everything, prepare
+from tmm_cli.batch.prepare import everything, prepare_batch
 from tmm_cli.batch.prepare import solved as stages
 from tmm_cli.batch.taped import OneByOne, Taped
 from tmm_cli.batch.variant import Places
@@ -108,7 +108,7 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
     heavier = replace(linkage, links={name: replace(link, mass=1.25 * link.mass) for name, link in links.items()})
     slide = replace(linkage.slides[-1], through=1.01 * linkage.slides[-1].through)
     longer = replace(linkage, slides=(*linkage.slides[:-1], slide))
-    batch = prepare([linkage, heavier, longer], everything)
+    batch = prepare_batch([linkage, heavier, longer], everything)
     assert batch.program is not None
     q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5)
     found = batch(q)
@@ -281,7 +281,7 @@ def test_a_batch_of_linkages_with_sketches_of_their_own_moves_each_from_its_own(
     make = digger().task.make
     linkages = [make([x]).linkage for x in (0.58, 0.62)]
     q = 1.1 + np.linspace(0, 0.02, 5)
-    found = prepare(linkages, everything)(q)
+    found = prepare_batch(linkages, everything)(q)
     for k, one in enumerate(linkages):
         structure = mobile(one)
         expected = stages(one, structure, assemble(one, structure), q, everything, True, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 TRAIN = """tmm: 1
@@ -31,5 +31,5 @@ sketch: {at: 0, A: [OA, 0], P: [OA + 10, 0]}
 )
 def test_a_planetary_train_driven_by_its_sun_repeats_after_turns_that_its_teeth_tell(teeth, turns):
     """Its carrier makes zs/(zs + zr) turns in one of the sun, its planet 1 - zr/zp times as many."""
-    driver_range = solve(build(read_text(TRAIN % teeth, "train.yaml"))).driver_range
+    driver_range = solve(build_problem(read_text(TRAIN % teeth, "train.yaml"))).driver_range
     assert (driver_range.turns, driver_range.repeats) == (turns, True)

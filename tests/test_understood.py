@@ -10,9 +10,9 @@ from bank import EVERY, problem
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.understood import doubts, understood
+from tmm_cli.reports.understood import doubts, summarise_file
 
 SHAPER = Path(__file__).parent.parent / "problems" / "shaper.yaml"
 TEXT = SHAPER.read_text(encoding="utf-8")
@@ -24,7 +24,7 @@ def told(*changes, say=doubts):
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return list(say(build(read_text(text, "shaper.yaml"))))
+    return list(say(build_problem(read_text(text, "shaper.yaml"))))
 
 
 def test_units_driver_sizes_and_gravity_are_said_before_the_tables():
@@ -58,8 +58,10 @@ def test_a_bank_is_checked_without_it():
 
 
 def test_a_driver_is_said_in_turns_and_its_sense():
-    assert told(("82 rpm", "70 rad/s"), say=understood)[1] == "driver: link 1, 70 rad/s = 668.5 rpm, counterclockwise"
-    assert told(("turns: ccw", "turns: cw"), say=understood)[1] == "driver: link 1, 8.587 rad/s = 82 rpm, clockwise"
+    assert (
+        told(("82 rpm", "70 rad/s"), say=summarise_file)[1] == "driver: link 1, 70 rad/s = 668.5 rpm, counterclockwise"
+    )
+    assert told(("turns: ccw", "turns: cw"), say=summarise_file)[1] == "driver: link 1, 8.587 rad/s = 82 rpm, clockwise"
 
 
 def test_a_file_without_slips_has_no_warning():
@@ -119,7 +121,7 @@ def test_a_parameter_may_be_set_beside_the_file():
     assert "shaper: in place of the file's: --set OA=120, --set n1 = 2 * 30 rpm\n" in done.stderr
     assert "shaper: driver: link 1, 6.283 rad/s = 60 rpm, counterclockwise\n" in done.stderr
     assert "sizes: from 120 mm (OA)" in done.stderr
-    twin = build(read_text(TEXT.replace("OA: 110", "OA: 120").replace("82 rpm", "60 rpm"), "shaper.yaml"))
+    twin = build_problem(read_text(TEXT.replace("OA: 110", "OA: 120").replace("82 rpm", "60 rpm"), "shaper.yaml"))
     (x,) = solve(twin, "kinematics", [0]).motion.named("E").x.real
     assert json.loads(done.stdout)["kinematics"]["points"]["E"]["x"]["x"] == pytest.approx([x], rel=1e-12)
 
@@ -197,14 +199,14 @@ def test_explain_keeps_the_table_of_places_for_those_who_ask():
 
 def test_units_are_said_before_a_search_begins():
     task = load(str(SHAPER.parent / "crank-rocker-optimal.yaml"))
-    assert next(iter(understood(task))).startswith("bare numbers: mm, deg")
+    assert next(iter(summarise_file(task))).startswith("bare numbers: mm, deg")
     assert "whole" not in vars(task)  # nothing was looked for
 
 
 def test_a_bare_speed_of_a_cylinder_is_warned_of_beside_millimetres():
     text = (SHAPER.parent / "cylinder.yaml").read_text(encoding="utf-8")
     text = text.replace("speed: v1", "speed: 40")
-    assert list(doubts(build(read_text(text, "cylinder.yaml")))) == [
+    assert list(doubts(build_problem(read_text(text, "cylinder.yaml")))) == [
         "the driver's speed has no unit and is taken as 40 m/s, though lengths are in mm: "
         "write `40 m/s`, or `40 mm/s` if that is meant"
     ]
@@ -231,17 +233,17 @@ dynamics:
 def of_law(mean="82 rpm", delta="1/25", synchronous="1500 rpm", rated="1430 rpm", ratio="17.4", file=TEXT):
     """Sentences about the shaper with a motor."""
     law = DYNAMICS.format(mean=mean, delta=delta, synchronous=synchronous, rated=rated, ratio=ratio)
-    return list(doubts(build(read_text(file + law, "shaper.yaml"))))
+    return list(doubts(build_problem(read_text(file + law, "shaper.yaml"))))
 
 
 def test_masses_loads_and_pressures_are_said_before_the_tables():
-    grams = told(("mass: 6 kg", "mass: 6 g"), say=understood)[2]
+    grams = told(("mass: 6 kg", "mass: 6 g"), say=summarise_file)[2]
     assert grams == (
         "sizes: from 110 mm (OA) to 650 mm (CD); masses from 0.006 kg (1) to 52 kg (5); forces 1500 N (F); "
         "gravity 9.81 m/s^2 downwards"
     )
     loads = "  gas: {on: 5, bore: 50, pressure: {angle: 0, against: share of stroke, table: [[0, 0], [1, 2.5]]}}\n  M: "
-    more = told(("loads:\n", f"loads:\n{loads}{{on: 3, moment: 7}}\n"), say=understood)[2]
+    more = told(("loads:\n", f"loads:\n{loads}{{on: 3, moment: 7}}\n"), say=summarise_file)[2]
     assert "; forces from 1500 N (F) to 4908.74 N (gas); moments 7 N*m (M); pressures 2.5 MPa (gas); " in more
 
 
@@ -272,19 +274,19 @@ def test_bare_speeds_of_the_law_of_motion_are_warned_of(changes, key):
 
 def test_a_bare_speed_of_a_linear_motor_and_of_a_run_is_warned_of():
     run = TEXT + "dynamics: {motor: {kind: linear, stall: 900, free: 20}, run: {from: 0, to: 90, speed: 5}}\n"
-    (free, start) = doubts(build(read_text(run, "shaper.yaml")))
+    (free, start) = doubts(build_problem(read_text(run, "shaper.yaml")))
     assert free.startswith("dynamics.motor.free has no unit and is taken as 20 rad/s = 191 rpm")
     assert start.startswith("dynamics.run.speed has no unit and is taken as 5 rad/s = 47.75 rpm")
 
 
 def test_bare_speeds_of_cylinders_and_of_their_runs_are_warned_of():
     boom = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("to: 980,", "to: 980, speed: 40,")
-    assert list(doubts(build(read_text(boom, "boom.yaml")))) == [
+    assert list(doubts(build_problem(read_text(boom, "boom.yaml")))) == [
         "dynamics.run.speed has no unit and is taken as 40 m/s, though lengths are in mm: write `40 m/s`, or `40 mm/s` "
         "if that is meant"
     ]
     digger = (SHAPER.parent / "excavator.yaml").read_text(encoding="utf-8").replace("speed: v2", "speed: 0.03")
-    (doubt,) = doubts(build(read_text(digger, "excavator.yaml")))
+    (doubt,) = doubts(build_problem(read_text(digger, "excavator.yaml")))
     assert doubt == (
         "driver[1].speed has no unit and is taken as 0.03 m/s, though lengths are in mm: write `0.03 m/s`, or `0.03 "
         "mm/s` if that is meant"
@@ -329,7 +331,7 @@ def test_pressures_in_bare_pascals_are_warned_of():
     ]
     assert told((load, gas.replace("8e5", "8e5 Pa").replace("4e5", "4 bar"))) == []
     text = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("4.6 MPa", "4.6e5")
-    (doubt,) = doubts(build(read_text(text, "boom.yaml")))
+    (doubt,) = doubts(build_problem(read_text(text, "boom.yaml")))
     assert doubt.startswith("dynamics.run.drive comes to 460000 MPa, more than 1000 MPa")
 
 
@@ -337,7 +339,7 @@ def test_keys_that_are_left_empty_are_no_slip():
     empty = ("at: [100, 30], force", "at: [100, 30], pressure: , force")
     law = "output: 5\ndynamics: {mean speed: , delta: , motor: , run: , flywheel: {inertia: 9}}"
     assert told(empty, ("output: 5", law)) == []
-    assert told(empty, say=understood)[2].endswith("forces 1500 N (F); gravity 9.81 m/s^2 downwards")
+    assert told(empty, say=summarise_file)[2].endswith("forces 1500 N (F); gravity 9.81 m/s^2 downwards")
 
 
 def test_an_inertia_far_too_small_for_its_link_is_warned_of():
@@ -409,12 +411,12 @@ def test_a_slider_that_is_described_by_two_links_is_warned_of():
         TWICE.replace("{on: y}", "{on: y, turned: 20}"),
         TWICE.replace("y: {through: [0, 0]}", "y: {through: [0, 0], angle: 180}"),
     ):
-        assert list(doubts(build(read_text(text, "x.yaml")))) == [ONE_SLIDER]
+        assert list(doubts(build_problem(read_text(text, "x.yaml")))) == [ONE_SLIDER]
     apart = TWICE.replace("4: {points: [B]", "4: {points: [C]").replace("[A, B], length: 150", "{A: 0, B: 0, C: 0}")
     apart = apart.replace("{A: 0, B: 0, C: 0}", "{A: [0, 0], B: [150, 0], C: [75, 40]}")
-    assert not list(doubts(build(read_text(apart, "x.yaml"))))
+    assert not list(doubts(build_problem(read_text(apart, "x.yaml"))))
 
 
 def test_stones_of_one_hinge_in_slots_that_cross_are_no_slider_described_twice():
     text = TWICE.replace("y: {through: [0, 0]}", "y: {through: [100, 0], angle: 90}")
-    assert not list(doubts(build(read_text(text, "x.yaml"))))
+    assert not list(doubts(build_problem(read_text(text, "x.yaml"))))

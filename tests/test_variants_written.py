@@ -11,7 +11,7 @@ from test_drawn_variants import ASKED, task
 
 from tmm_cli import load, solve
 from tmm_cli.grading import draw_variants
-from tmm_cli.grading.answer_key import answer_key, idle_questions
+from tmm_cli.grading.answer_key import compute_answer_key, idle_questions
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.tables import read_students, read_table
@@ -92,7 +92,7 @@ def test_the_key_has_every_answer_of_every_student(written):
 
 def test_what_can_tell_nothing_is_said():
     own = task("\ngrading: {answers: [{of: v of E, at: [0, 3]}]}\n")
-    lines = list(answer_key(own, VariantTable(("OA",), {"Ana": ("110",), "Iva": ("115",)})))
+    lines = list(compute_answer_key(own, VariantTable(("OA",), {"Ana": ("110",), "Iva": ("115",)})))
     assert list(idle_questions(lines)) == ["v of E at 0: tells nothing: zero passes, for 2 of 2"]
 
 

@@ -17,7 +17,7 @@ from multibody import Multibody
 from tmm_cli import solve
 from tmm_cli.bench.methods.case import Case
 from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 
 NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
@@ -45,7 +45,7 @@ def text(value):
 def solved(name, q=None):
     """The results of a problem of the bank at places q of its driver, else over a cycle, and the problem's text."""
     source = (BANK / f"{name}.yaml").read_text(encoding="utf-8")
-    results = solve(build(read_text(source, f"{name}.yaml")), "kinematics")
+    results = solve(build_problem(read_text(source, f"{name}.yaml")), "kinematics")
     if q is None:
         q = results.start + results.linkage.driver.sense * 2 * np.pi * (np.arange(COUNT) + OFF) / COUNT
     return results, at_positions(results, q), source

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark
-from tmm_cli.drawing.paper.sheet import DARK, Sheet
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.actuators import SPRING_OF, cylinders
 from tmm_cli.drawing.symbols.forms import Form
 from tmm_cli.drawing.symbols.parts import MOVING, mass_centre
-from tmm_cli.drawing.symbols.render import BOX, render
+from tmm_cli.drawing.symbols.render import BOX, render_scene
 from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
 from tmm_cli.mechanics.kinematics.motion import Motion
 from tmm_cli.mechanics.linkage import FRAME
@@ -74,7 +75,7 @@ class Picture:
     def of(cls, sheet: Sheet, motion: Motion, scene: Scene) -> Picture:
         """A scene in its first frame, drawn on a sheet; what belongs to no body, as the touch of two wheels, is not."""
         linkage, pairs = scene.linkage, scene.structure.pairs
-        drawn = render(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK))
+        drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK))
         picture = cls(sheet, motion, scene, {}, drawn.forms)
         picture._masses()
         parts, alike = {name for name, __ in sheet.parts}, np.ones(motion.q.shape)

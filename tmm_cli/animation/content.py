@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture, labels, pair
-from tmm_cli.drawing.paper.picture import reach
+from tmm_cli.drawing.paper.picture import mark_corners
 from tmm_cli.drawing.paper.sheet import COLOURS, THIN, Sheet, with_unit
 from tmm_cli.drawing.sheets.motion_plans import Sort, sorts
 from tmm_cli.drawing.sheets.over_cycle import Quantities, balances, output
@@ -179,7 +179,7 @@ def picture_of(whole: Results, motion: Motion) -> Picture:
 
 def view(picture: Picture) -> tuple[float, float, float, float]:
     """What of the sheet is ever drawn on: left, top (y down), width and height, mm."""
-    local = [(own, np.array([z for mark in own.marks for z in reach(mark)])) for own in picture.bodies.values()]
+    local = [(own, np.array([z for mark in own.marks for z in mark_corners(mark)])) for own in picture.bodies.values()]
     times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
     return sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
 

@@ -24,7 +24,7 @@ FEWEST = 36  # frames a turn
 TEXT = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})  # nothing in JSON ends a script
 
 
-def page(results: Results) -> str:
+def animation_page(results: Results) -> str:
     """The page of a mechanism, with fewer frames where it would be larger than it may be. Raises ProblemError."""
     count = FRAMES
     made = _page(results, count)

@@ -51,7 +51,7 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
     return replace(tree, data={**tree.data, "variants": ranges}, given={**tree.given, **given}) if given else tree
 
 
-def choices(task: Task) -> tuple[Choice, ...]:
+def read_choices(task: Task) -> tuple[Choice, ...]:
     """What the block `variants` frees. Raises ProblemError."""
     try:
         return _choices(task, task.blocks)
@@ -112,6 +112,6 @@ def _steps(
     return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 
 
-def numbers(task: Task, choice: Choice) -> Real:
+def choice_values(task: Task, choice: Choice) -> Real:
     """The values of a choice: in SI, bare where it has no dimension."""
     return np.array([task.number(task.value(text), choice.dimension) for text in choice.texts])

@@ -25,7 +25,7 @@ from tmm_cli.mechanics.groups.unrolled import Unrolled
 from tmm_cli.mechanics.kinematics.driver_range import cycle_of
 from tmm_cli.mechanics.kinematics.strokes import Curve, OutputCurve, Stroke, Strokes, moving_slope, resisted, runs_of
 from tmm_cli.mechanics.linkage import Linkage, Request
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
 from tmm_cli.mechanics.numerics.vectors import Real, mapped, unit
 from tmm_cli.mechanics.structure.assur import Structure
@@ -239,7 +239,7 @@ def _strokes(
     turns_back = np.where(sound[:, None], turns_back, turns_back[np.argmax(sound)])
     at = np.nonzero(turns_back)[1].reshape(count, 2)
     rows = np.arange(count)[:, None]
-    ends = roots(curve.slope, q[rows, at], q[rows, at + 1])
+    ends = find_roots(curve.slope, q[rows, at], q[rows, at + 1])
     return named_strokes(linkage, curve, ends, resisted(linkage, link)), sound
 
 

@@ -140,7 +140,7 @@ class Batch:
         return {name: np.stack([one[name] for one in found]) for name in found[0]}
 
 
-def prepare(
+def prepare_batch(
     linkages: Sequence[Linkage] | Linkage,
     wanted: Wanted = everything,
     *,

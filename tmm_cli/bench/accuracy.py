@@ -13,8 +13,8 @@ import numpy as np
 
 from tmm_cli.bench.measured import Measured, cell, slack, times, words
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable, errors
-from tmm_cli.bench.methods.registry import FEWER, METHODS, OURS, TAPED
-from tmm_cli.bench.references import NAMES, reference
+from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS, TAPED
+from tmm_cli.bench.references import REFERENCE_NAMES, reference
 from tmm_cli.bench.rivals import installed
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.reports.table import Table
@@ -65,7 +65,7 @@ class Accuracy(Measured):
         return tuple(
             f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
             for row in self.rows
-            if row.method in (OURS.name, TAPED.name)
+            if row.method in (CLOSED_FORM.name, TAPED.name)
             for quantity in QUANTITIES
             if not row.errors[quantity] <= slack(self.reduced) * TARGETS[quantity]
         )
@@ -126,8 +126,8 @@ def places(case: Case, count: int) -> Real:
     return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
 
-def measure(
-    linkages: Sequence[str] = NAMES,
+def measure_accuracy(
+    linkages: Sequence[str] = REFERENCE_NAMES,
     *,
     reduced: bool = False,
     methods: Iterable[Method] | None = None,

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import Batch, everything, prepare
+from tmm_cli.batch.prepare import Batch, everything, prepare_batch
 from tmm_cli.bench.references import reference
 from tmm_cli.mechanics.forces.plan import Reactions
 from tmm_cli.mechanics.kinematics.motion import Motion
@@ -298,7 +298,7 @@ class Mechanism:
             found = everything(motion, reactions)
             return {name: found[name] for name in self.names}
 
-        return prepare(linkages, asked)
+        return prepare_batch(linkages, asked)
 
     def by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
         """The code by hand with its arguments: numbers, or (variants, 1)."""

@@ -30,7 +30,7 @@ FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
 LINED = ("newton", "differences")  # methods that differ in one setting
 
 
-def charts(accuracy: Accuracy) -> dict[str, Figure]:
+def accuracy_charts(accuracy: Accuracy) -> dict[str, Figure]:
     """One a linkage, by the names of their files."""
     return {f"accuracy-{name}.png": chart(accuracy, name) for name in accuracy.linkages}
 

@@ -11,7 +11,7 @@ from tmm_cli.bench.savings import COUNTED, NAMED, Savings
 SHARE = 0.75  # of the height of a landscape sheet
 
 
-def charts(measured: Savings) -> dict[str, Figure]:
+def savings_charts(measured: Savings) -> dict[str, Figure]:
     """By the names of their files."""
     return {"savings.png": chart(measured)}
 

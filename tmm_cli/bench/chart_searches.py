@@ -9,15 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 
 from tmm_cli.bench.chart_axes import BLUE, DARK, GREEN, ORANGE, RED, bare, page
-from tmm_cli.bench.searches import NAMES, NEAR, SEARCHED, Searches
+from tmm_cli.bench.searches import NEAR, SEARCH_NAMES, SEARCHED, Searches
 
-COLOURS = dict(zip(NAMES, (RED, BLUE, GREEN, ORANGE), strict=True))
-MARKS = dict(zip(NAMES, "osD^", strict=True))
+COLOURS = dict(zip(SEARCH_NAMES, (RED, BLUE, GREEN, ORANGE), strict=True))
+MARKS = dict(zip(SEARCH_NAMES, "osD^", strict=True))
 FLOOR = 1e-7  # %: what is nearer is drawn there
 SHARE = 0.62  # of the height of a landscape sheet
 
 
-def charts(measured: Searches) -> dict[str, Figure]:
+def search_charts(measured: Searches) -> dict[str, Figure]:
     """By the names of their files."""
     return {"synthesis.png": chart(measured)}
 
@@ -37,7 +37,7 @@ def chart(measured: Searches) -> Figure:
 
 
 def _rates(axes: Any, measured: Searches) -> None:
-    for name in NAMES:
+    for name in SEARCH_NAMES:
         rates = [r for r in measured.rates if r.problem == name]
         label = f"{name}: {rates[0].parameters} lengths, {rates[0].constraints} constraints"
         axes.plot(
@@ -63,7 +63,7 @@ def _rates(axes: Any, measured: Searches) -> None:
 
 
 def _found(axes: Any, measured: Searches) -> None:
-    colour = COLOURS[NAMES[0]]
+    colour = COLOURS[SEARCH_NAMES[0]]
     last = max(f.evaluations for f in measured.found) / 1e3
     for n, f in enumerate(f for f in measured.found if f.history):
         x, off = np.array([at for at, __ in f.history]) / 1e3, 100 * np.array([off for __, off in f.history])

@@ -13,7 +13,7 @@ from tmm_cli.bench.speed import GROWING, Growth, Speed
 COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
 
-def charts(speed: Speed) -> dict[str, Figure]:
+def speed_charts(speed: Speed) -> dict[str, Figure]:
     """By the names of their files."""
     return {"speed.png": chart(speed)}
 

@@ -12,12 +12,12 @@ from matplotlib.patches import Patch
 
 from tmm_cli.bench.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
 from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.bench.stability import OURS, Row, Stability
+from tmm_cli.bench.stability import PRODUCT, Row, Stability
 
 PANELS = 5  # on a sheet; the sixth place is the key's
 LOW, HIGH = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
 METHODS: dict[str, tuple[str, dict[str, Any]]] = {
-    OURS: ("tmm, with its bound", {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
+    PRODUCT: ("tmm, with its bound", {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
     "closed": ("groups (tmm) in float64 alone", {"marker": ".", "ms": 4, "color": "#e58a83", "lw": 1.0}),
     "newton-2": ("Newton on loop closure, 1e-2", {"marker": "^", "color": "#8fb4e8"}),
     "newton-6": ("Newton on loop closure, 1e-6", {"marker": "v", "color": "#4a7fd0"}),
@@ -43,7 +43,7 @@ DISTANCES = {
 }
 
 
-def charts(stability: Stability) -> dict[str, Figure]:
+def stability_charts(stability: Stability) -> dict[str, Figure]:
     """Sheets of A4 with five families each, by the names of their files."""
     families = stability.families
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
@@ -90,7 +90,7 @@ def _errors(axes: Any, stability: Stability, family: str, shown: list[str], labe
         if not rows:
             continue
         axes.plot(range(len(rows)), np.clip([row.error for row in rows], LOW, HIGH), **_style(method))
-        if method == OURS:
+        if method == PRODUCT:
             bound = np.clip([row.bound for row in rows], LOW, HIGH)
             axes.plot(range(len(rows)), bound, color=RED, lw=1.2, ls=":", zorder=8)
         axes.set_xlim(-0.5, len(rows) - 0.5)

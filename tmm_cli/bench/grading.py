@@ -22,7 +22,7 @@ import tmm_cli
 from tmm_cli.batch.family import Family, families
 from tmm_cli.batch.task import Task, read_task
 from tmm_cli.bench.measured import CLOCK, Measured, slack, words
-from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.draw_variants import CHUNK, Variety
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.mistakes.base import Mistake
@@ -41,7 +41,7 @@ BOUNDS = {"OA": (90.0, 110.0, "mm"), "AB": (340.0, 360.0, "mm"), "n1": (80.0, 11
 
 
 @cache
-def text() -> str:
+def grading_task_text() -> str:
     """The task's file."""
     return (files("tmm_cli.bench") / "data" / "grading" / "six-bar.yaml").read_text(encoding="utf-8")
 
@@ -115,7 +115,7 @@ class Group:
 
 def group(count: int, seed: int = 1) -> Group:
     """So many students."""
-    task = read_task(read_text(text(), "six-bar.yaml"))
+    task = read_task(read_text(grading_task_text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
     rows = {str(n): row for n, row in enumerate(zip(*columns, strict=True))}
@@ -139,7 +139,7 @@ def write(group: Group, sheets: Vector, folder: Path, first: int = 0) -> None:
     first: students who are there already.
     """
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
-    (folder / "task.yaml").write_text(text(), encoding="utf-8")
+    (folder / "task.yaml").write_text(grading_task_text(), encoding="utf-8")
     names = [f"student-{first + n + 1}" for n in range(len(sheets))]
     rows = [[name, *row] for name, row in zip(names, group.table.rows.values(), strict=True)]
     with (folder / "variants.csv").open("a", encoding="utf-8", newline="") as stream:
@@ -231,7 +231,9 @@ class Grades(Measured):
         return (words("grading", title, ("figure", "of", "found", "target"), rows),)
 
 
-def measure(*, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None) -> Grades:
+def measure_grading(
+    *, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None
+) -> Grades:
     """All figures; full: of 100 000 students too."""
     sheets = REDUCED_SHEETS if reduced else SHEETS
     figures: list[Figure] = []
@@ -253,7 +255,7 @@ def diagnosed(group: Group, count: int) -> Iterator[Figure]:
     made = [group.mistakes(n, count) for n in students]
     value = group.sheets(made)
     written = Written(value, np.zeros(value.shape, dtype=bool))
-    claims = diagnose(group.family, group.right, written)
+    claims = diagnose_students(group.family, group.right, written)
     rightly = wrongly = beside = 0
     for n in students:
         own = {type(group.cases[c]) for c in made[n]}
@@ -296,7 +298,7 @@ def followed(group: Group) -> Figure:
         drawn[rows[:, None], same] = later[:, same]
         drawn[rows, k], source[rows] = own, k
     written = Written(drawn, np.zeros(drawn.shape, dtype=bool))
-    follows = following(group.family, right, written, diagnose(group.family, right, written))
+    follows = following(group.family, right, written, diagnose_students(group.family, right, written))
     wrong = right.error(written) > right.allowed
     alone = sum(
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}

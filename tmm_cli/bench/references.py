@@ -16,12 +16,12 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared
 from tmm_cli.bench.scenes import BY_NAME, Family, Numbers, Scene
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import Tree
 from tmm_cli.problem.reader import read_text
 from tmm_cli.synthesis.solving import solve
 
-NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
+REFERENCE_NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def tree_of(name: str) -> Tree:
 def reference(name: str) -> Reference:
     """A reference by its name."""
     content = _content(name)
-    results = solve(build(tree_of(name)), "kinematics")
+    results = solve(build_problem(tree_of(name)), "kinematics")
     x, v, a, forces = (
         {point: exact(values) for point, values in content[key].items()}
         for key in ("positions", "velocities", "accelerations", "reactions")
@@ -114,7 +114,7 @@ def seeds(family: str) -> tuple[Seed, ...]:
     )
 
 
-def known(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Known]:
+def known_scenes(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Known]:
     """All scenes of a family, or of its first so many seeds; every second distance and so on, the last one always."""
     of = BY_NAME[family]
     for number, seed in enumerate(seeds(family)[:chosen]):

@@ -19,7 +19,7 @@ from tmm_cli.mechanics.kinematics.motion import move
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.record import Problem
 from tmm_cli.problem.templates import template_text
@@ -120,9 +120,9 @@ class Savings(Measured):
         )
 
 
-def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:
+def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:
     """Every saving, on the problem that `tmm new` writes."""
-    problem = build(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
+    problem = build_problem(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
     found = []
     for saving in savings(problem, reduced):
         progress(saving.name)

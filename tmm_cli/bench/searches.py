@@ -189,7 +189,7 @@ PROBLEMS: Final = (
 
 
 SEARCHED = "crank-rocker"  # whose search is measured
-NAMES = (SEARCHED, "six-bar", "shaper", "press-class-iii")
+SEARCH_NAMES = (SEARCHED, "six-bar", "shaper", "press-class-iii")
 GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itself
 PER_SECOND = {SEARCHED: 100_000.0, "press-class-iii": 20_000.0}  # candidates, at the size that the search uses
 NEAR = 1e-3  # of the best known
@@ -343,13 +343,13 @@ class Searches(Measured):
 
 
 @cache
-def text(name: str) -> str:
+def search_problem_text(name: str) -> str:
     """A problem file that ships with the package."""
     return (files("tmm_cli.bench") / "data" / "synthesis" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 @cache
-def known() -> dict[str, Any]:
+def best_known() -> dict[str, Any]:
     """The best known of SEARCHED and the long runs that found it (tests/write_synthesis_best.py writes them)."""
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
     found: dict[str, Any] = json.loads(source)
@@ -358,17 +358,17 @@ def known() -> dict[str, Any]:
 
 def prepared(name: str) -> Candidates:
     """The task of a problem by its name, ready for evaluation."""
-    return Candidates(task_of(read_text(text(name), f"{name}.yaml")))
+    return Candidates(task_of(read_text(search_problem_text(name), f"{name}.yaml")))
 
 
-def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
+def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
     """Speed of evaluation on every problem, then the search from several seeds on one."""
     rates: list[SearchRate] = []
-    for name in NAMES:
+    for name in SEARCH_NAMES:
         progress(name)
         rates += rate(name, reduced)
     search = prepared(SEARCHED)
-    reference = known()
+    reference = best_known()
     found = []
     for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
         progress(f"{SEARCHED}, seed {seed}")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import Batch, prepare
+from tmm_cli.batch.prepare import Batch, prepare_batch
 from tmm_cli.bench import speed_of_iterated, speed_of_sweeps
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
@@ -179,7 +179,7 @@ class Speed(Measured):
         return (*found, rivals) if self.rivals else found
 
 
-def measure(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
+def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
     """All in one process, by turns, so that what disturbs the machine disturbs all alike."""
     races: list[Race] = []
     for mechanism in MECHANISMS:
@@ -234,11 +234,11 @@ def growth(what: str, reduced: bool) -> Growth:
     runs: dict[str, Callable[[], Any]] = {}
     for number in numbers:
         if what == "links":
-            runs[str(number)] = _ready(prepare(chain(number), _balancing), OF_LINKS)
+            runs[str(number)] = _ready(prepare_batch(chain(number), _balancing), OF_LINKS)
         elif what == "positions":
-            runs[str(number)] = _ready(prepare(six_bar.linkage(), _balancing), number)
+            runs[str(number)] = _ready(prepare_batch(six_bar.linkage(), _balancing), number)
         else:
-            runs[str(number)] = _ready(prepare(six_bar.variants(number), _balancing), OF_VARIANTS)
+            runs[str(number)] = _ready(prepare_batch(six_bar.variants(number), _balancing), OF_VARIANTS)
     size = tuple(2 * n + 1 if what == "links" else n for n in numbers)
 
     def found(least: dict[str, float]) -> Growth:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import prepare
+from tmm_cli.batch.prepare import prepare_batch
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import reference
 from tmm_cli.mechanics.linkage import Linkage
@@ -55,7 +55,7 @@ class Iterated:
 
 def against_six_bar(name: str, reduced: bool) -> list[Iterated]:
     """Times of a linkage round its cycle, with all that `everything` holds."""
-    batch, six_bar = prepare(_linkage(name)), prepare(_linkage("six-bar"))
+    batch, six_bar = prepare_batch(_linkage(name)), prepare_batch(_linkage("six-bar"))
     found = []
     for positions in POSITIONS:
         q, few = (batch.linkages[0].sketch.at + 2 * np.pi * np.arange(n) / n for n in (positions, OF_SIX_BAR))

@@ -11,7 +11,7 @@ from tmm_cli.batch.task import Task
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import tree_of
 from tmm_cli.reports.table import Table
-from tmm_cli.sweep.grid import grid, read_axes
+from tmm_cli.sweep.grid import grid_points, read_axes
 from tmm_cli.sweep.mechanisms import Mechanisms
 
 SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
@@ -53,7 +53,7 @@ def sweeping(name: str, reduced: bool) -> Sweeping:
     mechanisms = Mechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SHOWN)
     assert mechanisms.turning is not None
     preparing = 1e3 * (perf_counter() - start)
-    points = grid(mechanisms.axes)
+    points = grid_points(mechanisms.axes)
 
     def found(least: dict[str, float]) -> Sweeping:
         positions = mechanisms.task.problem.request.count

@@ -18,7 +18,7 @@ from tmm_cli.bench.measured import Measured, words
 from tmm_cli.bench.methods import textbook
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
 from tmm_cli.bench.methods.registry import METHODS
-from tmm_cli.bench.references import Known, known
+from tmm_cli.bench.references import Known, known_scenes
 from tmm_cli.bench.scenes import BY_NAME
 from tmm_cli.mechanics.accuracy.digits import bare, bounds
 from tmm_cli.mechanics.errors import LinkageError
@@ -26,7 +26,7 @@ from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.reports.table import Table
 
-OURS = "tmm"
+PRODUCT = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
 FIVE = 0.05  # what the drawing board states
 WIDE, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
@@ -119,7 +119,7 @@ class Stability(Measured):
         lies = [
             f"{row.family}: {row.wrong} of {row.scenes} outside their bounds at {row.distance:g}"
             for row in self.rows
-            if row.method == OURS and row.wrong
+            if row.method == PRODUCT and row.wrong
         ]
         if self.widths and not self.sharp >= TARGET:
             lies.append(f"{self.sharp:.1%} of the bounds are within {WIDE:g} times the true error, target {TARGET:.0%}")
@@ -164,7 +164,7 @@ def _plain(value: float) -> float | None:
     return None if np.isnan(value) else float(f"{min(value, 1e300):.3g}")
 
 
-def measure(
+def measure_stability(
     families: Sequence[str] = tuple(BY_NAME),
     *,
     reduced: bool = False,
@@ -182,7 +182,7 @@ def measure(
         progress(family)
         some = (SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED) if reduced else (None, 1)
         shots: dict[tuple[str, float], list[Shot]] = {}
-        for at, case, solvers in _prepared(known(family, *some), chosen, absent):
+        for at, case, solvers in _prepared(known_scenes(family, *some), chosen, absent):
             mine = (ours(case, at),) if own else ()
             for shot in (*mine, *(judged(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
@@ -283,11 +283,11 @@ def ours(case: Case, at: Known) -> Shot:
             widest = max(widest, bound / at.largest[quantity])
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
     if not within:
-        return Shot(OURS, "wrong", errors, "", widest, tuple(widths))
+        return Shot(PRODUCT, "wrong", errors, "", widest, tuple(widths))
     if not given:
-        return Shot(OURS, "said", errors, "nan", widest or float("nan"), tuple(widths))
+        return Shot(PRODUCT, "said", errors, "nan", widest or float("nan"), tuple(widths))
     far = max(errors.values()) > WRONG  # the bound says it
-    return Shot(OURS, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
+    return Shot(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 
 
 def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:

@@ -8,13 +8,13 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.animation.page import page
+from tmm_cli.animation.page import animation_page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.language import _
 from tmm_cli.reports.files import folder_name, refuse_place, write_whole
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 
 def animate(
@@ -36,7 +36,7 @@ def animate(
         problem = opened(file, variant_settings(file, variants, variant, settings))
         results = solve(problem)
         target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
-        write_whole(target, page(results).encode())
-        for warning in warnings(results):
+        write_whole(target, animation_page(results).encode())
+        for warning in collect_warnings(results):
             warn(warning)
         say(_("written: {folder}").format(folder=printable(target)))

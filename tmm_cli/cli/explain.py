@@ -10,7 +10,7 @@ from tmm_cli.cli.common import Files, Settings, console, each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import OK
 from tmm_cli.language import typeset
-from tmm_cli.reports.explain import explain as tables
+from tmm_cli.reports.explain import explain_tables as tables
 from tmm_cli.reports.explain import in_words
 from tmm_cli.reports.terminal import show
 from tmm_cli.synthesis.solving import solve

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from tmm_cli.animation.gallery.card import Card, card
-from tmm_cli.animation.gallery.page import page
+from tmm_cli.animation.gallery.page import gallery_page
 from tmm_cli.cli.common import problems_in, refusing
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say
@@ -39,7 +39,7 @@ def gallery(
         raise typer.Exit(BAD_INPUT)
     with refusing():
         target = out / "index.html"
-        write_whole(target, page(cards).encode())
+        write_whole(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
     if len(cards) < len(made):
         say(_("left out: {count}").format(count=len(made) - len(cards)))

@@ -22,7 +22,7 @@ from tmm_cli.grading.exports import EXPORTS
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import StudentMarks, Submission
 from tmm_cli.grading.run import graded, written
-from tmm_cli.grading.statistics import tables
+from tmm_cli.grading.statistics import statistics_tables
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.submissions.template import write_template
 from tmm_cli.grading.tables import read_table
@@ -114,7 +114,7 @@ def _graded(
         say(told.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
     written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
-    for found in tables(task, marks):
+    for found in statistics_tables(task, marks):
         show(found, task.units, console())
     return _verdict(handed, marks, out)
 

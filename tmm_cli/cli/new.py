@@ -11,7 +11,7 @@ from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _, language
 from tmm_cli.problem.errors import ProblemError, nearest
-from tmm_cli.problem.templates import template_text, templates
+from tmm_cli.problem.templates import list_templates, template_text
 
 
 def new(
@@ -21,7 +21,7 @@ def new(
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
-    known = templates(language())
+    known = list_templates(language())
     if template is None:
         for name, title in known.items():
             typer.echo(f"{name:15} {title}")

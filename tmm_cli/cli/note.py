@@ -16,7 +16,7 @@ from tmm_cli.language import _
 from tmm_cli.note.formats import FORMATS, formats_of
 from tmm_cli.note.register import note as note_of
 from tmm_cli.reports.files import folder_name, write_whole
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 
 def note(
@@ -36,7 +36,7 @@ def note(
         results = solve(problem)
         for remark in remarks(results):
             say(remark)
-        for warning in warnings(results):
+        for warning in collect_warnings(results):
             warn(warning)
         written = note_of(results)
         for name in wanted:

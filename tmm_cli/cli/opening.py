@@ -10,7 +10,7 @@ from tmm_cli.problem.build import problem_of, refuse_options
 from tmm_cli.problem.errors import ProblemError, Tree
 from tmm_cli.problem.reader import decoded, file_bytes, language_in, read_text, with_settings
 from tmm_cli.problem.record import Problem, TaskProblem
-from tmm_cli.reports.understood import bare_units, doubts, understood
+from tmm_cli.reports.understood import bare_units, doubts, summarise_file
 
 
 def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
@@ -91,7 +91,7 @@ def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {bare_units(problem.units)}")
         return
-    for sentence in understood(problem):
+    for sentence in summarise_file(problem):
         say(f"{problem.name}: {sentence}")
     for doubt in doubts(problem.whole):
         warn(f"{problem.name}: {doubt}")

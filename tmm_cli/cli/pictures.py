@@ -26,8 +26,8 @@ def _sheets(made: Callable[..., Drawn], *given: Any) -> Pictures:
 PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names
     "whole": _whole,
     "hodographs": partial(_sheets, hodographs.reactions),
-    "centres": partial(_sheets, centres.sheets),
+    "centres": partial(_sheets, centres.draw_centres),
     "assemblies": partial(_sheets, assemblies.sheets),
-    "synthesis": partial(_sheets, synthesis.sheets),
+    "synthesis": partial(_sheets, synthesis.draw_synthesis),
     "group-table": partial(_sheets, group_table.sheets),
 }

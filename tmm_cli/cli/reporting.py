@@ -15,14 +15,14 @@ from tmm_cli.mechanics.structure.spatial import ChainResults
 from tmm_cli.problem.blocks.chain import build_chain
 from tmm_cli.problem.build import is_chain, problem_of
 from tmm_cli.reports.digits import AccuracyReport, accuracy, beside
-from tmm_cli.reports.files import Staged, Written, folder_name, listed, write_results
+from tmm_cli.reports.files import Staged, WrittenFolder, folder_name, listed, write_results
 from tmm_cli.reports.properties import properties_shown
 from tmm_cli.reports.register import walk
 from tmm_cli.reports.result_json import sections
 from tmm_cli.reports.spreadsheets import Kind
 from tmm_cli.reports.table import Table, json_text
 from tmm_cli.reports.terminal import show as print_table
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 from tmm_cli.synthesis.measures import measured_on
 from tmm_cli.synthesis.solving import count, redrive, solve, structure_of
 
@@ -91,7 +91,7 @@ def report(
         show(results, names, found)
     if out is not None:
         say_written(write_results(results, out, digits=found, people=people))
-    for warning in warnings(results):
+    for warning in collect_warnings(results):
         warn(warning)
     return checked(results)
 
@@ -129,7 +129,7 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
         with Staged(own if taken else usual) as staged:
             for name, content in pictures.items():
                 staged.write(name, (content,))
-        say_written(Written(own if taken else usual, staged.removed, usual if taken else None))
+        say_written(WrittenFolder(own if taken else usual, staged.removed, usual if taken else None))
 
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
@@ -141,10 +141,10 @@ def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, byte
     old = [path.name for path in staged.folder.glob("sheet-*") if path.suffix in formats]
     for name in set(old) - staged.names:
         (staged.folder / name).unlink()
-    say_written(Written(staged.folder, sorted(set(old) - staged.names), None))
+    say_written(WrittenFolder(staged.folder, sorted(set(old) - staged.names), None))
 
 
-def say_written(written: Written) -> None:
+def say_written(written: WrittenFolder) -> None:
     """Where the results are, what went of earlier ones, and what stays."""
     folder, removed, kept = written
     if kept is None:

@@ -25,7 +25,7 @@ from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, sa
 from tmm_cli.cli.talk import warn
 from tmm_cli.mechanics.structure.spatial import ChainResults
 from tmm_cli.reports.files import write_results
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 SHOWN = (
     "synthesis-found",
@@ -68,7 +68,7 @@ def run(
             emit_results(results, found)
         elif len(files) == 1:
             show(results, SHOWN, found)
-        for warning in warnings(results):
+        for warning in collect_warnings(results):
             warn(f"{results.problem.name}: {warning}")
         say_written(written)
         return checked(results)

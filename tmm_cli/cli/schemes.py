@@ -12,28 +12,28 @@ import typer
 from tmm_cli.cli.common import Json, console, drawn, emit_json, progress, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import ProblemError, unknown_name
 from tmm_cli.problem.reader import read_text
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.reports.files import Staged, write_whole
-from tmm_cli.reports.space_tables import Written, chains_json, chains_table, schemes_json, schemes_table
+from tmm_cli.reports.space_tables import WrittenSchemes, chains_json, chains_table, schemes_json, schemes_table
 from tmm_cli.reports.terminal import MORE_ROWS_AS_JSON, show
-from tmm_cli.reports.warnings import warnings
-from tmm_cli.synthesis.schemes.chains import MOST_LINKS as MOST_CHAIN_LINKS
+from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.synthesis.schemes.chains import MOST_LINKS_OF_CHAIN as MOST_CHAIN_LINKS
 from tmm_cli.synthesis.schemes.chains import KinematicChain, chains
 from tmm_cli.synthesis.schemes.layout import layouts
 from tmm_cli.synthesis.schemes.schemes import (
     CLASSES,
+    GROUP_TYPES,
     MOST_CRANKS,
-    MOST_LINKS,
+    MOST_LINKS_OF_SCHEME,
     MOST_SCHEMES,
-    TYPES,
     Scheme,
     TooManySchemes,
 )
 from tmm_cli.synthesis.schemes.schemes import (
-    schemes as all_schemes,
+    enumerate_schemes as all_schemes,
 )
 from tmm_cli.synthesis.schemes.skeleton import problem_text
 from tmm_cli.synthesis.solving import solve
@@ -71,7 +71,7 @@ def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
 
 def _tried(text: str, scheme: Scheme, closed: bool) -> Skeleton | None:
     """The problem with its forces; of groups that are not closed, whose assembly may not be found, its structure."""
-    problem = build(read_text(text, scheme.name))
+    problem = build_problem(read_text(text, scheme.name))
     try:
         results = solve(problem)
     except ProblemError:
@@ -79,10 +79,10 @@ def _tried(text: str, scheme: Scheme, closed: bool) -> Skeleton | None:
             return None
         solve(problem, "structure")
         return Skeleton(text, False, 0)
-    return Skeleton(text, True, sum(1 for __ in warnings(results))) if results.lever_holds else None
+    return Skeleton(text, True, sum(1 for __ in collect_warnings(results))) if results.lever_holds else None
 
 
-def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> Written:
+def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
     """A problem file a scheme in the folder.
 
     each: the schemes once more, as a progress bar counts them. Nothing is written before all files are made, and no
@@ -122,8 +122,8 @@ def named_types(text: str) -> tuple[str, ...]:
     found: list[str] = []
     for word in text.split(","):
         name = word.strip().upper()
-        if name not in TYPES and name not in CLASSES:
-            known = [*CLASSES, *(name for name in TYPES if name not in CLASSES)]
+        if name not in GROUP_TYPES and name not in CLASSES:
+            known = [*CLASSES, *(name for name in GROUP_TYPES if name not in CLASSES)]
             raise unknown_name(word.strip(), known, _("there is no such group"), path=("--groups",))
         found += CLASSES.get(name, (name,))
     return tuple(dict.fromkeys(found))
@@ -131,7 +131,7 @@ def named_types(text: str) -> tuple[str, ...]:
 
 def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
     """The schemes, or a ProblemError that says what can be asked for."""
-    _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS + 1, 2))
+    _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS_OF_SCHEME + 1, 2))
     try:
         return all_schemes(links, mobility, types)
     except TooManySchemes:

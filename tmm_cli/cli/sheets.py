@@ -17,7 +17,7 @@ from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.drawing.formats import FORMATS
 from tmm_cli.drawing.layout.files import files_of_sheets, formats_of, refuse_plans
 from tmm_cli.drawing.run import remarks
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 
 def sheets(
@@ -44,7 +44,7 @@ def sheets(
         results = solve(problem, "forces")
         for remark in remarks(results):
             say(remark)
-        for warning in warnings(results):
+        for warning in collect_warnings(results):
             warn(warning)
         way = partial(by_all_cores, quiet=len(files) > 1)
         write_sheets(results, out, files_of_sheets(results, paper, wanted, say, way, every=positions == "all"))

@@ -15,7 +15,7 @@ from tmm_cli.problem.record import Synthesised
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.reports.files import Staged, folder_name, held
-from tmm_cli.reports.synthesis_tables import missed, tables_of, to_json
+from tmm_cli.reports.synthesis_tables import missed, synthesis_json, tables_of_synthesis
 from tmm_cli.reports.table import csv_text, json_bytes
 from tmm_cli.reports.terminal import show
 from tmm_cli.reports.understood import bare_speeds, bare_units
@@ -41,12 +41,12 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
     name, title, found, units, results = _solved(file, settings)
     measured = None if results is None else measured_on(results)
-    whole = {"problem": name, **to_json(found, measured)}
+    whole = {"problem": name, **synthesis_json(found, measured)}
     if as_json:
         emit_json(whole)
     else:
         screen = console()
-        for table in tables_of(found, measured, units):
+        for table in tables_of_synthesis(found, measured, units):
             if not table.long:
                 show(table, units, screen, most=None)
         if measured is None:
@@ -55,7 +55,7 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
         folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
             with spoken(ENGLISH):
-                for table in tables_of(found, measured, units, 15):
+                for table in tables_of_synthesis(found, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
             for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):
                 staged.write(drawing, (picture,))

@@ -12,7 +12,7 @@ from tmm_cli.batch.task import Task, read_task
 from tmm_cli.cli.common import console, progress, refusing
 from tmm_cli.cli.opening import read_in_its_language
 from tmm_cli.cli.talk import printable, say, warn
-from tmm_cli.grading.answer_key import HEADER, answer_key, idle_questions
+from tmm_cli.grading.answer_key import HEADER, compute_answer_key, idle_questions
 from tmm_cli.grading.draw_variants import Variety, draw, draw_for, tables_apart
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.tables import csv_of, read_students, rows_of_table, xlsx_of
@@ -98,7 +98,7 @@ def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
         if task.blocks.grading is None:
             say(_("note: the file has no block `grading`, so there is no answer key"))
         else:
-            key = list(answer_key(task, table))
+            key = list(compute_answer_key(task, table))
             folder.write("key.csv", [csv_of([HEADER, *(line.cells(task) for line in key)])])
             for sentence in idle_questions(key):
                 say(sentence)

@@ -8,26 +8,26 @@ from functools import partial
 from itertools import chain
 
 from tmm_cli.drawing.formats import Drawn, Way, here, in_parts
-from tmm_cli.drawing.sheets.centres import sheets as centres
-from tmm_cli.drawing.sheets.diagrams import diagrams
+from tmm_cli.drawing.sheets.centres import draw_centres as centres
+from tmm_cli.drawing.sheets.diagrams import draw_diagrams
 from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import group_loads
+from tmm_cli.drawing.sheets.group_loads import draw_group_loads
 from tmm_cli.drawing.sheets.hodographs import balancing as shaking
-from tmm_cli.drawing.sheets.intermittent import intermittent
-from tmm_cli.drawing.sheets.law_of_motion import law_of_motion
-from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.intermittent import draw_intermittent
+from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion
+from tmm_cli.drawing.sheets.lever import draw_lever
 from tmm_cli.drawing.sheets.mechanism import Position, position
-from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
 from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.sheets.single_run import draw_single_run
 from tmm_cli.drawing.sheets.structure import at_sketch, groups, scheme
 from tmm_cli.drawing.sheets.synthesis import synthesised
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.in_detail import balancing, chosen_here, in_detail
+from tmm_cli.mechanics.analysis.in_detail import balancing, chosen_here, detailed_positions
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.quantities import FORCE, MOMENT
 
-OF_POSITION = (position, motion_plans, group_loads, forces, lever)
+OF_POSITION = (position, draw_motion_plans, draw_group_loads, forces, draw_lever)
 MOST_PARTS = 32  # of the positions in detail, each of which takes the results to another process
 
 Part = Callable[[], Drawn]  # may be pickled
@@ -42,7 +42,7 @@ def parts(results: Results) -> list[Part]:
     """All sheets in parts that can be drawn apart, in their order."""
     if results.motion is None:
         return [partial(_of_mechanism, results)]
-    chosen = in_detail(results)
+    chosen = detailed_positions(results)
     size = math.ceil(len(chosen) / MOST_PARTS) or 1
     of_positions = [
         partial(_of_positions, results, chosen[first : first + size]) for first in range(0, len(chosen), size)
@@ -61,11 +61,11 @@ def _of_mechanism(results: Results) -> Drawn:
     if bool(results.motion.placed.any()):
         yield from all_positions(results)
         yield from centres(results)
-        yield from diagrams(results)
+        yield from draw_diagrams(results)
         yield from shaking(results)
-        yield from law_of_motion(results)
-        yield from single_run(results)
-        yield from intermittent(results)
+        yield from draw_law_of_motion(results)
+        yield from draw_single_run(results)
+        yield from draw_intermittent(results)
 
 
 def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:
@@ -87,7 +87,7 @@ def files(
 def remarks(results: Results) -> Iterable[str]:
     """Which position is drawn in full where the file names none, and why."""
     if results.motion is not None and chosen_here(results):
-        yield from (_chosen(results, k) for k in in_detail(results))
+        yield from (_chosen(results, k) for k in detailed_positions(results))
 
 
 def _chosen(results: Results, k: int) -> str:

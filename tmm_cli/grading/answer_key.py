@@ -57,7 +57,7 @@ class KeyLine:
         return [self.student, name, number, value_text, direction, unit, allowed, share, self.idle]
 
 
-def answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
+def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
     """Student by student. Those whose mechanism cannot be solved have none. Raises ProblemError."""
     students = list(table.rows)
     dimensions, columns = numbers_of(task, table, students)

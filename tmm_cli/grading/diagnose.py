@@ -53,7 +53,7 @@ class Claim:
         return " / ".join(sorted({case.called for case in self.alternatives}))
 
 
-def diagnose(family: Family, right: Right, written: Written) -> dict[int, list[Claim]]:
+def diagnose_students(family: Family, right: Right, written: Written) -> dict[int, list[Claim]]:
     """Claims by student, for those who have wrong answers."""
     wrong = right.error(written) > right.allowed
     rows = np.flatnonzero(np.any(wrong, axis=1))

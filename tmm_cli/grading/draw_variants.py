@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.choices import choices, numbers
+from tmm_cli.batch.choices import choice_values, read_choices
 from tmm_cli.batch.family import Family, families, together
 from tmm_cli.batch.task import Asked, Task
 from tmm_cli.batch.variant import Variant
@@ -177,10 +177,10 @@ class Variety:
 
     def __init__(self, task: Task) -> None:
         self.task, self.faults = task, faults_of(task)
-        self.free = choices(task)
+        self.free = read_choices(task)
         self.names = tuple(choice.name for choice in self.free)
         self.dimensions = tuple(choice.dimension for choice in self.free)
-        self.numbers = [numbers(task, choice) for choice in self.free]
+        self.numbers = [choice_values(task, choice) for choice in self.free]
         self.asked: tuple[Asked, ...] = task.asked if task.blocks.grading else ()
         own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
         self.own = np.array([own])

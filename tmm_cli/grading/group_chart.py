@@ -12,7 +12,8 @@ from tmm_cli.drawing.formats import files as pictures
 from tmm_cli.drawing.paper.chart import FINE, Panel, filling
 from tmm_cli.drawing.paper.fonts import width
 from tmm_cli.drawing.paper.record import POINT, Drawing
-from tmm_cli.drawing.paper.sheet import DARK, Sheet
+from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents

@@ -21,7 +21,7 @@ from tmm_cli.batch.family import Family, families
 from tmm_cli.batch.task import Asked, Task
 from tmm_cli.batch.workers import Way, here, processes, program_digest
 from tmm_cli.grading.copies import with_copies
-from tmm_cli.grading.diagnose import diagnose
+from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.exports import write
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.mistakes.data import OtherZero
@@ -207,7 +207,7 @@ def _marks_of(
     wanted = right(family, asked_all)
     written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
-    claims = diagnose(family, wanted, written)
+    claims = diagnose_students(family, wanted, written)
     follows = following(family, wanted, written, claims)
     found = []
     for n, submission in enumerate(submissions):

@@ -76,7 +76,7 @@ def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
     return sorted(found, key=lambda one: (-one[1], -one[2], one[0]))
 
 
-def tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
+def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
     """All tables of a group; those that would be empty are left out."""
     own = percents(marks)
     absent = len(marks) - len(handed_in(marks))

@@ -12,7 +12,7 @@ from itertools import groupby
 import yaml
 
 from tmm_cli.batch.task import Asked, Task
-from tmm_cli.drawing.formats.png import png
+from tmm_cli.drawing.formats.png import write_png
 from tmm_cli.drawing.sheets.task import task_picture
 from tmm_cli.grading.cells import shown
 from tmm_cli.grading.record import VariantTable
@@ -22,7 +22,7 @@ from tmm_cli.mechanics.quantities import KINDS, LENGTH, NUMBER, Dimension
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.reader import read_text
 from tmm_cli.reports.files import folder_name
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 from tmm_cli.reports.table import Table, table_of_words
 from tmm_cli.synthesis.solving import structure_of
 
@@ -99,12 +99,12 @@ class TaskSheets:
         yield f"{name}.yaml", problem_text(self.text, values).encode()
         results = structure_of(self.task.variant(values))
         figure = task_picture(results)
-        picture = None if figure is None else png(figure)
+        picture = None if figure is None else write_png(figure)
         if picture is not None:
             yield f"{name}.png", picture
         tables = [
             _dimensions(self.task, values, self.measures),
-            *map(_told, given(results.problem)),
+            *map(_told, input_tables(results.problem)),
             *_asked(self.task),
         ]
         yield f"{name}.md", _markdown(title, who, f"{name}.png" if picture else "", tables).encode()

@@ -9,14 +9,14 @@ from tmm_cli.note.blocks import Block, Heading, Items, paragraph, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import rows_of
 from tmm_cli.reports.register import walk
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 
 
 def blocks(subject: Subject) -> Iterable[Block]:
     """The table of checks, then what is worth a second look."""
     results = subject.results
     tables = list(walk(results, ("checks",)))
-    told = tuple(warnings(results, checked=False))
+    told = tuple(collect_warnings(results, checked=False))
     if not tables and not told:
         return
     yield Heading(_("Checks"))

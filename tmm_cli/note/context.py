@@ -14,18 +14,18 @@ from tmm_cli.drawing.formats import Drawn
 from tmm_cli.drawing.paper.picture import Space, within
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.sheets import centres, hodographs, law_of_motion
-from tmm_cli.drawing.sheets.diagrams import diagrams
+from tmm_cli.drawing.sheets.diagrams import draw_diagrams
 from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import group_loads
-from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.group_loads import draw_group_loads
+from tmm_cli.drawing.sheets.lever import draw_lever
 from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver, position
-from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
 from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.sheets.single_run import draw_single_run
 from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
 from tmm_cli.drawing.sheets.synthesis import synthesised
 from tmm_cli.language import _, language, numeral, signed, typeset
-from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.in_detail import detailed_positions
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.forces.free_bodies import subscript
 from tmm_cli.mechanics.forces.lever import Lever
@@ -47,20 +47,20 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
     "groups": (all_groups, 45),
     "synthesis": (synthesised, 110),
     "positions": (all_positions, 130),
-    "diagrams": (diagrams, 170),
+    "diagrams": (draw_diagrams, 170),
     "law": (law_of_motion.over_cycle, 225),
     "energy-mass": (law_of_motion.diagram, 190),
-    "run": (single_run, 225),
-    "centres": (centres.sheets, 130),
+    "run": (draw_single_run, 225),
+    "centres": (centres.draw_centres, 130),
     "shaking": (hodographs.balancing, 110),
 }
 OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
     "position": (position, 120),
-    "velocity": (motion_plans, 120),
-    "acceleration": (motion_plans, 120),
-    "group-loads": (group_loads, 90),
+    "velocity": (draw_motion_plans, 120),
+    "acceleration": (draw_motion_plans, 120),
+    "group-loads": (draw_group_loads, 90),
     "forces": (forces, 100),
-    "lever": (lever, 110),
+    "lever": (draw_lever, 110),
 }
 
 
@@ -75,7 +75,7 @@ class Subject:
     @cached_property
     def detail(self) -> tuple[int, ...]:
         """Indices of the positions that are shown in full."""
-        return in_detail(self.results) if self.results.motion is not None else ()
+        return detailed_positions(self.results) if self.results.motion is not None else ()
 
     @property
     def motion(self) -> Motion:
@@ -158,7 +158,7 @@ class Subject:
             with within(Space(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
                 self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
-        several = draw is motion_plans
+        several = draw is draw_motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def scale(self, name: str, k: int, stem: str) -> float:

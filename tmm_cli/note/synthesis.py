@@ -12,7 +12,7 @@ from tmm_cli.note.context import Subject, by_hand
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.tables import rows_of
 from tmm_cli.problem.record import Synthesised
-from tmm_cli.reports.synthesis_tables import tables_of
+from tmm_cli.reports.synthesis_tables import tables_of_synthesis
 from tmm_cli.synthesis.construction import Diagram
 from tmm_cli.synthesis.measures import measured_on, theta_of
 
@@ -28,7 +28,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
     if task is None:
         return
     yield Heading(_("Synthesis of the mechanism"))
-    tables = {t.name: t for t in tables_of(task, measured_on(results), results.problem.units, FOUND)}
+    tables = {t.name: t for t in tables_of_synthesis(task, measured_on(results), results.problem.units, FOUND)}
     asked = tables.pop("synthesis-asked", None)
     if asked is None:
         yield paragraph(_("The sizes of the mechanism are found from its requirements."))

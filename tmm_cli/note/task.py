@@ -14,7 +14,7 @@ from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MO
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 from tmm_cli.reports.stages import heavy, link_name
 from tmm_cli.reports.structure_tables import ROLES, called
 from tmm_cli.reports.understood import motion
@@ -62,7 +62,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield from tabled(_("The loads are given in table {table}."), _loads(subject))
     further = [
         table
-        for table in given(problem)
+        for table in input_tables(problem)
         if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
     ]
     if further:

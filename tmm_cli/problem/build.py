@@ -171,7 +171,7 @@ def is_chain(tree: Tree) -> bool:
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
-def build(tree: Tree, *, extended: bool = False) -> Problem:
+def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
     """A problem from a file that has been read and has no task of synthesis (see synthesis.reading).
 
     extended: with its numbers as double-doubles. Raises ProblemError.
@@ -180,7 +180,7 @@ def build(tree: Tree, *, extended: bool = False) -> Problem:
     with placed_in(tree):
         units = unit_system(shape.units, extended=extended)
         problem = build_shape(shape, tree, ValueReader(parameters(shape.parameters, units), units))
-    return replace(problem, extended=partial(build, tree, extended=True))
+    return replace(problem, extended=partial(build_problem, tree, extended=True))
 
 
 def checked_shape(tree: Tree) -> schema.File:
@@ -368,7 +368,7 @@ def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader)
 def problem_of(tree: Tree) -> Problem | TaskProblem:
     """The problem of a file that has been read. Raises ProblemError."""
     if "synthesis" not in tree.data:
-        return build(tree)
+        return build_problem(tree)
     read: TaskProblem = import_module(TASK_READER).read(tree)  # few files have a task
     return read
 

@@ -56,7 +56,7 @@ def all_numbers(
     return at_positions, searched
 
 
-def cells(results: Results, shown: Collection[str] = ()) -> Cells:
+def cells_with_digits(results: Results, shown: Collection[str] = ()) -> Cells:
     """The numbers at positions; shown: in reports with these tables alone."""
     reports = {name for name, __, ___, given in REPORTS if not shown or set(given) & set(shown)}
     return all_numbers(results, reports & set(COMPUTED) - SEARCHED, None if shown else LARGE)[0]
@@ -301,7 +301,7 @@ def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) 
             there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
         if len(chosen):
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
-            digits = judged(there, partial(cells, shown=shown), mu=mu, blur=away)
+            digits = judged(there, partial(cells_with_digits, shown=shown), mu=mu, blur=away)
     for key, bound in digits.bound.items():
         if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
             digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)

@@ -9,7 +9,7 @@ from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.structure.assur import Structure
 from tmm_cli.mechanics.structure.group import Group, Pair
-from tmm_cli.reports.given import given
+from tmm_cli.reports.given import input_tables
 from tmm_cli.reports.stages import skipped, stages_table, steps
 from tmm_cli.reports.structure_tables import (
     ROLES,
@@ -129,9 +129,9 @@ def _balance(linkage: Linkage) -> str:
 # What a file was understood to say; then the way of the calculation (results.stages).
 
 
-def explain(results: Results, verbose: bool = False) -> Iterable[Table]:
+def explain_tables(results: Results, verbose: bool = False) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation; verbose: places that each stage computes."""
-    yield from given(results.problem)
+    yield from input_tables(results.problem)
     yield steps(results)
     if verbose:
         yield stages_table(results)

@@ -237,7 +237,7 @@ def part_of(results: Results | ChainResults, drawn: bool) -> str:
     return "-".join(words if drawn or results.reactions is None else [*words, "no-drawings"])
 
 
-class Written(NamedTuple):
+class WrittenFolder(NamedTuple):
     """The folder that was written, files of an earlier run that went, and the folder that keeps other results."""
 
     folder: Path
@@ -252,7 +252,7 @@ def write_results(
     digits: AccuracyReport | None = None,
     people: Kind | None = None,
     part: str = "",
-) -> Written:
+) -> WrittenFolder:
     """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
 
     Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
@@ -277,4 +277,4 @@ def write_results(
         parts = sections(results, None if digits is None else digits.json())
         with spoken(ENGLISH):
             staged.write("result.json", json_text(chain(parts, [("part", part)] if part else [], [("files", names)])))
-    return Written(folder, staged.removed, kept)
+    return WrittenFolder(folder, staged.removed, kept)

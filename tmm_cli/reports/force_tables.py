@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral, printed, symbol
-from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.in_detail import detailed_positions
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.forces.free_bodies import load_names
 from tmm_cli.mechanics.forces.lever import Item
@@ -158,7 +158,7 @@ def drawn_tables(results: Results) -> Iterable[Table]:
     """A row for each position in detail: what both ways give on paper, and how far apart they are."""
     motion, reactions, lever = results.motion, results.reactions, results.lever
     assert motion is not None and reactions is not None and lever is not None
-    positions = [(k, sheets(motion, reactions, lever, k)) for k in in_detail(results) if lever.items]
+    positions = [(k, sheets(motion, reactions, lever, k)) for k in detailed_positions(results) if lever.items]
     checked = [
         (k, drawn_check(motion, reactions, drawn, drawn.scales())) for k, drawn in positions if drawn is not None
     ]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import WheelTask
 
 
-def given(problem: Problem) -> Iterable[Table]:
+def input_tables(problem: Problem) -> Iterable[Table]:
     """The file in full."""
     if problem.synthesis is not None and problem.synthesis.names:
         yield parameters(problem.synthesis, problem.units)

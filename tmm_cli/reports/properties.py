@@ -15,12 +15,12 @@ from tmm_cli.mechanics.analysis import pipeline
 from tmm_cli.mechanics.analysis.named_quantities import STAGES, Quantity, of_wheels, quantities, relative_angles
 from tmm_cli.mechanics.analysis.pipeline import Results, at_places
 from tmm_cli.mechanics.groups.base import spread
-from tmm_cli.mechanics.numerics.roots import greatest, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, greatest
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
 from tmm_cli.mechanics.structure.assur import analyse
 from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.build import build
+from tmm_cli.problem.build import build_problem
 from tmm_cli.problem.errors import Path, ProblemError, no_position, path_text, quote, under, unknown_name
 from tmm_cli.problem.reader import with_settings
 from tmm_cli.problem.record import Problem
@@ -161,7 +161,7 @@ def _with_settings(task: Shown, results: Results) -> Results:
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
     stage = stage if results.reactions is None else "forces"
     try:
-        other = build(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+        other = build_problem(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
         inputs = replace(
             results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None
         )
@@ -270,5 +270,5 @@ def _zone(read: Callable[[Real], Real], place: float, most: float, results: Resu
         if not gone.size:
             ends.append(float(q[-1]))
             continue
-        ends.append(float(roots(beyond, q[gone[:1] - 1], q[gone[:1]])[0]))
+        ends.append(float(find_roots(beyond, q[gone[:1] - 1], q[gone[:1]])[0]))
     return min(ends[1] - ends[0], way if results.turns else np.inf)

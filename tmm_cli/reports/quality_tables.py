@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral
-from tmm_cli.mechanics.analysis.checks import Check, checks
+from tmm_cli.mechanics.analysis.checks import Check, run_checks
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.assembly.enumerate import Assemblies, GroupAssemblies, listed
 from tmm_cli.mechanics.kinematics.driver_range import SCAN
@@ -213,7 +213,7 @@ def checks_tables(results: Results) -> Iterable[Table]:
     """A row a check."""
     rows = [
         (*_said(check, results), _place(check, results), _("ok") if check.holds else _("warn"))
-        for check in checks(results)
+        for check in run_checks(results)
     ]
     if rows:
         headers = (_("check"), _("of"), _("found"), _("limit"), _("driver at"), _("verdict"))

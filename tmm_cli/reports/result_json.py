@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from tmm_cli.language import ENGLISH, spoken
-from tmm_cli.mechanics.analysis.checks import checks
+from tmm_cli.mechanics.analysis.checks import run_checks
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.structure.redundancy import space
 from tmm_cli.mechanics.structure.spatial import ChainResults
@@ -34,10 +34,10 @@ from tmm_cli.reports.shapes import (
     properties,
     record,
 )
-from tmm_cli.reports.synthesis_tables import to_json as synthesis_json
+from tmm_cli.reports.synthesis_tables import synthesis_json as synthesis_json
 from tmm_cli.reports.table import plain
 from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import warnings
+from tmm_cli.reports.warnings import collect_warnings
 from tmm_cli.synthesis.measures import measured_on
 
 FORMAT = 1
@@ -127,8 +127,8 @@ LAST = (
         there="assemblies",
     ),
     Field("properties", list_of(PROPERTY), "what the file shows", properties_shown, lambda r: r.problem.shows),
-    Field("checks", list_of(CHECK), "what is worth a second look", checks, "lever"),
-    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *warnings(r)]),
+    Field("checks", list_of(CHECK), "what is worth a second look", run_checks, "lever"),
+    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *collect_warnings(r)]),
 )
 LARGE = ("positions", "kinematics", "forces", "lever", "energy")
 

@@ -18,7 +18,7 @@ from tmm_cli.mechanics.structure.spatial import AXLES, CONTACTS, ChainResults, F
 from tmm_cli.reports.structure_tables import left_out
 from tmm_cli.reports.table import Column, Table, table_of_words
 from tmm_cli.synthesis.schemes.chains import KinematicChain
-from tmm_cli.synthesis.schemes.schemes import TYPES, Scheme
+from tmm_cli.synthesis.schemes.schemes import GROUP_TYPES, Scheme
 
 
 def space_tables(results: Results) -> Iterable[Table]:
@@ -176,12 +176,12 @@ def _how(part: LocalFreedom) -> str:
 
 DEGREES = (N_("binary"), N_("ternary"), N_("quaternary"))
 
-Written = Sequence[tuple[Path, bool] | None]
+WrittenSchemes = Sequence[tuple[Path, bool] | None]
 """The file of each scheme and whether it was solved with its forces; None where no pose could be assembled."""
 
 
 def schemes_table(
-    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+    found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> Table:
     """Number, formula, groups, links and pairs, file. types: the types of groups that were enumerated."""
     columns = [
@@ -203,7 +203,7 @@ def schemes_table(
 
 def not_enumerated(types: Iterable[str]) -> Iterable[str]:
     """A sentence about the groups that are missing where a class higher than II was requested."""
-    if any(TYPES[name].grade > 2 for name in types):
+    if any(GROUP_TYPES[name].grade > 2 for name in types):
         yield _(
             "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
             "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
@@ -237,7 +237,7 @@ def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple
 
 
 def schemes_json(
-    found: Sequence[Scheme], links: int, mobility: int, written: Written | None, types: Iterable[str] = ()
+    found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> dict[str, Any]:
     """Everything about the schemes as plain data."""
     rows = []

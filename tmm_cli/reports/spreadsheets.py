@@ -60,7 +60,7 @@ def files(kind: Kind, tables: Iterable[Table], units: UnitSystem) -> Files:
         yield f"{table.name}-local.csv", local_csv(table, units)
 
 
-def cells(column: Column, units: UnitSystem) -> list[Cell]:
+def spreadsheet_cells(column: Column, units: UnitSystem) -> list[Cell]:
     """Numbers with the figures that a terminal prints, words; None where there is nothing."""
     if column.dimension is None:
         return [_of_word(str(value)) for value in column.values]
@@ -83,7 +83,7 @@ def _rounded(value: float, count: int) -> float | None:
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
     yield "\ufeff" + ";".join(csv_cell(typeset(on_paper(column.heading(units)))) for column in table.columns) + "\n"
-    for row in zip(*(cells(column, units) for column in table.columns), strict=True):
+    for row in zip(*(spreadsheet_cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_text, row)) + "\n"
 
 
@@ -116,7 +116,7 @@ def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
     """Title, headings, rows, notes."""
     heads = [typeset(on_paper(column.heading(units))) for column in table.columns]
-    columns = [cells(column, units)[:MOST_ROWS] for column in table.columns]
+    columns = [spreadsheet_cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
         sheet.set_column(k, k, _width(head, column))
     sheet.freeze_panes(2, 1)

@@ -84,10 +84,12 @@ def _how(kernel: Kernel) -> str:
 def stages_table(results: Results) -> Table:
     """A row a stage."""
     headers = (_("stage"), _("groups"), _("places"), _("of the motion"), _("note"))
-    return table_of_words("stages", _("What each stage computes, when it is asked for"), headers, stages(results))
+    return table_of_words(
+        "stages", _("What each stage computes, when it is asked for"), headers, describe_stages(results)
+    )
 
 
-def stages(results: Results) -> Iterable[Row]:
+def describe_stages(results: Results) -> Iterable[Row]:
     """Stage, groups, how many places, what of the motion, and notes; nothing but counting where nothing assembles."""
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
     yield _("structure"), "-", "-", "-", _("by counting; a crank and a rocker are told apart by the range")

@@ -40,10 +40,10 @@ def synthesis_tables(results: Results) -> Iterable[Table]:
     """As `tmm synthesis` has them."""
     synthesis = results.problem.synthesis
     if synthesis is not None and results.motion is not None:
-        yield from tables_of(synthesis, measured_on(results), results.problem.units)
+        yield from tables_of_synthesis(synthesis, measured_on(results), results.problem.units)
 
 
-def tables_of(
+def tables_of_synthesis(
     found: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
 ) -> Iterable[Table]:
     """Asked, found, measured (None: there is no linkage)."""
@@ -83,7 +83,9 @@ def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[st
             )
 
 
-def to_json(found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True) -> dict[str, Any]:
+def synthesis_json(
+    found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True
+) -> dict[str, Any]:
     """Everything in SI and radians; long: tables for files too."""
     outcome = found.outcome
     keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}

@@ -22,7 +22,7 @@ MORE_ROWS = N_("... and {rows} rows more: -o DIR writes them all, --json too")
 MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
 
 
-def cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
+def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
     """Words with printed signs, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
         return [typeset(str(column.values[k])) for k in rows]
@@ -60,7 +60,7 @@ def show(
     """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
     printed = chosen[:most]
-    texts = [[typeset(column.heading(units)), *cells(column, units, printed)] for column in table.columns]
+    texts = [[typeset(column.heading(units)), *terminal_cells(column, units, printed)] for column in table.columns]
     words = [column.dimension is None for column in table.columns]
     least = [_least(*column) for column in zip(texts, words, strict=True)]
     for number, part in enumerate(_parts(words, least, console.width)):

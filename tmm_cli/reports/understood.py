@@ -53,7 +53,7 @@ ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of dri
 )
 
 
-def understood(task: Problem | TaskProblem) -> Iterable[str]:
+def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
     """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
     yield bare_units(task.units)
     problem = task.whole

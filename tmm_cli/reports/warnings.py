@@ -42,7 +42,7 @@ IN_CHECKS = (
 )  # the table of checks has them with numbers
 
 
-def warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
+def collect_warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
     """One sentence each, in the units of the file. checked: also of what the table of checks has with its number."""
     if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return

@@ -103,6 +103,6 @@ def _own_unit(task: Task, name: str) -> str:
     return written[2] if written else ""
 
 
-def grid(axes: Sequence[Axis]) -> Real:
+def grid_points(axes: Sequence[Axis]) -> Real:
     """All points as they are written, (points, axes): the last parameter changes first."""
     return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)

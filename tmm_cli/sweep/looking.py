@@ -14,7 +14,7 @@ import numpy as np
 from tmm_cli.batch.family import named_strokes
 from tmm_cli.batch.variant import Variant, each
 from tmm_cli.mechanics.kinematics.strokes import Strokes, resisted
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.sweep.taped import FINELY, Closely, Turning, near_peaks, peaks_between, turned
 
@@ -149,7 +149,7 @@ def _ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """Roots between places; that at a place itself is there, though rounding has it on neither side."""
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
-    found = roots(slope, low, high)
+    found = find_roots(slope, low, high)
     return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), found)
 
 

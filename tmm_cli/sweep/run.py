@@ -15,7 +15,7 @@ from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.problem.build import BUDGET, parts, refuse_work
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.record import Problem
-from tmm_cli.sweep.grid import MOST, Axis, grid
+from tmm_cli.sweep.grid import MOST, Axis, grid_points
 from tmm_cli.sweep.looking import SCAN
 from tmm_cli.sweep.mechanisms import Found, Mechanisms
 from tmm_cli.sweep.record import STATES, Mark, Swept
@@ -75,7 +75,7 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
 
 def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] = lambda count: None) -> Swept:
     """All points, and the borders between them. seen: is told of so many more points. Raises ProblemError."""
-    axes, points = mechanisms.axes, grid(mechanisms.axes)
+    axes, points = mechanisms.axes, grid_points(mechanisms.axes)
     taped = mechanisms.turning is not None
     size = CHUNK if taped else FEW
     chunks = [points[first : first + size] for first in range(0, len(points), size)]

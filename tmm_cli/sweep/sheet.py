@@ -19,16 +19,17 @@ from tmm_cli.drawing.paper.chart import (
     Curve,
     Panel,
     Plot,
-    chart,
+    axis_room,
+    draw_chart,
     filling,
     limits,
-    room,
     round_up,
 )
 from tmm_cli.drawing.paper.contours import borders, contour, hatching, region
 from tmm_cli.drawing.paper.fonts import width
 from tmm_cli.drawing.paper.record import POINT, Drawing, Style
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, THIN, Sheet, safe, with_unit
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, THIN, Sheet, safe, with_unit
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import _, numeral, spelt, translated
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.plans.record import LANDSCAPE
@@ -65,7 +66,7 @@ def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> 
     (axis,) = sweep.axes
     caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
     sheet = Sheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
-    start, most = room(sheet)
+    start, most = axis_room(sheet)
     over = filling(float(axis.values[0]), float(axis.values[-1]), start, most)
     plots = []
     for k in part:
@@ -75,7 +76,7 @@ def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> 
     ends = [float(axis.values[0]), *(mark.at[0] for mark in sweep.marks), float(axis.values[-1])]
     goes = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
     spans = [(low, high, translated(WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
-    panels = chart(sheet, plots, Across(over, _axis_words(axis), spans=spans if sweep.marks else ()))
+    panels = draw_chart(sheet, plots, Across(over, _axis_words(axis), spans=spans if sweep.marks else ()))
     for panel, plot in zip(panels, plots, strict=True):
         for curve in plot.curves:
             sheet.ground.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.problem.schema_parts import Value as FileValue
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
@@ -108,7 +108,7 @@ FOUND: Final = {
 
 
 @dataclass(frozen=True)
-class Task:
+class CrankSliderTask:
     """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
     e (m), L and k, pressure (largest angle, rad) and nu, pressure and k, e and k. Floats or arrays; None: not given.
     """
@@ -195,7 +195,7 @@ def shortest(theta: Any, pressure: Any) -> Any:
         return s * (w - 1) * (w + 1) + np.sqrt((1 - s * w) * (1 + s * w)) - w * c * sine
 
     good = (excess(end) <= 0) & (excess(np.ones_like(end)) > 0)
-    w = roots(excess, np.ones_like(end), end)
+    w = find_roots(excess, np.ones_like(end), end)
     return np.where(good, w * c / np.sqrt((1 - s * w) * (1 + s * w)), np.nan)
 
 
@@ -221,7 +221,7 @@ def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
         return np.sqrt(height * ((length * length + 1) * height + np.sqrt(under)) / 8) / length
 
 
-def find(task: Task) -> Found:
+def find(task: CrankSliderTask) -> Found:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     height = _stroke(task)
     theta = None if task.k is None else theta_of(task.k)
@@ -264,14 +264,14 @@ def find(task: Task) -> Found:
     )
 
 
-def _stroke(task: Task) -> Any:
+def _stroke(task: CrankSliderTask) -> Any:
     """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
     return np.pi * task.speed / task.crank_speed
 
 
-def refuse(task: Task) -> None:
+def refuse(task: CrankSliderTask) -> None:
     """Raises Infeasible with the reason."""
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
@@ -293,7 +293,7 @@ def refuse(task: Task) -> None:
         raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"))
 
 
-def _refuse_k(task: Task) -> float:
+def _refuse_k(task: CrankSliderTask) -> float:
     """Theta, from 0 up to its bound for what else is given."""
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
@@ -313,7 +313,7 @@ def _refuse_k(task: Task) -> float:
     return theta
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: CrankSliderTask) -> Outcome:
     """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
     refuse(task)
     found = find(task)
@@ -366,8 +366,8 @@ class Shape(Block):
     e: FileValue | None = Field(default=None, description="offset of the guide from the crank's axis")
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> CrankSliderTask:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
     for sets in (STROKES, PAIRS):
         one_of(shape, sets)
-    return Task(**numbers(shape, values, QUANTITIES))
+    return CrankSliderTask(**numbers(shape, values, QUANTITIES))

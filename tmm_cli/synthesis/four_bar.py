@@ -21,7 +21,8 @@ from tmm_cli.mechanics.kinematics.motion import move
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
 
-TYPES: Final = (  # in the order frame, input, coupler, output: by the shortest link, the longest, the shortest again
+# In the order frame, input, coupler, output: by the shortest link, the longest, the shortest again.
+FOUR_BAR_TYPES: Final = (
     "GCCC",
     "GCRR",
     "GRCR",

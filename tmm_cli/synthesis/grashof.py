@@ -14,7 +14,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value as FileValue
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import UNDETERMINED, Block, numbers
-from tmm_cli.synthesis.four_bar import CHANGE, TYPES, FourBar, turning
+from tmm_cli.synthesis.four_bar import CHANGE, FOUR_BAR_TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
 
@@ -89,7 +89,7 @@ class Condition:
 Task = FourBar | CrankSlider | SlottedLever
 
 
-def crank_slider(task: CrankSlider) -> Condition:
+def classify_crank_slider(task: CrankSlider) -> Condition:
     """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
     r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
     same = SAME_RATIO * (r + rod + e)
@@ -100,7 +100,7 @@ def crank_slider(task: CrankSlider) -> Condition:
     return Condition(kind, _without_rounding(margin, same))
 
 
-def slotted_lever(task: SlottedLever) -> Condition:
+def classify_slotted_lever(task: SlottedLever) -> Condition:
     """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
     crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
     same = SAME_RATIO * (crank + frame + e)
@@ -127,10 +127,10 @@ def solve(task: Task) -> Outcome:
     if isinstance(task, FourBar):
         return _four_bar(task)
     if isinstance(task, CrankSlider):
-        found, kinds, margin = crank_slider(task), SLIDERS, N_("l - (r + e)")
+        found, kinds, margin = classify_crank_slider(task), SLIDERS, N_("l - (r + e)")
         source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
     else:
-        found, kinds, margin = slotted_lever(task), LEVERS, N_("|OC - OA| - e")
+        found, kinds, margin = classify_slotted_lever(task), LEVERS, N_("|OC - OA| - e")
         source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
     name = list(kinds)[int(found.kind)]
     values = (Value("", kinds[name], "word", N_("type")), Value("", found.margin, "length", margin))
@@ -151,7 +151,7 @@ def _four_bar(task: FourBar) -> Outcome:
         Value("driver", f"l{task.driver}", "word", N_("driver")),
     )
     values = [
-        Value("", FOUR_BARS[TYPES[int(found.kind)]], "word", N_("type")),
+        Value("", FOUR_BARS[FOUR_BAR_TYPES[int(found.kind)]], "word", N_("type")),
         Value("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
     ]
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):

@@ -17,7 +17,7 @@ from tmm_cli.mechanics.numerics.roots import bisect
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, NUMBER, Dimension
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import Parser, check_parameter
-from tmm_cli.problem.build import build as build_linkage
+from tmm_cli.problem.build import build_problem as build_linkage
 from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
 from tmm_cli.problem.errors import Path, ProblemError, Tree, path_text, placed_in, quote, under, unknown_name
 from tmm_cli.problem.record import Problem, Synthesised, TaskProblem

@@ -119,7 +119,7 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
     """
-    from tmm_cli.batch.prepare import prepare as every_variant  # and the tape under it
+    from tmm_cli.batch.prepare import prepare_batch as every_variant  # and the tape under it
 
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
     for one in several:

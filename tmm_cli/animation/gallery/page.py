@@ -19,7 +19,7 @@ from tmm_cli.language import LANGUAGES, _, translated
 from tmm_cli.mechanics.structure.group import ROMAN
 
 
-def page(cards: Sequence[Card]) -> str:
+def gallery_page(cards: Sequence[Card]) -> str:
     """The page of so many mechanisms, in their order."""
     groups = Counter(group for card in cards for group in card.groups)
     numbers = Counter(card.number for card in cards if card.number)

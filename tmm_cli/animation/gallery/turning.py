@@ -14,7 +14,8 @@ from tmm_cli.animation.bodies import Body, Picture
 from tmm_cli.animation.content import SECONDS, picture_of, view
 from tmm_cli.drawing.formats.svg import element
 from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark, Text
-from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT
+from tmm_cli.drawing.paper.sheet import GREY_TEXT
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
 from tmm_cli.mechanics.kinematics.motion import Motion
 from tmm_cli.mechanics.linkage import FRAME

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch.prepare import Batch
-from tmm_cli.batch.prepare import prepare as batch_of
+from tmm_cli.batch.prepare import prepare_batch as batch_of
 from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
 from tmm_cli.mechanics.accuracy.lengths import widened
 from tmm_cli.mechanics.forces.plan import Reactions, react

@@ -23,10 +23,10 @@ def family(
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 
 
-OURS = Method("closed", "closed", precision.double)
+CLOSED_FORM = Method("closed", "closed", precision.double)
 TAPED = Method("taped", "taped", taped.prepare)
 METHODS: tuple[Method, ...] = (
-    OURS,
+    CLOSED_FORM,
     TAPED,
     *family("newton", loops.prepare, {f"{k}": 10.0**-k for k in range(2, 16)}),
     Method("multibody", "multibody", multibody.prepare),

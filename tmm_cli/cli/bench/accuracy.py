@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.accuracy import measure
-from tmm_cli.bench.chart_accuracy import charts
-from tmm_cli.bench.references import NAMES
+from tmm_cli.bench.accuracy import measure_accuracy
+from tmm_cli.bench.chart_accuracy import accuracy_charts
+from tmm_cli.bench.references import REFERENCE_NAMES
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
@@ -24,5 +24,5 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
     Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
     """
-    names = chosen(linkage, NAMES, "there is no reference linkage {name}; there are {names}")
-    finish("accuracy", measure(names, reduced=reduced, progress=say), charts, out, as_json)
+    names = chosen(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
+    finish("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)

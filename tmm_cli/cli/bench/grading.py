@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.grading import measure
+from tmm_cli.bench.grading import measure_grading
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
@@ -22,4 +22,4 @@ def grading(
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("grading", measure(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
+    finish("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)

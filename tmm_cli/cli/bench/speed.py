@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tmm_cli.bench.chart_speed import charts
-from tmm_cli.bench.speed import measure
+from tmm_cli.bench.chart_speed import speed_charts
+from tmm_cli.bench.speed import measure_speed
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
@@ -14,4 +14,4 @@ def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> N
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("speed", measure(reduced=reduced, progress=say), charts, out, as_json)
+    finish("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)

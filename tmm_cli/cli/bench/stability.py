@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.chart_stability import charts
+from tmm_cli.bench.chart_stability import stability_charts
 from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.bench.stability import measure
+from tmm_cli.bench.stability import measure_stability
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
@@ -26,4 +26,4 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     are within 100 times the true error.
     """
     names = chosen(family, BY_NAME, "there is no family {name}; there are {names}")
-    finish("stability", measure(names, reduced=reduced, progress=say), charts, out, as_json)
+    finish("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)

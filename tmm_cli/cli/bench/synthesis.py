@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tmm_cli.bench.chart_searches import charts
-from tmm_cli.bench.searches import measure
+from tmm_cli.bench.chart_searches import search_charts
+from tmm_cli.bench.searches import measure_searches
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say
@@ -14,4 +14,4 @@ def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) 
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("synthesis", measure(reduced=reduced, progress=say), charts, out, as_json)
+    finish("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)

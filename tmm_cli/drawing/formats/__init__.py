@@ -6,23 +6,23 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Protocol, TypeVar
 
-from tmm_cli.drawing.formats.dxf import dxf
-from tmm_cli.drawing.formats.emf import emf
-from tmm_cli.drawing.formats.pdf import pdf
-from tmm_cli.drawing.formats.png import png
-from tmm_cli.drawing.formats.svg import svg
+from tmm_cli.drawing.formats.dxf import write_dxf
+from tmm_cli.drawing.formats.emf import write_emf
+from tmm_cli.drawing.formats.pdf import write_pdf
+from tmm_cli.drawing.formats.png import write_png
+from tmm_cli.drawing.formats.svg import write_svg
 from tmm_cli.drawing.paper.fonts import lacking
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.language import _
 
 FORMATS: dict[str, Callable[[Drawing], bytes]] = {
-    "pdf": pdf,
-    "dxf": dxf,
-    "svg": svg,
-    "png": png,
-    "emf": emf,
+    "pdf": write_pdf,
+    "dxf": write_dxf,
+    "svg": write_svg,
+    "png": write_png,
+    "emf": write_emf,
 }
-WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": pdf}  # those in which a file holds several drawings
+WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": write_pdf}  # those in which a file holds several drawings
 OF_A_RUN = ("png", "svg")
 Drawn = Iterable[tuple[str, Drawing]]
 Written = list[tuple[str, bytes]]

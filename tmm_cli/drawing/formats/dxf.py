@@ -27,7 +27,7 @@ MILLIMETRES = 4
 APART = "\N{HAIR SPACE}"
 
 
-def dxf(drawing: Drawing) -> bytes:
+def write_dxf(drawing: Drawing) -> bytes:
     """The same drawing gives the same bytes: no date, no random numbers."""
     import ezdxf
     from ezdxf.enums import TextEntityAlignment

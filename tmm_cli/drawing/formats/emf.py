@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import foot, outline
+from tmm_cli.drawing.paper.fonts import foot, glyph_outline
 from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
 from tmm_cli.mechanics.numerics.vectors import Vector
 
@@ -27,7 +27,7 @@ POLYGON, POLYLINE, POLYGONS, PEN = 86, 87, 91, 95
 TRANSPARENT, WINDING, GEOMETRIC = 1, 2, 0x10000
 
 
-def emf(drawing: Drawing) -> bytes:
+def write_emf(drawing: Drawing) -> bytes:
     """Places are rounded to a hundredth of a millimetre."""
     pen = _Pens(drawing.paper[1])
     body = [_record(BACKGROUND, "I", TRANSPARENT), _record(FILL, "I", WINDING)]
@@ -98,7 +98,7 @@ class _Pens:
         return (_points(POLYLINE, self._places(line)) for line in lines)
 
     def _letters(self, mark: Text) -> Iterable[bytes]:
-        places, codes = outline(mark.text, bold=mark.bold, italic=mark.italic)
+        places, codes = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
         if not len(places):
             return
         start, along = foot(mark)

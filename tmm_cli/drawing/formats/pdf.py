@@ -101,7 +101,7 @@ CAPITALS, STEM = 729, 100  # thousandths of the size: height of capital letters,
 Slant = tuple[bool, bool]  # bold, italic
 
 
-def pdf(*drawings: Drawing) -> bytes:
+def write_pdf(*drawings: Drawing) -> bytes:
     """A page for each drawing, without a date: the same drawings give the same bytes."""
     file, fonts = _File(), _Fonts()
     contents = [file.add(_stream(_page(drawing, fonts))) for drawing in drawings]

@@ -17,7 +17,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import foot, outline
+from tmm_cli.drawing.paper.fonts import foot, glyph_outline
 from tmm_cli.drawing.paper.record import POINT, Area, Circle, Drawing, Line, Mark, Text
 
 DPI = 110
@@ -26,7 +26,7 @@ UP = 2  # PNG's filter: a line is told by how it differs from that above it
 AGG: Any = backend_agg  # matplotlib does not say its types
 
 
-def png(drawing: Drawing) -> bytes:
+def write_png(drawing: Drawing) -> bytes:
     """On white paper."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
     renderer, told = _paper(width, height)
@@ -83,7 +83,7 @@ def _write(marks: Sequence[Text], colour: str, renderer: RendererBase, to_pixels
     placed, codes = [], []
     for mark in marks:
         start, along = foot(mark)
-        places, own = outline(mark.text, bold=mark.bold, italic=mark.italic)
+        places, own = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
         placed.append(start + mark.size * along * places)
         codes.append(own)
     every = np.concatenate(placed)

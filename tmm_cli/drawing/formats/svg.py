@@ -14,7 +14,7 @@ SPACES = re.compile(r"^ +| +$| {2,}")  # that a browser would leave out, though 
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")
 
 
-def svg(drawing: Drawing) -> bytes:
+def write_svg(drawing: Drawing) -> bytes:
     """Places are rounded to a thousandth of a millimetre."""
     across, up = (f"{side:g}" for side in drawing.paper)
     lines = [

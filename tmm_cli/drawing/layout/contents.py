@@ -8,17 +8,17 @@ from typing import Any, Literal
 
 from tmm_cli.drawing.formats import Drawn
 from tmm_cli.drawing.layout.values import balance_table, forces_table, law_tables, motion_tables, structure_tables
-from tmm_cli.drawing.sheets.centres import sheets as centres
-from tmm_cli.drawing.sheets.diagrams import diagrams
+from tmm_cli.drawing.sheets.centres import draw_centres as centres
+from tmm_cli.drawing.sheets.diagrams import draw_diagrams
 from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import group_loads
+from tmm_cli.drawing.sheets.group_loads import draw_group_loads
 from tmm_cli.drawing.sheets.hodographs import balancing
-from tmm_cli.drawing.sheets.law_of_motion import law_of_motion
-from tmm_cli.drawing.sheets.lever import lever
+from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion
+from tmm_cli.drawing.sheets.lever import draw_lever
 from tmm_cli.drawing.sheets.mechanism import Position, detailed, position
-from tmm_cli.drawing.sheets.motion_plans import motion_plans
+from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
 from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import single_run
+from tmm_cli.drawing.sheets.single_run import draw_single_run
 from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
 from tmm_cli.drawing.sheets.synthesis import synthesised
 from tmm_cli.language import N_
@@ -117,18 +117,18 @@ CONTENTS = (
     Source(0, synthesised, 200),
     Source(0, structure_tables),
     Source(1, all_positions, 240),
-    Source(1, motion_plans, 300, over="plans"),
+    Source(1, draw_motion_plans, 300, over="plans"),
     Source(1, centres, 200),
-    Source(1, diagrams, 240),
+    Source(1, draw_diagrams, 240),
     Source(1, motion_tables),
     Source(2, position, 200, over="detail"),
-    Source(2, group_loads, 160, over="detail", about="group-loads"),
+    Source(2, draw_group_loads, 160, over="detail", about="group-loads"),
     Source(2, forces, 100, over="detail", about="forces"),
-    Source(2, lever, 200, over="detail"),
+    Source(2, draw_lever, 200, over="detail"),
     Source(2, forces_table, over="detail"),
     Source(2, balance_table),
     Source(2, balancing, 100),
-    Source(2, single_run, 240),
-    Source(3, law_of_motion, 240),
+    Source(2, draw_single_run, 240),
+    Source(3, draw_law_of_motion, 240),
     Source(3, law_tables),
 )

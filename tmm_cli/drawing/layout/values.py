@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.picture import Picture, longest_for, picture
+from tmm_cli.drawing.paper.picture import Picture, longest_for, render_picture
 from tmm_cli.drawing.paper.record import Drawing, Line, Mark, Text
-from tmm_cli.drawing.paper.script import Words, pieces, width
+from tmm_cli.drawing.paper.script import Words, pieces, script_width
 from tmm_cli.drawing.paper.writing import DARK, cut
 from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver
 from tmm_cli.language import _, numeral, translated
@@ -34,7 +34,7 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.problem.units import UnitSystem, on_paper
 from tmm_cli.reports.register import walk
-from tmm_cli.reports.terminal import cells
+from tmm_cli.reports.terminal import terminal_cells
 
 SIZE = 3.2  # mm: letters of a table as it comes
 BOLD, FINE = 0.5, 0.2  # mm: lines
@@ -47,7 +47,7 @@ WIDEST = 24.0  # of the size: a longer text is cut
 def table(title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()) -> Picture:
     """A table, its letters as large as the room lets them be."""
     cells = [[cut(one, 1.0, WIDEST) if isinstance(one, str) else one for one in row] for row in (heads, *rows)]
-    columns = [max(width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
+    columns = [max(script_width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
     parts = max(math.ceil(len(rows) / FOLDED), 1)
     most = math.ceil(len(rows) / parts)
     step = sum(columns) + APART
@@ -58,7 +58,7 @@ def table(title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], n
     for part in range(parts):
         here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
         marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
-    return picture(marks, title, longest, notes=notes)
+    return render_picture(marks, title, longest, notes=notes)
 
 
 def _part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
@@ -79,7 +79,7 @@ def _part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: floa
         for line, y in zip(cells, high, strict=False):
             at = complex(start + AIR / 2 * size, y - row / 2)
             if numbers:
-                at = complex(end - AIR / 2 * size - width(line[k], size), y - row / 2)
+                at = complex(end - AIR / 2 * size - script_width(line[k], size), y - row / 2)
             for off, letters, own in pieces(line[k], size):
                 if letters:
                     marks.append(Text(at + off, letters, own, DARK))
@@ -225,7 +225,9 @@ def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
         return
     units = results.problem.units
     for found in walk(results, ("dynamics",)):
-        columns = [cells(replace(column, digits=FIGURES), units, range(found.rows)) for column in found.columns]
+        columns = [
+            terminal_cells(replace(column, digits=FIGURES), units, range(found.rows)) for column in found.columns
+        ]
         heads = [translated(column.header) for column in found.columns]
         rows = [[*told, on_paper(unit)] for *told, unit in zip(*columns, strict=True)]
         yield "table-dynamics", table(found.title, heads, rows)

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.drawing.paper.picture import longest_for, on_large_sheet
 from tmm_cli.drawing.paper.record import POINT
-from tmm_cli.drawing.paper.script import Words, width
+from tmm_cli.drawing.paper.script import Words, script_width
 from tmm_cli.mechanics.numerics.vectors import Vector
 from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
 
@@ -66,12 +66,12 @@ class Block:
 
     def _shape(self, parts: int) -> Shape:
         columns = [
-            max(width(cell, CELL * POINT) for cell in column)
+            max(script_width(cell, CELL * POINT) for cell in column)
             for column in zip(*(r.cells for r in self.rows), strict=True)
         ]
         across = sum(columns) + GUTTER * max(len(columns) - 1, 0)
         beside = list(split(self.rows, parts))
-        wide = max([width(note, NOTE * POINT) for note in self.notes] + [len(beside) * (across + APART) - APART])
+        wide = max([script_width(note, NOTE * POINT) for note in self.notes] + [len(beside) * (across + APART) - APART])
         rows = max((len(part) for part in beside), default=0)
         under = BLOCK_LINE * len(self.notes)
         size = complex(wide + 2 * EDGE, EDGE + under + ROW * rows + (1.0 if rows and under else 0.0))
@@ -211,7 +211,7 @@ class Room:
     free: bool = False
 
 
-def room(figure: Figure, block: Block, also: Sequence[float] = ()) -> Room:
+def choose_scale(figure: Figure, block: Block, also: Sequence[float] = ()) -> Room:
     """The largest round scale, or one of `also`, at which the figure fits and the block covers nothing of it."""
     places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
     if on_large_sheet():

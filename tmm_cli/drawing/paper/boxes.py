@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def outline(places: list[complex]) -> list[complex]:
+def convex_hull(places: list[complex]) -> list[complex]:
     """The convex hull; the two ends when all lie on a line."""
     places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
     if len(places) < 3:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from tmm_cli.drawing.paper.fonts import width as width_of
 from tmm_cli.drawing.paper.record import POINT, Align, Style
 from tmm_cli.drawing.paper.script import Words, parts
-from tmm_cli.drawing.paper.script import width as width_of_words
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet
+from tmm_cli.drawing.paper.script import script_width as width_of_words
+from tmm_cli.drawing.paper.sheet import THIN, Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import numeral
 
 ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
@@ -206,7 +207,7 @@ class Across:
     spans: Sequence[tuple[float, float, str]] = ()
 
 
-def room(sheet: Sheet) -> tuple[float, float]:
+def axis_room(sheet: Sheet) -> tuple[float, float]:
     """Where the common axis may begin, and how long it may be, mm."""
     start = sheet.ground.low.real + LEFT
     return start, sheet.ground.high.real - RIGHT - start
@@ -230,12 +231,12 @@ def _between(over: Across) -> float:
     return 0.3 * ROW + (ROW if over.numbers else 0.6 * ROW)
 
 
-def chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool = False) -> list[Panel]:
+def draw_chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool = False) -> list[Panel]:
     """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes.
 
     Entries of legends for which the sheet is too low are left out.
     """
-    start, most = room(sheet)
+    start, most = axis_room(sheet)
     x = replace(over.axis, start=start + (most - over.axis.length) / 2)
     top = sheet.ground.high.imag - (ROW if over.spans else 0.0)
     under = _between(over) - 0.3 * ROW

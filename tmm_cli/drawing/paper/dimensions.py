@@ -11,8 +11,9 @@ import numpy as np
 
 from tmm_cli.drawing.paper.boxes import about, around, aside, row
 from tmm_cli.drawing.paper.labels import extent
-from tmm_cli.drawing.paper.labels import gathered as in_place
-from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, NAMES, THIN, Sheet
+from tmm_cli.drawing.paper.labels import gather_labels as in_place
+from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAMES, THIN, Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot
 
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
@@ -239,23 +240,23 @@ def roomiest(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> Ruler:
     return min(choices, key=lambda one: crowded(one, numbers, lines) + abs(one.off) / 3)
 
 
-def reach(ruler: Ruler, numbers: Sequence[Number]) -> float:
+def ruler_reach(ruler: Ruler, numbers: Sequence[Number]) -> float:
     """How far from the ruler its outer numbers end, mm."""
     return TICK + GAP + height(ruler, [number for number in numbers if number.outer])
 
 
 def crowded(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> float:
     """How much of what is drawn (points, mm) is where the ruler would be; more than all where it has no room."""
-    if ruler.radius and ruler.radius + ruler.off < reach(ruler, numbers) + CLEAR:
+    if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + CLEAR:
         return math.inf
     runs, own, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
     inside = (own > min(runs) - CLEAR) & (own < max(runs) + CLEAR)
     inner = height(ruler, [number for number in numbers if not number.outer])
-    inside &= (far > abs(ruler.off) - inner - TICK - GAP) & (far < abs(ruler.off) + reach(ruler, numbers))
+    inside &= (far > abs(ruler.off) - inner - TICK - GAP) & (far < abs(ruler.off) + ruler_reach(ruler, numbers))
     return float(np.count_nonzero(inside))
 
 
-def gathered(numbers: Sequence[Number]) -> list[Number]:
+def gather_numbers(numbers: Sequence[Number]) -> list[Number]:
     """Numbers that coincide on paper stand together, with an end of the way at its place."""
     found = []
     for __, here in in_place((complex(number.run, number.outer), number) for number in numbers):

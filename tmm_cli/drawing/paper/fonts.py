@@ -61,7 +61,7 @@ def width(text: str, size: float, *, bold: bool = False, italic: bool = False) -
 
 
 @lru_cache(1000)
-def outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
+def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
     """Of a line of text of size 1: places from the left end of its base line on, and matplotlib's codes of them."""
     along, places, codes = 0.0, [], []
     for letter in text:

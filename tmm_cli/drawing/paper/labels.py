@@ -231,7 +231,7 @@ def beside(label: Label, width: float, height: float) -> Iterator[Tier]:
         yield feet, feet + (reach + half) * out, 1.5 * reach + MIDDLE * np.abs(shares - 0.5)
 
 
-def gathered(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
+def gather_labels(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
     """Items by their place (mm): those that coincide on paper stand together."""
     found: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
@@ -246,4 +246,4 @@ def gathered(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list
 def extent(text: script.Words, size: float) -> tuple[float, float]:
     """Width and height of a text on paper, mm, with a little air at its sides; size: points."""
     high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
-    return script.width(text, size * POINT) + 0.6, high * size * POINT
+    return script.script_width(text, size * POINT) + 0.6, high * size * POINT

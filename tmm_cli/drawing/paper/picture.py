@@ -113,7 +113,7 @@ def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tupl
     return (across / mu + edge, up / mu + edge + STRIP), mu
 
 
-def picture(
+def render_picture(
     marks: Iterable[Mark],
     title: str,
     longest: float,
@@ -137,12 +137,12 @@ def picture(
 
 def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:
     """Corners of the box about marks, mm."""
-    places = [place for mark in marks for place in reach(mark)] or [0j]
+    places = [place for mark in marks for place in mark_corners(mark)] or [0j]
     xs, ys = [z.real for z in places], [z.imag for z in places]
     return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
 
-def reach(mark: Mark) -> Sequence[complex]:
+def mark_corners(mark: Mark) -> Sequence[complex]:
     """Places between which a mark lies, mm."""
     match mark:
         case Line():

@@ -43,11 +43,11 @@ def pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
             for text, off in ((part.below, BELOW), (part.above, ABOVE)):
                 if text:
                     yield complex(foot, off * size), text, small
-        at += width(part, size)
+        at += script_width(part, size)
 
 
 @lru_cache(10_000)
-def width(words: Words, size: float) -> float:
+def script_width(words: Words, size: float) -> float:
     """Width of a text, in the unit of its size."""
     return sum(
         fonts.width(part, size)
@@ -68,10 +68,10 @@ def wrapped(words: Words, size: float, most: float, hanging: str = "") -> tuple[
     wide = 0.0
     *tokens, before, last = ((), (), *_tokens(words))
     for token in (*tokens, (*before, *last)):
-        own = width(token, size)
+        own = script_width(token, size)
         if line and wide + own > most:
             lines.append(_joined(line))
-            line, wide = [hanging], width(hanging, size)
+            line, wide = [hanging], script_width(hanging, size)
         line += token
         wide += own
     return (*lines, _joined(line))

@@ -15,9 +15,17 @@ from tmm_cli.drawing.paper.fonts import SHARE
 from tmm_cli.drawing.paper.ground import AIR, Ground
 from tmm_cli.drawing.paper.labels import Label, place
 from tmm_cli.drawing.paper.labels import extent as label_extent
-from tmm_cli.drawing.paper.picture import covering, extremes, fits, longest_for, on_large_sheet, paper_for, picture
+from tmm_cli.drawing.paper.picture import (
+    covering,
+    extremes,
+    fits,
+    longest_for,
+    on_large_sheet,
+    paper_for,
+    render_picture,
+)
 from tmm_cli.drawing.paper.record import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
-from tmm_cli.drawing.paper.writing import in_a_line
+from tmm_cli.drawing.paper.writing import DARK, in_a_line
 from tmm_cli.language import numeral, spelt
 from tmm_cli.mechanics.forces.free_bodies import Symbol
 from tmm_cli.mechanics.numerics.vectors import unit
@@ -25,7 +33,7 @@ from tmm_cli.mechanics.plans.record import MARGIN, PAD, STRIP, extent, ground_of
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.problem.units import UnitSystem, on_paper
 
-DARK, THIN, LOAD, INERTIA, REACTION, GREY = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
+THIN, LOAD, INERTIA, REACTION, GREY = "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 NAMES = "#7a3d99"  # of links, lines and angles
 COLOURS = {
     "absolute": DARK,
@@ -126,7 +134,7 @@ class Sheet:
         """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         one = isinstance(text, str)
-        start = complex(at) if one else at - SHARE[ha] * script.width(text, size * POINT) * along
+        start = complex(at) if one else at - SHARE[ha] * script.script_width(text, size * POINT) * along
         for off, letters, own in script.pieces(text, size * POINT):
             line = "".join(letter if letter.isprintable() else " " for letter in letters)
             if line.strip():
@@ -222,7 +230,7 @@ class Sheet:
             if self.free and self.figure:
                 longest = longest_for(longest)
             mu = None if self.free else self.mu
-            return picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
+            return render_picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
         return Drawing.of(self.paper, self.marks)
 
     def _interrupt(self) -> None:

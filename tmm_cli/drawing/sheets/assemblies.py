@@ -10,10 +10,11 @@ import numpy as np
 
 from tmm_cli.drawing.paper.ground import Ground
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, cells, scale_words
+from tmm_cli.drawing.paper.sheet import THIN, Sheet, cells, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.structure import colours
 from tmm_cli.drawing.symbols.parts import STRUCTURAL, Look, numbers, symbol_size
-from tmm_cli.drawing.symbols.render import names, render, spot
+from tmm_cli.drawing.symbols.render import names, render_scene, spot
 from tmm_cli.drawing.symbols.scene import Scene
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis.pipeline import Results
@@ -111,7 +112,7 @@ def _drawn(sheet: Sheet, scene: Scene, group: GroupAssemblies, look: Look) -> No
     """The group in its colour, its neighbours grey, the frame dark."""
     own, known, pairs = group.group.links, _neighbours(group), scene.structure.pairs
     hue = colours(scene.structure) | dict.fromkeys(known, THIN)
-    drawn = render(sheet, scene, (*known, *own), pairs, look, hue)
+    drawn = render_scene(sheet, scene, (*known, *own), pairs, look, hue)
     numbers(sheet, drawn.forms, hue)
     hinged = {p.point for p in pairs if p.kind == "R"}
     named = [(p, p.point) for p in pairs if p.kind == "R"]

@@ -13,8 +13,9 @@ from tmm_cli.drawing.paper.blocks import Room
 from tmm_cli.drawing.paper.ground import Ground
 from tmm_cli.drawing.paper.picture import excess, fits, longest_for, on_large_sheet
 from tmm_cli.drawing.paper.record import POINT
-from tmm_cli.drawing.paper.script import Words, width, wrapped
-from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, THIN, Sheet
+from tmm_cli.drawing.paper.script import Words, script_width, wrapped
+from tmm_cli.drawing.paper.sheet import GREY_TEXT, THIN, Sheet
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
 
@@ -45,7 +46,7 @@ class Table:
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
-        return [max(width(words, TEXT * POINT) for words in column) + SPACE for column in columns]
+        return [max(script_width(words, TEXT * POINT) for words in column) + SPACE for column in columns]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.labels import gather_labels
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, Sheet, border, scale_words
 from tmm_cli.drawing.sheets.mechanism import Position, measured
@@ -23,7 +23,7 @@ SPOT = 0.9  # mm: radius of a centre
 BEYOND = 1e4  # mm: beyond every sheet
 
 
-def sheets(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
     """A sheet a position."""
     motion = results.motion
     assert motion is not None
@@ -45,7 +45,7 @@ def _sheet(here: Position, scene: Scene, found: Sequence[Centre]) -> Drawing:
     for centre in found:
         for line in centre.lines:
             _line(sheet, line, centre, known, near)
-    for at, links in gathered((sheet.on(place), links) for links, place in near.items()):
+    for at, links in gather_labels((sheet.on(place), links) for links, place in near.items()):
         sheet.circle(at, SPOT, LOAD, LOAD, 0.3, 7)
         sheet.label(_names(links), at, 9, LOAD)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))

@@ -11,7 +11,8 @@ import numpy as np
 from tmm_cli.drawing.paper.dimensions import angle_mark, dimension
 from tmm_cli.drawing.paper.labels import Label
 from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_words
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.forms import Line
 from tmm_cli.drawing.symbols.parts import MEASURED, box, guide, support, support_side
 from tmm_cli.drawing.symbols.scene import BEYOND
@@ -113,7 +114,7 @@ ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
 BOXES = {"slider": MEASURED.box, "stone": MEASURED.stone}
 
 
-def construction(
+def draw_construction(
     title: str,
     drawn: Construction,
     units: UnitSystem,

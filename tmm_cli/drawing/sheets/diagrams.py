@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, Axis, Curve, Jump, Plot, across, chart, count_fitting, room
+from tmm_cli.drawing.paper.chart import Across, Axis, Curve, Jump, Plot, across, axis_room, count_fitting, draw_chart
 from tmm_cli.drawing.paper.record import Drawing, Style
 from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, NAMES, REACTION, THIN, Sheet, safe, scale_words, with_unit
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, REACTION, THIN, Sheet, safe, scale_words, with_unit
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets import over_cycle
 from tmm_cli.drawing.sheets.over_cycle import Quantities
 from tmm_cli.language import _, numeral
@@ -48,7 +49,7 @@ SYMBOLS = {
 UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the file
 
 
-def diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
     places, borders = closely(results)
     whole = at_places(results, places)
@@ -153,7 +154,7 @@ def _panels_over_turn(
         numbers = [(mark, text) for mark, (__, text) in zip(marks.tolist(), numbers, strict=True)]
         if not results.inputs.request.places:
             numbers.append((end, str(len(results.asked))))
-    axis, words = _across(results, (0.0, end) if end else (min(xs), max(xs)), *room(sheet))
+    axis, words = _across(results, (0.0, end) if end else (min(xs), max(xs)), *axis_room(sheet))
     strokes = sorted(_strokes(results))
     spans = [
         (math.degrees(start), math.degrees(start + length), name)
@@ -162,7 +163,7 @@ def _panels_over_turn(
     over = Across(axis, words, sorted(numbers), spans)
     plots = [plotted(one, results.problem.units, xs, marks, borders) for one in every]
     count = count_fitting(sheet, plots, over)
-    chart(sheet, plots[:count], over)
+    draw_chart(sheet, plots[:count], over)
     return count, sheet.finish()
 
 

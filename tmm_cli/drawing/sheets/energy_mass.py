@@ -8,11 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import PLAIN, ROW, TICKS, Across, Curve, Panel, Plot, across, chart, room, round_up
+from tmm_cli.drawing.paper.chart import (
+    PLAIN,
+    ROW,
+    TICKS,
+    Across,
+    Curve,
+    Panel,
+    Plot,
+    across,
+    axis_room,
+    draw_chart,
+    round_up,
+)
 from tmm_cli.drawing.paper.ground import Ground
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, NAMES, THIN, Sheet, scale_words, with_unit
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, THIN, Sheet, scale_words, with_unit
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import _, numeral, spelt, symbol
 from tmm_cli.mechanics.analysis.pipeline import Results
 from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol
@@ -64,7 +77,7 @@ def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
         return Curve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
 
     whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
-    start, longest = room(sheet)
+    start, longest = axis_room(sheet)
     axis = across(*_ends(whole.xs, _leaning(steady) / factor), start, longest)
     words = with_unit(_("reduced inertia of the links J"), MOMENT_OF_INERTIA, units)
     below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
@@ -74,7 +87,7 @@ def energy_mass(results: Results, running: Running, way: Real) -> Drawing:
         for tangent, name, colour in zip(steady.tangents, names, COLOURS, strict=True)
     ]
     work = Plot(_("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm"))
-    panel = chart(sheet, [work], Across(axis, below))[0]
+    panel = draw_chart(sheet, [work], Across(axis, below))[0]
     for curve in (whole, *lines):
         sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
     every = max(1, round(round_up(len(here.xs) / NUMBERED, TICKS)))

@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import NOTE, Block, Figure, Row, room
-from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.blocks import NOTE, Block, Figure, Row, choose_scale
+from tmm_cli.drawing.paper.labels import gather_labels
 from tmm_cli.drawing.paper.picture import written_here
 from tmm_cli.drawing.paper.record import POINT, Drawing
 from tmm_cli.drawing.paper.script import Words, wrapped
-from tmm_cli.drawing.paper.sheet import COLOURS, DARK, THIN, Sheet, safe, scale_words
+from tmm_cli.drawing.paper.sheet import COLOURS, THIN, Sheet, safe, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.group_loads import figure
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
@@ -51,7 +52,7 @@ def _sheet(here: Position, plan: ForcePlan, title: str) -> Sheet:
     equation = list(wrapped(_equation(plan), NOTE * POINT, EQUATION)) if written_here() else []
     # how wide the table is hardly hangs on the scale
     notes = [*equation, "μ = 0.0000 N/mm"]
-    found = room(ground, Block(notes, table(plan, plan.plan.size / 100 or 1.0), 3))
+    found = choose_scale(ground, Block(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
     sheet = here.sheet(title, room=found, links=", ".join(plan.links))
     _joints(sheet, drawn, aside)
     for vector, off in zip(drawn, aside, strict=True):
@@ -59,7 +60,7 @@ def _sheet(here: Position, plan: ForcePlan, title: str) -> Sheet:
     for line in equation:
         sheet.note(line)
     sheet.note(scale_words("F", sheet.mu, "N/mm"))
-    sheet.table(table(plan, sheet.mu), 3)
+    sheet.table(force_plan_rows(plan, sheet.mu), 3)
     return sheet
 
 
@@ -79,7 +80,7 @@ def told_apart(plan: ForcePlan) -> list[NamedVector]:
     ]
 
 
-def table(plan: ForcePlan, mu: float) -> list[Row]:
+def force_plan_rows(plan: ForcePlan, mu: float) -> list[Row]:
     """Every vector with its size, its length on paper and its direction; then reactions of which it has the parts."""
     rows = [Row((_("vector"), spelt("N"), spelt("mm"), _("from x")), head=True)]
     least = NO_FORCE * plan.plan.size
@@ -122,7 +123,7 @@ def _cover(one: NamedVector, other: NamedVector, size: float) -> bool:
 def _joints(sheet: Sheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
     """Thin lines that join what belongs to one corner of the polygon where its vectors are spread apart."""
     ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
-    for _at, places in gathered(ends):
+    for _at, places in gather_labels(ends):
         apart = [place for place in places if abs(place - places[0]) > 0.1 * LANE]
         for place in apart:
             sheet.line([places[0], place], THIN, 0.5, z=2.0)

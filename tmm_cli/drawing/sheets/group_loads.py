@@ -141,7 +141,7 @@ def figure(value: float) -> str:
 MOST = 12  # arms on one sheet
 
 
-def group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     """A sheet for each group and each driving link; another one for equations whose arms would crowd the first."""
     if here.results.reactions is None:
         return

@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, Sheet, cells
+from tmm_cli.drawing.paper.sheet import GREY_TEXT, Sheet, cells
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics.vectors import unit
 from tmm_cli.mechanics.plans.record import LANDSCAPE

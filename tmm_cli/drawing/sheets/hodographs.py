@@ -9,7 +9,8 @@ import numpy as np
 
 from tmm_cli.drawing.paper.record import Drawing, Style
 from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import DARK, LOAD, REACTION, THIN, Sheet, safe, scale_words
+from tmm_cli.drawing.paper.sheet import LOAD, REACTION, THIN, Sheet, safe, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.diagrams import closely, over_turn
 from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, across, chart, room
+from tmm_cli.drawing.paper.chart import Across, across, axis_room, draw_chart
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.sheet import Sheet, safe, scale_words, with_unit
 from tmm_cli.drawing.sheets.diagrams import plotted
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import Intermittent
 
 
-def intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
     """A sheet a wheel: its angle and its angular speed over the driver's way."""
     for wheel in results.wheels or ():
         yield f"intermittent-{safe(wheel.task.name)}", _sheet(results, wheel)
@@ -31,7 +31,7 @@ def _sheet(results: Results, wheel: Intermittent) -> Drawing:
     factor = np.pi / 180 if crank else units.factor(LENGTH)
     caption = _("Intermittent motion over a cycle: {name}").format(name=wheel.task.name)
     sheet = Sheet(results.problem.title, caption)
-    axis = across(0.0, wheel.way / factor, *room(sheet), degrees=crank)
+    axis = across(0.0, wheel.way / factor, *axis_room(sheet), degrees=crank)
     if crank:
         words = (f"{_('turn of the crank, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
     else:
@@ -50,5 +50,5 @@ def _sheet(results: Results, wheel: Intermittent) -> Drawing:
         for part in wheel.parts
     ]
     plots = [plotted(one, units, ways / factor, np.zeros(0), borders) for one in every]
-    chart(sheet, plots, Across(axis, words, spans=spans))
+    draw_chart(sheet, plots, Across(axis, words, spans=spans))
     return sheet.finish()

@@ -30,7 +30,7 @@ FINEST = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
 PARTS = 6  # loads, or links, that have a curve each; the smallest of more are summed up
 
 
-def law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Of a file that asks for it: what acts, what comes of it, and the energy-mass diagram."""
     yield from over_cycle(results)
     yield from diagram(results)

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gathered
+from tmm_cli.drawing.paper.labels import gather_labels
 from tmm_cli.drawing.paper.picture import written_here
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, scale_words
+from tmm_cli.drawing.paper.sheet import THIN, Sheet, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.acting import Forces, arms, extent
 from tmm_cli.drawing.sheets.beneath import Beneath, above
 from tmm_cli.drawing.sheets.group_loads import figure, table_of_arms, table_of_forces, written
@@ -19,7 +20,7 @@ from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, filled, numeral, spelt
 from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol, balance_symbol
 from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE
-from tmm_cli.mechanics.plans.lever import POLE, LeverPlan, Pair, lever_plan
+from tmm_cli.mechanics.plans.lever import LEVER_POLE, LeverPlan, Pair, lever_plan
 from tmm_cli.mechanics.plans.record import in_letters
 
 MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
@@ -27,7 +28,7 @@ MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of 
 
 def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
-    for at, names in gathered((sheet.on(end), name) for name, end in ends.items()):
+    for at, names in gather_labels((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
         sheet.label(", ".join(map(in_letters, names)), at, 11 if pole in names else 10)
 
@@ -40,7 +41,7 @@ def weighty(plan: LeverPlan) -> Sequence[Acting]:
     return [a for a in plan.acting if a.pair or abs(a.force) > SLIGHT * force or abs(a.moment) > SLIGHT * moment]
 
 
-def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     """Arms are lines from the pole to the feet on the lines of forces."""
     results = here.results
     if results.lever is None or results.reactions is None:
@@ -70,7 +71,7 @@ def lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     shown = weighty(plan)
     Forces(sheet).draw(shown)
     arms(sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in shown))], bars)
-    letter_points(sheet, plan.ends, POLE)
+    letter_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(shown) < len(plan.acting)
     sheet.note(_("forces without scale, below 0.1 % only in the table") if few else _("forces without scale"))

@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, Room, room
+from tmm_cli.drawing.paper.blocks import Block, Figure, Room, choose_scale
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, GREY, NAMES, THIN, Sheet, scale_words
+from tmm_cli.drawing.paper.sheet import GREY, NAMES, THIN, Sheet, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.acting import LOAD_MM, Forces
 from tmm_cli.drawing.symbols.forms import by_points
 from tmm_cli.drawing.symbols.parts import MEASURED, mass_centre
-from tmm_cli.drawing.symbols.render import Rendered, render, slider
+from tmm_cli.drawing.symbols.render import Rendered, render_scene, slider
 from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
 from tmm_cli.drawing.symbols.wheel_symbols import draw as draw_wheels
 from tmm_cli.language import _, numeral, typeset
-from tmm_cli.mechanics.analysis.in_detail import in_detail
+from tmm_cli.mechanics.analysis.in_detail import detailed_positions
 from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
 from tmm_cli.mechanics.forces.free_bodies import Loaded
 from tmm_cli.mechanics.kinematics.motion import Motion
@@ -73,7 +74,7 @@ def measured(sheet: Sheet, scene: Scene, mark: str = "", links: Sequence[str] = 
     moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK)
     apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
     inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
-    drawn = render(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
+    drawn = render_scene(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
     for pair in apart:
         if not pair.lower:
             draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK))
@@ -151,7 +152,7 @@ def detailed(results: Results) -> list[Position]:
     """The positions in detail that could be computed."""
     motion = results.motion
     assert motion is not None
-    return [Position(results, motion, k) for k in in_detail(results)]
+    return [Position(results, motion, k) for k in detailed_positions(results)]
 
 
 def position(here: Position) -> Iterable[tuple[str, Drawing]]:
@@ -167,7 +168,7 @@ def position(here: Position) -> Iterable[tuple[str, Drawing]]:
     for one in given:
         if not one.couple:
             figure.spots([one.at], ABOUT / 2, LOAD_MM * one.force / abs(one.force))
-    found = room(figure, Block([*notes, scale_words("l", 0.0025, "m/mm")]))
+    found = choose_scale(figure, Block([*notes, scale_words("l", 0.0025, "m/mm")]))
     sheet = here.sheet("{caption}", room=found)
     measured(sheet, scene)
     for one in given:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, Row, room
+from tmm_cli.drawing.paper.blocks import Block, Figure, Row, choose_scale
 from tmm_cli.drawing.paper.boxes import aside
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.sheet import COLOURS, THIN, scale_words
@@ -15,7 +15,7 @@ from tmm_cli.drawing.sheets.lever import letter_points
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.plans.motion import POLE, acceleration_plan, readings, turns, velocity_plan
+from tmm_cli.mechanics.plans.motion import ACCELERATION_POLE, acceleration_plan, readings, turns, velocity_plan
 from tmm_cli.mechanics.plans.record import NamedVector, Plan, in_letters
 
 ABOUT = 9.0  # mm about the lines of a plan, for letters
@@ -46,7 +46,7 @@ def sorts() -> tuple[Sort, Sort]:
             "acceleration",
             _("Acceleration plan. {caption}"),
             acceleration_plan,
-            POLE,
+            ACCELERATION_POLE,
             "a",
             "m/s²",
             "epsilon",
@@ -55,7 +55,7 @@ def sorts() -> tuple[Sort, Sort]:
     )
 
 
-def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
     """Velocity plan and acceleration plan of a position, with the parts of each link."""
     for sort in sorts():
         plan = sort.plan(here.motion, here.k)
@@ -64,7 +64,9 @@ def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
         for vector in plan.vectors:
             figure.line(vector.start, vector.end, ABOUT)
         # how wide the table is hardly hangs on the scale
-        found = room(figure, Block(["μ = 0.0000 (m/s²)/mm"], table(here, sort, plan, plan.size / 100 or 1.0), 2))
+        found = choose_scale(
+            figure, Block(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(here, sort, plan, plan.size / 100 or 1.0), 2)
+        )
         sheet = here.sheet(sort.title, room=found)
         for vector in plan.drawn():
             # of points of mass a thin ray is enough: the letters say the rest
@@ -78,7 +80,7 @@ def motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
         if plan.size == 0:
             sheet.note(_("everything is at rest"))
         sheet.note(scale_words(sort.letter, sheet.mu, f"({sort.unit})/mm"))
-        sheet.table(table(here, sort, plan, sheet.mu), 2)
+        sheet.table(motion_plan_rows(here, sort, plan, sheet.mu), 2)
         yield here.stem(sort.stem), sheet.finish()
 
 
@@ -101,7 +103,7 @@ def alone(vector: NamedVector, plan: Plan) -> complex:
     return next((place for place, free in zip(places, room, strict=True) if free > NEAR * plan.size), places[0])
 
 
-def table(here: Position, sort: Sort, plan: Plan, mu: float) -> list[Row]:
+def motion_plan_rows(here: Position, sort: Sort, plan: Plan, mu: float) -> list[Row]:
     """Every vector with its segment, its length on paper and its value; what each link turns with."""
     rows = [Row((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in readings(plan):

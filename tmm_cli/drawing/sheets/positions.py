@@ -9,21 +9,22 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, room
+from tmm_cli.drawing.paper.blocks import Block, Figure, choose_scale
 from tmm_cli.drawing.paper.dimensions import (
     Number,
     Ruler,
     angle_mark,
     dimension,
     draw_ruler,
-    gathered,
-    reach,
+    gather_numbers,
     roomiest,
     ruler_of,
+    ruler_reach,
 )
-from tmm_cli.drawing.paper.labels import gathered as in_place
+from tmm_cli.drawing.paper.labels import gather_labels as in_place
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, GREY_TEXT, LOAD, Sheet, scale_words
+from tmm_cli.drawing.paper.sheet import GREY_TEXT, LOAD, Sheet, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.lengths import lengths
 from tmm_cli.drawing.sheets.mechanism import detailed, measured, paths, skeleton, trace
 from tmm_cli.drawing.symbols.parts import MEASURED
@@ -233,7 +234,7 @@ def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     notes, rows = list(_notes(view, track, marks)), lengths(results)
     figure = _figure(view, whole)
     off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
-    found = room(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
+    found = choose_scale(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
     sheet = Sheet(results.problem.title, caption, room=found)
     trace(sheet, whole)
@@ -292,7 +293,7 @@ def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark]
     more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
     for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
         way = ruler.way(min(max(run, low), high))
-        for out in (0.0, reach(ruler, numbers), reach(ruler, numbers) + DIMENSION):
+        for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + DIMENSION):
             figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
     return ruler.off
 
@@ -301,7 +302,7 @@ def _numbers(track: Track, marks: list[PositionMark], on: Callable[[complex], co
     """A scale along the way of the output, and its numbers."""
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
-    numbers = gathered([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
+    numbers = gather_numbers([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
     return plain, numbers
 
 
@@ -315,7 +316,7 @@ def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], o
     first, last = _farthest(track.places(view.states))
     with sheet.on_layer("dimensions"):
         if track.kind == "line":
-            ends = [ruler.at(float(ruler.run(sheet.on(place))), reach(ruler, numbers)) for place in (first, last)]
+            ends = [ruler.at(float(ruler.run(sheet.on(place))), ruler_reach(ruler, numbers)) for place in (first, last)]
             dimension(sheet, ends[0], ends[1], _size(view))
         elif travel(view.results) < STRAIGHT:
             angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)

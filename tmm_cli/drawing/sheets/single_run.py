@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, across, chart, room
+from tmm_cli.drawing.paper.chart import Across, across, axis_room, draw_chart
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.drawing.paper.sheet import Sheet, scale_words, with_unit
 from tmm_cli.drawing.sheets.diagrams import plotted
@@ -35,7 +35,7 @@ PLACES = 480  # of all pieces of a run together
 LEAST, FEWEST = 40, 4  # of each: where there are few pieces, and where there are very many
 
 
-def single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Of a file that asks for one."""
     single = results.single
     if single is None or results.motion is None:
@@ -51,7 +51,7 @@ def single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     sheet = Sheet(
         results.problem.title, _("Single run over the way of the driver; dots: computed positions"), paper=PORTRAIT
     )
-    start, most = room(sheet)
+    start, most = axis_room(sheet)
     axis = across(0.0, float(single.run.way[-1]) / factor, start, most, degrees=crank)
     if crank:
         told = _("turn of the crank from the beginning of the run, deg")
@@ -63,7 +63,7 @@ def single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     numbers = [(float(x) / factor, str(n)) for x, n, there in zip(here, results.numbers, reached, strict=True) if there]
     every = _quantities(single, (times, states), (time, here, speed), crank=crank)
     plots = [plotted(one, units, states[0] / factor, here / factor, ends) for one in every]
-    chart(sheet, plots, Across(axis, words, sorted(numbers)))
+    draw_chart(sheet, plots, Across(axis, words, sorted(numbers)))
     yield "single-run", sheet.finish()
 
 

@@ -15,11 +15,12 @@ from tmm_cli.drawing.paper.ground import Ground
 from tmm_cli.drawing.paper.labels import extent
 from tmm_cli.drawing.paper.picture import on_large_sheet
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, cells, safe
+from tmm_cli.drawing.paper.sheet import THIN, Sheet, cells, safe
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.mechanism import place_of_driver
 from tmm_cli.drawing.symbols.forms import Form
 from tmm_cli.drawing.symbols.parts import FREE, PALETTE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
-from tmm_cli.drawing.symbols.render import arrows, names, render, spot
+from tmm_cli.drawing.symbols.render import arrows, names, render_scene, spot
 from tmm_cli.drawing.symbols.scene import BEYOND, Scene, fitted, scale_to
 from tmm_cli.drawing.symbols.wheel_symbols import draw
 from tmm_cli.drawing.symbols.wheels import outline, replacement
@@ -140,7 +141,7 @@ def scheme(title: str, place: str, scene: Scene) -> Sheet:
     sheet.ground.low += 1j * legend.height(sheet.paper[0])
     scene = fitted(sheet, scene, links, PAD, most)
     look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
-    drawn = render(sheet, scene, links, pairs, look, hue)
+    drawn = render_scene(sheet, scene, links, pairs, look, hue)
     arrows(sheet, scene, drawn, look, hue)
     _replacements(sheet, scene)
     numbers(sheet, drawn.forms, hue)
@@ -363,7 +364,7 @@ def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
     for pair in outer:
         if pair.slide is not None:
             sliding_lead(sheet, scene, pair, part, look)
-    drawn = render(sheet, scene, links, inner, look, {FRAME: DARK} | own, leads=outer)
+    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK} | own, leads=outer)
     for pair in outer:
         if pair.kind == "R":
             _stub(sheet, scene, pair, drawn.forms, look)

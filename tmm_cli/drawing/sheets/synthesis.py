@@ -8,10 +8,11 @@ from itertools import cycle
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, Curve, Plot, across, chart, filling, limits, room
+from tmm_cli.drawing.paper.chart import Across, Curve, Plot, across, axis_room, draw_chart, filling, limits
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
-from tmm_cli.drawing.sheets.construction import construction
+from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
+from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.sheets.construction import draw_construction
 from tmm_cli.drawing.sheets.mechanism import measured, paths, skeleton, trace
 from tmm_cli.drawing.symbols.actuators import cylinders
 from tmm_cli.drawing.symbols.forms import by_points
@@ -29,7 +30,7 @@ from tmm_cli.synthesis.record import Outcome
 ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 
 
-def sheets(
+def draw_synthesis(
     title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
     """What the task draws, and the extreme positions, if there is a mechanism with strokes.
@@ -41,7 +42,7 @@ def sheets(
         if isinstance(drawn, Diagram):
             yield f"synthesis-{drawn.name}", diagram(title, drawn, units)
         else:
-            yield f"synthesis-{drawn.name}", construction(title, drawn, units, linkage, names).finish()
+            yield f"synthesis-{drawn.name}", draw_construction(title, drawn, units, linkage, names).finish()
     if results is not None and results.strokes is not None and results.strokes.strokes:
         yield "synthesis-extremes", extremes(results).finish()
 
@@ -50,7 +51,7 @@ def synthesised(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The sheets of a problem whose file has a synthesis."""
     found = results.problem.synthesis
     if found is not None:
-        yield from sheets(results.problem.title, found.outcome, results, results.problem.units, found.names)
+        yield from draw_synthesis(results.problem.title, found.outcome, results, results.problem.units, found.names)
 
 
 def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
@@ -60,12 +61,12 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     wide = KINDS[kind].dimension
     over = limits([np.asarray(line.x, dtype=float) / units.factor(wide) for line in (*drawn.lines, *drawn.lower)])
     degrees = wide == ANGLE and units.symbol(ANGLE) == "deg"
-    start, most = room(sheet)
+    start, most = axis_room(sheet)
     axis = filling(*over, start, most) if drawn.equal else across(*over, start, most, degrees=degrees)
     plots = [_plot(drawn.lines, drawn.y, wide, units)]
     if drawn.lower:
         plots.append(replace(_plot(drawn.lower, drawn.lower_y, wide, units), logarithmic=True, share=0.6))
-    chart(sheet, plots, Across(axis, with_unit(translated(words), wide, units)), same_scale=drawn.equal)
+    draw_chart(sheet, plots, Across(axis, with_unit(translated(words), wide, units)), same_scale=drawn.equal)
     return sheet.finish()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import DARK, Sheet, scale_words
+from tmm_cli.drawing.paper.sheet import Sheet, scale_words
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.mechanism import measured
 from tmm_cli.drawing.sheets.structure import at_sketch
 from tmm_cli.drawing.symbols.parts import MEASURED

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper.sheet import DARK, Sheet, hatch
+from tmm_cli.drawing.paper.sheet import Sheet, hatch
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
 from tmm_cli.mechanics.forces.free_bodies import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide, Spring

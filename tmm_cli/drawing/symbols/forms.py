@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper.boxes import outline
+from tmm_cli.drawing.paper.boxes import convex_hull
 from tmm_cli.drawing.paper.sheet import Sheet, border
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders
 from tmm_cli.drawing.symbols.scene import BEYOND, ON_LINE, Scene, apart
@@ -195,7 +195,7 @@ def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], ba
             welds.append((foot, near - foot, _longer(bar, foot)))
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
-    hull = _flat(outline(loose)) if len(loose) > 1 else ()
+    hull = _flat(convex_hull(loose)) if len(loose) > 1 else ()
     return Form(joints, boxes, hull, bars, struts, welds)
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from tmm_cli.drawing.paper.record import Style
 from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import DARK, Sheet, hatch
+from tmm_cli.drawing.paper.sheet import Sheet, hatch
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.forms import Form, Line
 from tmm_cli.drawing.symbols.scene import ON_LINE, Scene, apart
 from tmm_cli.mechanics.numerics.vectors import Vector, cross, dot, unit

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gathered
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, border
+from tmm_cli.drawing.paper.labels import gather_labels
+from tmm_cli.drawing.paper.sheet import THIN, Sheet, border
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders, driver_name, springs
 from tmm_cli.drawing.symbols.forms import Form, Line, by_pairs, by_points
 from tmm_cli.drawing.symbols.parts import (
@@ -49,7 +50,7 @@ class Rendered:
     cylinders: dict[str, complex] = field(default_factory=dict)
 
 
-def render(
+def render_scene(
     sheet: Sheet,
     scene: Scene,
     links: Sequence[str],
@@ -101,7 +102,7 @@ def _render(
             slider(sheet, scene, pair, look, hue[pair.slide.runner], rods)
     if look.measured:
         springs(sheet, scene)
-    hinges = gathered((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
+    hinges = gather_labels((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
     for at, here in hinges:
         _hinge(sheet, at, here, forms, look, hue)
     for at, here in hinges:
@@ -193,7 +194,7 @@ def _hinge(
 
 def names(sheet: Sheet, named: Iterable[tuple[complex, str, str]]) -> None:
     """Names beside their places with colours; those of one place share a label."""
-    for at, here in gathered((at, (name, colour)) for at, name, colour in named):
+    for at, here in gather_labels((at, (name, colour)) for at, name, colour in named):
         sheet.label(", ".join(dict.fromkeys(name for name, __ in here)), at, 10, here[0][1])
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from tmm_cli.drawing.paper.boxes import aside
 from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.sheet import DARK, THIN, Sheet, hatch
+from tmm_cli.drawing.paper.sheet import THIN, Sheet, hatch
+from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.symbols.forms import Line
 from tmm_cli.drawing.symbols.wheels import CamShape, Disc, Outline, Teeth
 from tmm_cli.mechanics.linkage import FRAME

@@ -13,7 +13,7 @@ from tmm_cli.grading.cells import shown
 from tmm_cli.grading.exports.book import Cell, Gradebook, finite, marks_header, marks_rows, reasons, rounded
 from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
-from tmm_cli.grading.statistics import tables
+from tmm_cli.grading.statistics import statistics_tables
 from tmm_cli.mechanics.quantities import NUMBER
 from tmm_cli.reports.spreadsheets import WRITTEN, empty_workbook
 from tmm_cli.reports.table import Column
@@ -105,7 +105,7 @@ def _group(workbook: Any, book: Gradebook, head: Any) -> None:
     sheet.set_landscape()
     sheet.fit_to_pages(1, 0)
     title = workbook.add_format({"bold": True, "font_size": 13})
-    for table in tables(book.task, book.marks):
+    for table in statistics_tables(book.task, book.marks):
         sheet.write_string(at, 0, table.title, title)
         for k, column in enumerate(table.columns):
             sheet.write_string(at + 1, k, column.heading(book.task.units), head)

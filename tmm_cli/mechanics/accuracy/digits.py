@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.accuracy.lengths import all_changed, largest_beside, lengths, widened
+from tmm_cli.mechanics.accuracy.lengths import all_changed, largest_beside, list_lengths, widened
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.mechanics.analysis.on_request import driver_motion
 from tmm_cli.mechanics.analysis.pipeline import Results, near_dead, refined, with_forces
@@ -91,7 +91,7 @@ def judged(
         return Digits(mu=mu)
     judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
     found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
-    chunk = max(CHUNK // (1 + len(lengths(results.linkage))), 1)
+    chunk = max(CHUNK // (1 + len(list_lengths(results.linkage))), 1)
     near = near_dead(motion) if motion.where is None else motion.where
     for these, close in ((~near & motion.placed, False), (near, True)):
         places = np.flatnonzero(these)
@@ -184,7 +184,7 @@ class _Judge:
         All in one run: its positions are those at q once for each number that is changed there, the place first. rows:
         the values at q; step: the relative change of a length.
         """
-        count, data = len(q), lengths(self.results.linkage)
+        count, data = len(q), list_lengths(self.results.linkage)
         sizes = largest_beside(data)
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else np.max(sizes, initial=0.0) or 1.0
         by = step * np.array([reach, *sizes])

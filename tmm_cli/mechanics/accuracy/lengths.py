@@ -34,7 +34,7 @@ class Length:
     paths: frozenset[str]
 
 
-def lengths(linkage: Linkage) -> tuple[Length, ...]:
+def list_lengths(linkage: Linkage) -> tuple[Length, ...]:
     """Every coordinate of every link that is not zero. The same number on the same link is one length."""
     found: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_vectors(linkage))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_cli.mechanics.accuracy.digits import PAPER, SHARE, Digits, exact, growth, slenderness
-from tmm_cli.mechanics.accuracy.lengths import ends, lengths, outputs, responses
+from tmm_cli.mechanics.accuracy.lengths import ends, list_lengths, outputs, responses
 from tmm_cli.mechanics.analysis.pipeline import CYCLE, Results, cycle_losses
 from tmm_cli.mechanics.groups.base import Closed
 from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
@@ -197,7 +197,7 @@ def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: f
 
     mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
     """
-    values, data = of(results), lengths(results.linkage)
+    values, data = of(results), list_lengths(results.linkage)
     here = _row(values, values)
     bound = 2 * ROUNDOFF * np.abs(here)
     with np.errstate(all="ignore"):

@@ -46,7 +46,7 @@ class Check:
 
 
 @lru_cache(maxsize=1)
-def checks(results: Results) -> tuple[Check, ...]:
+def run_checks(results: Results) -> tuple[Check, ...]:
     """All checks of results with forces, which have a motion and are whole."""
     if results.lever is None or results.of or results.driver_range is None:
         return ()

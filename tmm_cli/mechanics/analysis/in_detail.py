@@ -13,12 +13,12 @@ from tmm_cli.mechanics.analysis.pipeline import Results, solve
 from tmm_cli.mechanics.assembly.choose import assemble
 from tmm_cli.mechanics.assembly.enumerate import find_assemblies
 from tmm_cli.mechanics.errors import AmbiguousSketchError, UnknownPositionError
-from tmm_cli.mechanics.kinematics.centres import centres
+from tmm_cli.mechanics.kinematics.centres import find_centres
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.structure.group import Group
 
 
-def in_detail(results: Results) -> tuple[int, ...]:
+def detailed_positions(results: Results) -> tuple[int, ...]:
     """Indices of the positions in detail, among those computed; none where nothing moves.
 
     A single position is always one. Where the file names none it is the one of the largest balancing moment or force
@@ -64,8 +64,8 @@ def with_centres(results: Results) -> Results:
     motion = results.motion
     assert motion is not None
     every = len(results.numbers) < len(results.asked)
-    chosen = np.flatnonzero(motion.moving).tolist() if every else in_detail(results)
-    return replace(results, centres={k: centres(motion, results.structure, k) for k in chosen})
+    chosen = np.flatnonzero(motion.moving).tolist() if every else detailed_positions(results)
+    return replace(results, centres={k: find_centres(motion, results.structure, k) for k in chosen})
 
 
 # Every real assembly of the groups at some positions, beside the one that the sketch chooses.

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.mechanics.kinematics.motion import Turning, move
 from tmm_cli.mechanics.kinematics.strokes import OutputCurve, Strokes, find_strokes, runs_of
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SHOCKLESS, WHOLE_TURNS
 from tmm_cli.mechanics.numerics.vectors import Real
 
@@ -195,7 +195,7 @@ def rides_there_and_back(
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
     low, high = moves[:-1][back], moves[1:][back]
-    turns = roots(curve.slope, q[low], q[high]) if low.size else q[:0]
+    turns = find_roots(curve.slope, q[low], q[high]) if low.size else q[:0]
     inside = (turns - q[0] > SAME_PLACE) & (q[-1] - turns > SAME_PLACE)
     ends = np.concatenate([q[:1], turns[inside], q[-1:]])[::sense]
     wanted = 1 if task.when == "forward" else -1

@@ -36,14 +36,15 @@ def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> Running |
         from tmm_cli.mechanics.dynamics.steady import running
 
         return running(mechanism, float(mechanism.asked[0]), task)
-    from tmm_cli.mechanics.dynamics.single_run import single_run
 
-    return single_run(mechanism, mechanism.asked, task)
+    from tmm_cli.mechanics.dynamics.single_run import compute_single_run
+
+    return compute_single_run(mechanism, mechanism.asked, task)
 
 
 def balancing(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balancing:
     """Over the cycle from position 0 on, and at places of the driver. Raises what `analysis.balancing` raises."""
-    from tmm_cli.mechanics.dynamics.balancing import balancing as found
+    from tmm_cli.mechanics.dynamics.balancing import balance_machine as found
 
     return found(mechanism, float(mechanism.asked[0]), q, task)
 

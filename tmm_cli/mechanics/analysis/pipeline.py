@@ -25,9 +25,9 @@ from tmm_cli.mechanics.errors import (
     TableBeyondCycleError,
     UnknownPositionError,
 )
-from tmm_cli.mechanics.forces.energy import Energy, energy
+from tmm_cli.mechanics.forces.energy import Energy, compute_energy
 from tmm_cli.mechanics.forces.friction import FrictionSolution, Losses, find_locked_ranges, losses, solve_friction
-from tmm_cli.mechanics.forces.lever import Lever, lever
+from tmm_cli.mechanics.forces.lever import Lever, compute_lever
 from tmm_cli.mechanics.forces.loads import Applied, applied
 from tmm_cli.mechanics.forces.plan import Reactions, power, react
 from tmm_cli.mechanics.groups.base import Kernel
@@ -360,10 +360,10 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         results,
         loads=loads,
         reactions=reactions,
-        lever=lever(motion, loads, drivers),
+        lever=compute_lever(motion, loads, drivers),
         friction=rubbed,
         losses=lost,
-        energy=energy(motion, loads, drivers),
+        energy=compute_energy(motion, loads, drivers),
     )
 
 

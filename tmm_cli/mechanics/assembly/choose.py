@@ -20,7 +20,7 @@ from tmm_cli.mechanics.groups.closed_forms import CLOSED
 from tmm_cli.mechanics.groups.sequence import driven_state, drives_at, frame_state, link_states, towards
 from tmm_cli.mechanics.groups.state import Drives, Placement, Pose
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.structure.assur import Structure
 from tmm_cli.mechanics.structure.cycle import turns_of_cycle
@@ -138,7 +138,7 @@ def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], places: Real, step: fl
         if not np.any(changes):
             return places
         found = places.copy()
-        found[changes] = roots(residual_rate, low[changes], high[changes])
+        found[changes] = find_roots(residual_rate, low[changes], high[changes])
     return found
 
 

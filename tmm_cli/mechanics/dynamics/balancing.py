@@ -240,7 +240,7 @@ class Balancing:
         return _shaken(mechanism, self.cycle, q)
 
 
-def balancing(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> Balancing:
+def balance_machine(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> Balancing:
     """Over the cycle from the driver's place `start` on, and at places. Raises NoCycleError, UnsettledError."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     driver = linkage.driver

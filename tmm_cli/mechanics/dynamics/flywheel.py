@@ -25,7 +25,7 @@ from functools import partial
 import numpy as np
 
 from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.vectors import Real
 
 NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
@@ -103,7 +103,7 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
     high = low + np.ptp(work(places)) + mean**2 * (float(np.max(machine.inertia(places))) + flywheel)
     if speeds(np.array([low])).mean() >= mean:
         return float("nan"), float("nan")
-    energy = roots(lambda e: speeds(e).mean(axis=1) - mean, np.array([low]), np.array([high]))
+    energy = find_roots(lambda e: speeds(e).mean(axis=1) - mean, np.array([low]), np.array([high]))
     slowest, quickest = speeds(energy)[0]
     return float(energy[0]), float((quickest - slowest) / mean)
 
@@ -149,7 +149,7 @@ def sharper(rate: Callable[[Real], Real], x: float, length: float) -> float:
     """
     ends = np.clip([x - NEAR, x + NEAR], 0.0, np.nextafter(length, 0.0))
     below, above = rate(ends)
-    return float(roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
+    return float(find_roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
 
 
 def lowest(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:

@@ -156,7 +156,7 @@ class Reduced:
         return self.inertia.length
 
 
-def reduced(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> Reduced:
+def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> Reduced:
     """Of a machine that can be computed at any place; edges: where loads may jump, the ends of the cycle too."""
     inertia, slope, moment = fitted(sample, edges)
     return Reduced(inertia, slope, moment, moment.summed(), constant)

@@ -22,7 +22,7 @@ from tmm_cli.mechanics.dynamics.steady import reduced_between
 from tmm_cli.mechanics.dynamics.task import RunTask
 from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
 from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF, SAME_PLACE, SEAM
 from tmm_cli.mechanics.numerics.vectors import Real
 
@@ -75,7 +75,7 @@ class Run:
             here = (way >= step(low)[0]) & (way <= step(high)[0])
             if here.any():
                 missed = partial(_short_of, step, way[here])
-                found = roots(missed, low + 0 * way[here], high + 0 * way[here])
+                found = find_roots(missed, low + 0 * way[here], high + 0 * way[here])
                 time[here], speed[here] = found, step(found)[1]
         begins = way == self.way[0]  # where a search from rest would find what rounding leaves
         return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
@@ -293,7 +293,7 @@ class SingleRun:
         return self.sense * self.acceleration(time, way, speed)
 
 
-def single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
+def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
     """Between the places of the task, or of the first and the last position asked for.
 
     Raises NoCycleError, OutOfRangeError, StandstillError.

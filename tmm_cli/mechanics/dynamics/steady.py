@@ -21,7 +21,7 @@ from tmm_cli.mechanics.dynamics.flywheel import (
 )
 from tmm_cli.mechanics.dynamics.laws import Cycle, Law, under_constant_moment
 from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced, fitted, reduced
+from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced, fitted, reduce_machine
 from tmm_cli.mechanics.dynamics.task import SteadyTask
 from tmm_cli.mechanics.errors import (
     BySpeedError,
@@ -31,13 +31,13 @@ from tmm_cli.mechanics.errors import (
     RunawayError,
     StandstillError,
 )
-from tmm_cli.mechanics.forces.energy import energy, inertias
-from tmm_cli.mechanics.forces.jumps import jumps
+from tmm_cli.mechanics.forces.energy import compute_energy, inertias
+from tmm_cli.mechanics.forces.jumps import find_load_jumps
 from tmm_cli.mechanics.forces.loads import applied
 from tmm_cli.mechanics.groups.sequence import DriverMotion
 from tmm_cli.mechanics.kinematics.motion import move
 from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.tolerances import CONSTANT_INERTIA, ROUNDOFF, SAME_PLACE, SEAM
 from tmm_cli.mechanics.numerics.vectors import Real
 
@@ -161,7 +161,7 @@ def fluctuation(law: Law) -> float:
     return 2 * (high - low) / (high + low)
 
 
-def steady(machine: Reduced, task: SteadyTask) -> Steady:
+def find_steady_running(machine: Reduced, task: SteadyTask) -> Steady:
     """Steady running of a machine. Raises StandstillError, NoFlywheelError, NoInertiaError."""
     if task.motor is not None:
         return _driven(machine, task, task.motor)
@@ -224,7 +224,7 @@ def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit
     below, above = np.array([low]), np.array([low + unit])
     for _ in range(DOUBLINGS):
         if over(above)[0] > 0:
-            return float(roots(over, below, above)[0])
+            return float(find_roots(over, below, above)[0])
         below, above = above, 2 * above
     raise NoFlywheelError(delta, float("nan"))
 
@@ -275,13 +275,13 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
         motion = move(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
-        found = energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
+        found = compute_energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
         return found.inertia, sense * found.slope, sense * found.moment
 
-    places = np.array([*jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
+    places = np.array([*find_load_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
     inner = np.sort(np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns))
     inner = inner[np.diff(inner, prepend=-1.0) > SAME_PLACE]
-    return reduced(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
+    return reduce_machine(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
 
 
 @dataclass(frozen=True)
@@ -327,4 +327,4 @@ def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
 
     Raises NoCycleError, BySpeedError, StandstillError, NoFlywheelError.
     """
-    return Running(steady(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)
+    return Running(find_steady_running(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)

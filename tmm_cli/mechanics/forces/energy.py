@@ -38,7 +38,7 @@ class Energy:
     balance: Real
 
 
-def energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
+def compute_energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
     """From the motion, the loads, and what the drivers do per unit of the first one's motion (N m, N)."""
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still

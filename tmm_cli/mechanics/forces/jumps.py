@@ -13,7 +13,7 @@ from tmm_cli.mechanics.kinematics.driver_range import SCAN
 from tmm_cli.mechanics.kinematics.motion import Motion, move
 from tmm_cli.mechanics.kinematics.strokes import OutputCurve
 from tmm_cli.mechanics.linkage import Load, LoadTable
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
 from tmm_cli.mechanics.numerics.vectors import Real, dot
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.mechanism import Mechanism
 
 
-def jumps(mechanism: Mechanism) -> Iterable[float]:
+def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
     """Places of a crank that turns fully (rad), in any order and turn."""
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
@@ -79,7 +79,7 @@ def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Itera
             # at the ends themselves the output rests: rounding would put the row a little beside them
             if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):
                 end = stroke.start + linkage.driver.sense * stroke.length
-                yield float(roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
+                yield float(find_roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
 
 
 def _missed(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
@@ -108,9 +108,11 @@ def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
     if load.force:
         back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)
         before = along[back]
-        yield from roots(
+        yield from find_roots(
             lambda places: dot(motion_on_base(load, moved(places, 1))[0], before), q[back], q[back + 1] + half
         ).tolist()
     if load.moment:
         back = np.flatnonzero(turning[1:] * turning[:-1] < 0)
-        yield from roots(lambda places: motion_on_base(load, moved(places, 1))[1], q[back], q[back + 1] + half).tolist()
+        yield from find_roots(
+            lambda places: motion_on_base(load, moved(places, 1))[1], q[back], q[back + 1] + half
+        ).tolist()

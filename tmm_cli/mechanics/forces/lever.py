@@ -75,7 +75,7 @@ def _numbered(items: tuple[Item, ...]) -> list[tuple[tuple[str, str, bool], int]
     return keys
 
 
-def lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
+def compute_lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
     """The lever at every position, compared with the force plan's balancing moment (or force)."""
     items = []
     for load in loads:

@@ -42,7 +42,7 @@ class Centre:
     lines: tuple[Line, ...] = ()
 
 
-def centres(states: LinkStates, structure: Structure, k: int) -> list[Centre]:
+def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Centre]:
     """All centres in a position: those of pairs, then the others in the order in which Kennedy's lines find them."""
     names = (FRAME, *states.linkage.moving)
     size = _size(states, k)

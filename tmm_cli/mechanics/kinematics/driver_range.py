@@ -14,7 +14,7 @@ from tmm_cli.mechanics.groups.base import Closed, Kernel, reach
 from tmm_cli.mechanics.groups.branch import Winding
 from tmm_cli.mechanics.groups.sequence import DriverMotion, LinkStates, link_states, towards
 from tmm_cli.mechanics.linkage import Linkage, Slide
-from tmm_cli.mechanics.numerics.roots import least, roots
+from tmm_cli.mechanics.numerics.roots import find_roots, least
 from tmm_cli.mechanics.numerics.tolerances import CAME_BACK, DEAD, END_OF_SLOT
 from tmm_cli.mechanics.numerics.vectors import Real
 from tmm_cli.mechanics.structure.cycle import MOST, turns_of_cycle
@@ -388,7 +388,7 @@ class _Segment:
         """From where to where it is beyond; of a cycle the last way may go on through its end."""
         out = far > 0
         change = np.flatnonzero(out[:-1] != out[1:])
-        places = roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)
+        places = find_roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)
         leaves, returns = list(places[~out[change]]), list(places[out[change]])
         if out[0] and full and leaves:
             returns = [*returns[1:], returns[0] + q[-1] - q[0]]

@@ -13,7 +13,7 @@ from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
 from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.mechanics.kinematics.motion import LargestRates, Motion, moving_parts
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, Request
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.mechanics.numerics.tolerances import AT_EDGE_OF_CAM, BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
 from tmm_cli.mechanics.numerics.vectors import Real, Vector
 from tmm_cli.mechanics.structure.naming import output_link
@@ -151,7 +151,7 @@ def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link
     run = np.unwrap(run) if curve.swings else run
     change = np.flatnonzero(turning)
     if change.size:
-        ends = roots(curve.slope, q[change], q[change + 1])
+        ends = find_roots(curve.slope, q[change], q[change + 1])
         there = curve.place(ends)
         if curve.swings:
             there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
@@ -299,11 +299,11 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
     if not np.any(back):
         return np.zeros(0), np.zeros(0)
     last, first = moves[:-1][back], moves[1:][back]
-    stops = goes_on = roots(curve.slope, q[last], q[last + 1])
+    stops = goes_on = find_roots(curve.slope, q[last], q[last + 1])
     still = first > last + 1
     if np.any(still):
         goes_on = stops.copy()
-        goes_on[still] = roots(curve.slope, q[first[still] - 1], q[first[still]])
+        goes_on[still] = find_roots(curve.slope, q[first[still] - 1], q[first[still]])
     rests = goes_on - stops
     rests[rests < NO_DWELL] = 0.0
     ends = np.where((rests > 0) & (sense < 0), stops, goes_on)

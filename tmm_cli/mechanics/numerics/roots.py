@@ -18,7 +18,7 @@ REFINEMENTS, PARTS = 16, 4  # of a step of a scan about a peak: finer grids, and
 FLAT = 1e-12  # of the largest value: a peak that rises by less from its neighbours is rounding
 
 
-def roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
+def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """Roots between places where a function has different signs, of all intervals at once, to the last bit.
 
     In the precision of the places, float64 at least. Inverse quadratic interpolation where it is safe, else halving:

@@ -28,7 +28,7 @@ from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
 from tmm_cli.mechanics.plans.motion import absolute, ends_of, massive, relative
 from tmm_cli.mechanics.plans.record import NamedVector, sheet_scale
 
-POLE = "p"
+LEVER_POLE = "p"
 TURNED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense
 MOST = 22  # forces on a lever, those of couples among them; with more of them couples stay couples
 
@@ -72,8 +72,8 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     One driver is found from the moments of the loads; of several the force plan says what they do.
     """
     linkage = motion.linkage
-    ends = ends_of(linkage, POLE, lambda point: TURNED * complex(motion.named(point).first[k]))
-    bars = (*absolute(ends, POLE), *relative(motion, ends))
+    ends = ends_of(linkage, LEVER_POLE, lambda point: TURNED * complex(motion.named(point).first[k]))
+    bars = (*absolute(ends, LEVER_POLE), *relative(motion, ends))
     for link in massive(linkage):
         ends[other_than(ends, f"s{link}")] = TURNED * complex(motion.centre(link).first[k])
     acting: list[Acting] = []
@@ -101,7 +101,7 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Le
     found = there(acting, size or 1.0)
     symbols = {a.symbol for a in found}
     kept = tuple((load, couple) for load, couple in couples if any(couple is a for a in found))
-    (equation,) = numbered([MomentEquation((), POLE, 0j, terms(found, 0j, size), sought)])
+    (equation,) = numbered([MomentEquation((), LEVER_POLE, 0j, terms(found, 0j, size), sought)])
     return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in symbols), kept, equation)
 
 

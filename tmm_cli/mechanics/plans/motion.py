@@ -140,7 +140,7 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
 # The acceleration plan of a position: pole π, normal and tangential parts of each link, Coriolis and sliding parts.
 
 
-POLE = "π"
+ACCELERATION_POLE = "π"
 
 Pair = tuple[NamedVector, NamedVector]
 
@@ -148,7 +148,7 @@ Pair = tuple[NamedVector, NamedVector]
 def acceleration_plan(motion: Motion, k: int) -> Plan:
     """Vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2 at position k. Each pair of parts leads from one end to another."""
     linkage = motion.linkage
-    ends = ends_of(linkage, POLE, lambda point: motion.named(point).a[k])
+    ends = ends_of(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
     names = {letter: point for point, letter in letters(linkage).items()}
     found = {stone.slide.name: stone for stone in stones(motion, ends, k)}
     for stone in found.values():
@@ -171,7 +171,7 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
     least = NO_VECTOR * Plan(tuple(vectors), ends).size
     corners = _corners(pairs, ends, least)
     segments = [replace(v, name=_segment(v, {**ends, **corners}, least)) for v in vectors]
-    return Plan((*absolute(ends, POLE, "a", names), *segments), ends, corners)
+    return Plan((*absolute(ends, ACCELERATION_POLE, "a", names), *segments), ends, corners)
 
 
 def _turning(motion: Motion, k: int, about: About, local: Mapping[str, complex], start: complex) -> Pair:

@@ -19,7 +19,7 @@ from docx.oxml import OxmlElement, parse_xml
 from docx.oxml.ns import nsdecls, qn
 from docx.shared import Length, Mm, Pt, RGBColor
 
-from tmm_cli.drawing.formats.emf import emf
+from tmm_cli.drawing.formats.emf import write_emf
 from tmm_cli.drawing.paper.record import Drawing
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces.free_bodies import Symbol
@@ -240,7 +240,7 @@ class Parts:
         """A drawing at a share of its size; told: what it is, for those who can't see it."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
-        part = Part(uri, "image/x-emf", emf(drawing), self.document.part.package)
+        part = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
         link = self.document.part.relate_to(part, RELATIONSHIP_TYPE.IMAGE)
         wide, high = (round(side * share * EMU) for side in drawing.paper)
         size = f'cx="{wide}" cy="{high}"'

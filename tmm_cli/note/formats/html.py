@@ -9,7 +9,7 @@ from functools import partial
 from html import escape
 from importlib.resources import files
 
-from tmm_cli.drawing.formats.svg import NOT_XML, svg
+from tmm_cli.drawing.formats.svg import NOT_XML, write_svg
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces.free_bodies import Symbol
 from tmm_cli.note import blocks
@@ -183,7 +183,7 @@ class Writer:
         """With its caption below."""
         self.figures += 1
         caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
-        drawn = svg(figure.drawing).decode().partition("\n")[2]
+        drawn = write_svg(figure.drawing).decode().partition("\n")[2]
         return f"<figure{self.place(figure.key)}>{drawn}<figcaption>{data(caption)}</figcaption></figure>"
 
     def contents(self) -> str:

@@ -24,7 +24,7 @@ _WORDS = re.compile(r"(?<=^title: )(.+)|(?<=\bname: )([^,}]+)")
 Translate = Callable[[str], str]
 
 
-def templates(language: str = ENGLISH) -> dict[str, str]:
+def list_templates(language: str = ENGLISH) -> dict[str, str]:
     """Names of the templates and their titles."""
     translate, found = _translator(language), {}
     for entry in sorted(files(__name__).iterdir(), key=lambda e: e.name):

@@ -15,7 +15,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader, planar
 from tmm_cli.synthesis.blocks import Block, one_of
-from tmm_cli.synthesis.coupler_positions.burmester import Side, Task
+from tmm_cli.synthesis.coupler_positions.burmester import CouplerPositionsTask, Side
 
 
 def _position(found: Any) -> Any:
@@ -58,7 +58,7 @@ class Shape(Block):
     defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> CouplerPositionsTask:
     """The task in SI. Raises ProblemError."""
     count = len(shape.positions)
     poses = [
@@ -79,7 +79,9 @@ def read(shape: Shape, values: ValueReader) -> Task:
             )
     sides = {name: side for name in DYADS if (side := _side(shape, values, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
-    return Task(tuple(places), tuple(angles), sides, shape.defects == "keep", _box(shape, values, count, sides))
+    return CouplerPositionsTask(
+        tuple(places), tuple(angles), sides, shape.defects == "keep", _box(shape, values, count, sides)
+    )
 
 
 def _box(shape: Shape, values: ValueReader, count: int, sides: dict[str, Side]) -> tuple[complex, complex] | None:

@@ -175,7 +175,7 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Task:
+class CouplerPositionsTask:
     """Places (m) and angles (rad) of the coupler; what is given of AB and of DC; keep: defects are put up with.
 
     within: opposite corners (m) of a box in which pivots lie that are free with four positions.

@@ -21,11 +21,11 @@ from tmm_cli.mechanics.numerics.roots import least
 from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
 from tmm_cli.synthesis.coupler_positions.burmester import (
     SIDES,
+    CouplerPositionsTask,
     Dyads,
     Marks,
     Poses,
     Side,
-    Task,
     beside,
     by_turn,
     centre,
@@ -203,7 +203,7 @@ POLE: Final = N_("{point} does not move between these positions, or not against 
 NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 
 
-def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
+def guiding(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, Marks]:
     """Dyads AB and DC, and what they are worth. Raises Infeasible."""
     one, other = both(task)
     if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_PLACES * task.size:
@@ -214,19 +214,19 @@ def guiding(task: Task) -> tuple[Dyads, Dyads, Marks]:
     return one, other, mark
 
 
-def _quick(task: Task) -> bool:
+def _quick(task: CouplerPositionsTask) -> bool:
     """Whether other values can be tried: not where a link is free on Burmester's curves, which takes long."""
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
-def _key_of(task: Task, name: str) -> str:
+def _key_of(task: CouplerPositionsTask, name: str) -> str:
     """What is given of a link."""
     side = task.sides.get(name, Side())
     keys = {name[1]: side.pin, name[0]: side.pivot, f"{name}_turn": side.turn, f"{name[0]}_near": side.near}
     return next((key for key, value in keys.items() if value is not None), "positions")
 
 
-def both(task: Task) -> tuple[Dyads, Dyads]:
+def both(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     """Dyads AB and DC. Raises Infeasible."""
     if len(task.places) < 4:
         return dyad(task, "AB"), dyad(task, "DC")
@@ -236,7 +236,7 @@ def both(task: Task) -> tuple[Dyads, Dyads]:
     return (given["AB"], given["DC"]) if len(given) == 2 else best(task, given)
 
 
-def dyad(task: Task, name: str) -> Dyads:
+def dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     """The dyad of two or three positions. Raises Infeasible."""
     side, poses = task.sides[name], task.poses
     pin_given = side.pin is not None
@@ -258,7 +258,7 @@ def dyad(task: Task, name: str) -> Dyads:
     return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
 
 
-def given_on_curves(task: Task) -> dict[str, Dyads]:
+def given_on_curves(task: CouplerPositionsTask) -> dict[str, Dyads]:
     """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
     found = {
         name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
@@ -276,7 +276,7 @@ def given_on_curves(task: Task) -> dict[str, Dyads]:
     return found
 
 
-def of_near(task: Task, name: str) -> Dyads:
+def of_near(task: CouplerPositionsTask, name: str) -> Dyads:
     """The dyad of four positions whose pivot is the place of the centre-point curve nearest to the wanted one."""
     wanted = complex(task.sides[name].near)
 
@@ -297,7 +297,7 @@ def of_near(task: Task, name: str) -> Dyads:
     return by_turn(task.poses, np.asarray(turn, np.longdouble), branch)
 
 
-def exists(task: Task, found: Dyads) -> Any:
+def exists(task: CouplerPositionsTask, found: Dyads) -> Any:
     """Whether there are such dyads, with ends that are not far from place 1 and links of some length."""
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
@@ -305,7 +305,7 @@ def exists(task: Task, found: Dyads) -> Any:
         return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_PLACES * task.size)
 
 
-def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
+def best(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
     first, size = task.poses.places[0], task.size
     frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
@@ -326,7 +326,7 @@ def best(task: Task, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     raise Infeasible("positions", NO_LINKS, search=_quick(task))
 
 
-def parallel(task: Task) -> tuple[Dyads, Dyads]:
+def parallel(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
 
     AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.

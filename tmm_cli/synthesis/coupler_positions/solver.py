@@ -13,7 +13,7 @@ from tmm_cli.language import N_, Phrase
 from tmm_cli.mechanics.numerics.vectors import settled
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style, swept
-from tmm_cli.synthesis.coupler_positions.burmester import Dyads, Marks, Poses, Side, Task, by_turn
+from tmm_cli.synthesis.coupler_positions.burmester import CouplerPositionsTask, Dyads, Marks, Poses, Side, by_turn
 from tmm_cli.synthesis.coupler_positions.curve import frame, lines
 from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, exists, guiding
 from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
@@ -122,7 +122,7 @@ def construction(
 # AB one way.
 
 
-__all__ = ["PARAMETERS", "Side", "Task", "solve"]
+__all__ = ["PARAMETERS", "CouplerPositionsTask", "Side", "solve"]
 NAMES: Final = {
     "Ax": N_("pivot A: x"),
     "Ay": N_("pivot A: y"),
@@ -172,12 +172,12 @@ SOURCES: Final = {  # by the count of positions; 1: four of one angle
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
 
 
-def refuse(task: Task) -> None:
+def refuse(task: CouplerPositionsTask) -> None:
     """Raises Infeasible with the reason where no four-bar guides the coupler."""
     guiding(task)
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: CouplerPositionsTask) -> Outcome:
     """The task of one file. Raises Infeasible."""
     one, other, mark = guiding(task)
     numbers = _parameters(task, one, other)
@@ -205,7 +205,7 @@ def solve(task: Task) -> Outcome:
     return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings))
 
 
-def _parameters(task: Task, one: Dyads, other: Dyads) -> dict[str, Any]:
+def _parameters(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[str, Any]:
     """All parameters in extended precision."""
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
     a, d = one.pivot, other.pivot
@@ -218,7 +218,7 @@ def _parameters(task: Task, one: Dyads, other: Dyads) -> dict[str, Any]:
     return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
 
 
-def _on_curve(task: Task, name: str, found: Dyads) -> Iterator[Value]:
+def _on_curve(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterator[Value]:
     """Where a dyad is on Burmester's curves, as it can be given again."""
     side = task.sides.get(name, Side())
     if side.turn is None:
@@ -232,7 +232,7 @@ def _on_curve(task: Task, name: str, found: Dyads) -> Iterator[Value]:
         yield Value("", float(abs(complex(found.pivot) - complex(side.near))), "length", AWAY[name])
 
 
-def _curve(task: Task) -> Listing:
+def _curve(task: CouplerPositionsTask) -> Listing:
     """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
     columns = (
         ("branch", N_("branch"), "name"),
@@ -267,7 +267,7 @@ def _position_names(k: int) -> tuple[str, str, str]:
     )
 
 
-def _demands(task: Task, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Demand]:
+def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Demand]:
     b = task.poses.on_frame(one.pin)
     phi = np.angle(np.asarray((b - one.pivot) / (other.pivot - one.pivot), complex))
     span = complex(other.pin - one.pin)
@@ -295,7 +295,7 @@ def _pose(part: str, at: dict[str, Any], results: Any) -> float:
     return float({"x": place.real, "y": place.imag, "angle": turned}[part])
 
 
-def _given(task: Task) -> Iterator[Value]:
+def _given(task: CouplerPositionsTask) -> Iterator[Value]:
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
         x, y, turned = _position_names(k)
         yield from _place(place, x, y)

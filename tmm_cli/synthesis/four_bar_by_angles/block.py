@@ -14,7 +14,7 @@ from tmm_cli.problem.errors import ProblemError, nearest, quote
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import UNDETERMINED, Block, Range, numbers
-from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, Function, Task
+from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, AnglePairsTask, Function
 from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS
 
 DOMAINS = {
@@ -60,7 +60,7 @@ class Shape(Block):
     defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch and order defects")
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> AnglePairsTask:
     """The task in SI. Raises ProblemError."""
     lengths = numbers(shape, values, LENGTHS)
     function = None
@@ -83,7 +83,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
     _zeros(zeros, count, lengths)
     phi, psi = zip(*pairs, strict=True)
     choose, keep = str(shape.choose), shape.defects == "keep"
-    return Task(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
+    return AnglePairsTask(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
 
 
 def _lengths(lengths: dict[str, float], count: int) -> None:

@@ -80,7 +80,7 @@ SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 
 @dataclass(frozen=True)
-class Task:
+class AnglePairsTask:
     """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three;
     zero angles, None: to find.
 
@@ -125,7 +125,7 @@ class Quality(NamedTuple):
     reversed: Any
 
 
-def quality(found: Bars, task: Task) -> Quality:
+def quality(found: Bars, task: AnglePairsTask) -> Quality:
     """What four-bars are worth."""
     l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (found.l1, found.l2, found.l3, found.phi0))
     l4 = np.ones(np.shape(l1))
@@ -145,7 +145,7 @@ def quality(found: Bars, task: Task) -> Quality:
     return Quality(np.arccos(np.minimum(1.0, size)), worst, defect[()], turns, turned)
 
 
-def through(task: Task) -> Bars:
+def through(task: AnglePairsTask) -> Bars:
     """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free, or of those
     that pass no pairs exactly.
     """
@@ -167,12 +167,12 @@ def through(task: Task) -> Bars:
     return found.at(real(found))
 
 
-def of_ratios(task: Task, ratios: Any) -> Bars:
+def of_ratios(task: AnglePairsTask, ratios: Any) -> Bars:
     """The four-bars through two pairs with l4/l1 = |ratio|; a negative one is a crank drawn the other way."""
     return _of_two(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
 
 
-def _of_lengths(task: Task) -> Bars:
+def _of_lengths(task: AnglePairsTask) -> Bars:
     """The four-bars through two pairs with two given lengths; either link may be drawn the other way."""
     a, b = sorted(task.lengths)
     ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
@@ -182,7 +182,7 @@ def _of_lengths(task: Task) -> Bars:
     return _of_two(task, np.stack([one, zero, zero] if a == "l1" else [zero, one, zero], axis=-1), ratio * sense)
 
 
-def _of_circle(task: Task) -> Bars:
+def _of_circle(task: AnglePairsTask) -> Bars:
     """The four-bar through three pairs with l4 and l1 (or l3): B turned back about D by the output angles (C about A by
     the input angles) has three places, and the centre of the circle through them is C (B) with its zero angle.
     """
@@ -198,7 +198,7 @@ def _of_circle(task: Task) -> Bars:
     return Bars(*one).at(None)
 
 
-def _of_two(task: Task, known: Any, value: Any) -> Bars:
+def _of_two(task: AnglePairsTask, known: Any, value: Any) -> Bars:
     """The four-bars through two pairs with conditions known . (p, q, s) = value, (n, 3) and (n,)."""
     phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
     phi, psi = (
@@ -210,7 +210,7 @@ def _of_two(task: Task, known: Any, value: Any) -> Bars:
     return found._replace(phi0=found.phi0 + phi0, psi0=found.psi0 + psi0)
 
 
-def _best_of_ratios(task: Task) -> Bars:
+def _best_of_ratios(task: AnglePairsTask) -> Bars:
     """The four-bar of best transmission through two pairs, l1/l4 being free."""
 
     def badness(ratios: Any) -> Any:
@@ -236,7 +236,7 @@ def real(found: Bars) -> Any:
         return np.isfinite(numbers).all(0) & (lengths > SHORT).all(0) & (lengths < LONG).all(0)
 
 
-def chosen(task: Task, found: Bars) -> int:
+def chosen(task: AnglePairsTask, found: Bars) -> int:
     """Which of the four-bars is taken; one at least must have no defect, or defects be put up with."""
     if task.choose.isdigit():
         return int(task.choose) - 1

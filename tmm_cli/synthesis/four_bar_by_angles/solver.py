@@ -17,9 +17,9 @@ from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs, par
 from tmm_cli.synthesis.four_bar_by_angles.pairs import (
     ANGLES,
     LONGEST,
+    AnglePairsTask,
     Function,
     Quality,
-    Task,
     chosen,
     of_ratios,
     quality,
@@ -52,19 +52,19 @@ def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, floa
     return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
 
 
-def side_of(one: Bars, task: Task) -> float:
+def side_of(one: Bars, task: AnglePairsTask) -> float:
     """The assembly of the pairs: the sign of (BC x DC)."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return min((1.0, -1.0), key=lambda side: float(np.sum((outputs(one, phi, psi, side) - psi) ** 2)))
 
 
-def off(one: Bars, task: Task) -> Any:
+def off(one: Bars, task: AnglePairsTask) -> Any:
     """Errors of the output angle (rad) at the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return outputs(one, phi, psi, side_of(one, task)) - psi
 
 
-def reached(one: Bars, task: Task) -> Diagram:
+def reached(one: Bars, task: AnglePairsTask) -> Diagram:
     """Output angles over the input, and the pairs they are to be near."""
     side, (start, end) = side_of(one, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
@@ -83,7 +83,7 @@ def reached(one: Bars, task: Task) -> Diagram:
     )
 
 
-def errors(one: Bars, task: Task) -> tuple[Diagram, float]:
+def errors(one: Bars, task: AnglePairsTask) -> tuple[Diagram, float]:
     """The curve of structural error over the input angle, with the points of the task, and its largest size."""
     assert task.function
     function = task.function
@@ -155,7 +155,7 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
 # locks. More pairs than a four-bar can pass are met with the least squares of errors.
 
 
-__all__ = ["PARAMETERS", "Task", "solve"]
+__all__ = ["PARAMETERS", "AnglePairsTask", "solve"]
 LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
     "l1": ("length", N_("input l1 = AB")),
     "l2": ("length", N_("coupler l2 = BC")),
@@ -197,7 +197,7 @@ SHOWN: Final = 40  # pairs in a table
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: AnglePairsTask) -> Outcome:
     """The task of one file. Raises Infeasible."""
     found, at = take(task)
     one, mark = found.at(at), quality(found.at(at), task)
@@ -231,7 +231,7 @@ def solve(task: Task) -> Outcome:
     return Outcome(_given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings))
 
 
-def take(task: Task) -> tuple[Bars, int]:
+def take(task: AnglePairsTask) -> tuple[Bars, int]:
     """All four-bars of the task, and the number of the one that is taken. Raises Infeasible."""
     _refuse_inputs(task)
     found = through(task)
@@ -248,12 +248,12 @@ def take(task: Task) -> tuple[Bars, int]:
     return found, chosen(task, found)
 
 
-def refuse(task: Task) -> None:
+def refuse(task: AnglePairsTask) -> None:
     """Raises Infeasible with the reason where there is no such four-bar."""
     take(task)
 
 
-def _refuse_inputs(task: Task) -> None:
+def _refuse_inputs(task: AnglePairsTask) -> None:
     """The input only grows, or only falls, by less than a turn. Raises Infeasible."""
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
@@ -265,13 +265,13 @@ def _refuse_inputs(task: Task) -> None:
         raise Infeasible(key, _("the input has come round before the last pair"))
 
 
-def _size(task: Task, one: Bars) -> Any:
+def _size(task: AnglePairsTask, one: Bars) -> Any:
     """l4 (m) of a four-bar, by the length that is given."""
     name = next(iter(task.lengths))
     return task.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
 
 
-def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
+def _values(task: AnglePairsTask, one: Bars, mark: Quality) -> list[Value]:
     size = _size(task, one)
     numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
     first = task.psi[0] + (off(one, task)[0] if task.approximate else 0.0)
@@ -285,7 +285,7 @@ def _values(task: Task, one: Bars, mark: Quality) -> list[Value]:
     ]
 
 
-def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
+def _demands(task: AnglePairsTask, one: Bars, mark: Quality) -> list[Demand]:
     if task.approximate:
         mean = partial(_measured_mean, one, task)
         demands = [Demand(MEAN, _mean(one, task), "angle", mean, asked=False, at=1.0)]
@@ -298,7 +298,7 @@ def _demands(task: Task, one: Bars, mark: Quality) -> list[Demand]:
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
 
 
-def _mean(one: Bars, task: Task) -> float:
+def _mean(one: Bars, task: AnglePairsTask) -> float:
     return float(np.sqrt(np.mean(off(one, task) ** 2)))
 
 
@@ -307,7 +307,7 @@ def _there(one: Bars, results: Any, phi: Any, near: Any) -> Any:
     return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
 
 
-def _measured_mean(one: Bars, task: Task, results: Any) -> float:
+def _measured_mean(one: Bars, task: AnglePairsTask, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return float(np.sqrt(np.mean((_there(one, results, phi, psi + off(one, task)) - psi) ** 2)))
 
@@ -320,7 +320,7 @@ def _output(one: Bars, phi: float, psi: float, results: Any) -> float:
     return float(_there(one, results, np.array([phi]), np.array([psi]))[0])
 
 
-def _largest(one: Bars, task: Task, results: Any) -> float:
+def _largest(one: Bars, task: AnglePairsTask, results: Any) -> float:
     """The largest structural error on the mechanism."""
     assert task.function
     function = task.function
@@ -332,7 +332,7 @@ def _largest(one: Bars, task: Task, results: Any) -> float:
     return extremes(error, function)[1]
 
 
-def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
+def _notes(task: AnglePairsTask, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
     if task.approximate and not any_one:
         yield N_(
             "more pairs than a four-bar can pass: the sum of squares of the errors of the output angle is the least"
@@ -358,7 +358,7 @@ def _notes(task: Task, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]
         )
 
 
-def _solutions(task: Task, found: Bars, at: int) -> Listing:
+def _solutions(task: AnglePairsTask, found: Bars, at: int) -> Listing:
     """Every four-bar that was found, by the number by which it can be chosen."""
     columns = (
         ("number_of", N_("choose"), "name"),
@@ -375,7 +375,7 @@ def _solutions(task: Task, found: Bars, at: int) -> Listing:
     return Listing("solutions", N_("Solutions; another is taken by choose: its number"), columns, tuple(rows))
 
 
-def _pairs(task: Task, one: Bars) -> Listing:
+def _pairs(task: AnglePairsTask, one: Bars) -> Listing:
     """Every pair, and by how much the output is off."""
     columns = (
         ("phi", N_("input angle"), "angle"),
@@ -390,7 +390,7 @@ def _pairs(task: Task, one: Bars) -> Listing:
     )
 
 
-def _family(task: Task) -> Listing:
+def _family(task: AnglePairsTask) -> Listing:
     """Four-bars through two pairs for the ratios l1/l4 that are compared."""
     columns = (("free", N_("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", N_("defects"), "word"))
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
@@ -403,13 +403,13 @@ def _family(task: Task) -> Listing:
     return Listing("family", N_("Four-bars through both pairs"), columns, tuple(rows), long=True)
 
 
-def _row(task: Task, one: Bars, mark: Quality) -> tuple[float, ...]:
+def _row(task: AnglePairsTask, one: Bars, mark: Quality) -> tuple[float, ...]:
     """Lengths (m), zero angles and least transmission angle of a four-bar."""
     size = _size(task, one)
     return (*(float(x * size) for x in one[:3]), float(size), float(one.phi0), float(one.psi0), float(mark.least))
 
 
-def _given(task: Task) -> tuple[Value, ...]:
+def _given(task: AnglePairsTask) -> tuple[Value, ...]:
     values = [Value(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
     if task.function:
         text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table, straight between its rows")

@@ -32,7 +32,7 @@ FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
 
 
 @dataclass(frozen=True)
-class Task:
+class FourBarByKTask:
     """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
 
     psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level (as high as D), near (a
@@ -83,20 +83,20 @@ class Found:
     sense: Any
 
 
-def widest(task: Task, side: Any) -> Any:
+def widest(task: FourBarByKTask, side: Any) -> Any:
     """The bound of beta on an arc; negative where the arc has no pivot."""
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
-def bound(task: Task, side: Any) -> Any:
+def bound(task: FourBarByKTask, side: Any) -> Any:
     """The bound of w on an arc that has pivots."""
     sine = np.sin(task.theta / 2)
     most = np.sin(widest(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
     return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
 
 
-def at(task: Task, w: Any, side: Any) -> Found:
+def at(task: FourBarByKTask, w: Any, side: Any) -> Found:
     """The four-bar whose pivot A stands at a place of an arc."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
@@ -127,7 +127,7 @@ def at(task: Task, w: Any, side: Any) -> Found:
     )
 
 
-def arcs(task: Task) -> list[int]:
+def arcs(task: FourBarByKTask) -> list[int]:
     """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
     if task.k == 1:
         return [-1]
@@ -135,7 +135,7 @@ def arcs(task: Task) -> list[int]:
     return [side for side in SIDES if widest(task, side) >= ARC * SLACK and task.sense in (0, -side * way)]
 
 
-def places(task: Task, side: int, count: int = 400) -> Any:
+def places(task: FourBarByKTask, side: int, count: int = 400) -> Any:
     """Places w along an arc, close together where the mechanism changes fast, from end to end."""
     theta, most = float(task.theta), float(bound(task, side))
     first = END * min(1.0, most - 1)
@@ -147,7 +147,7 @@ def places(task: Task, side: int, count: int = 400) -> Any:
     return found
 
 
-def whole(task: Task, side: int, count: int = 121) -> Any:
+def whole(task: FourBarByKTask, side: int, count: int = 121) -> Any:
     """Places w of an arc with both its ends, closer together towards them, where the pressure angle changes fast.
 
     Even in the angle at C2 and in the logarithm of w alike: on arcs that are nearly straight the first says little.
@@ -160,7 +160,7 @@ def whole(task: Task, side: int, count: int = 121) -> Any:
     return np.unique(np.clip(np.concatenate((by_angle, np.exp(share * np.log(most)))), 1.0, most))
 
 
-def line_places(task: Task) -> list[Any]:
+def line_places(task: FourBarByKTask) -> list[Any]:
     """Places w of the pivots A = t + i height, t real, from which C1C2 is seen under theta; D is the origin.
 
     z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line cuts each of both circles
@@ -185,6 +185,6 @@ def line_places(task: Task) -> list[Any]:
     return list(sum(np.abs(end - np.array(found)) for end in ends) / (2 * l3 * np.abs(np.sin(half))))
 
 
-def line(task: Task) -> Any:
+def line(task: FourBarByKTask) -> Any:
     """The height of A, or its x, over that of D in the origin."""
     return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

@@ -12,7 +12,7 @@ from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.schema_parts import Value, Vector
 from tmm_cli.problem.values import ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers
-from tmm_cli.synthesis.four_bar_by_k.arcs import Task
+from tmm_cli.synthesis.four_bar_by_k.arcs import FourBarByKTask
 from tmm_cli.synthesis.four_bar_by_k.solver import QUANTITIES
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
@@ -45,7 +45,7 @@ class Shape(Block):
     )
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> FourBarByKTask:
     """The task in SI. Raises ProblemError."""
     ways = [name for name in WAYS if getattr(shape, name) is not None]
     if len(ways) > 1:
@@ -61,4 +61,4 @@ def read(shape: Shape, values: ValueReader) -> Task:
             found[key] = values.vector(getattr(shape, key), LENGTH, (key,))
     way = ways[0] if ways else "choose"
     choice = CHOICES[shape.choose or "best transmission"] if way == "choose" else way
-    return Task(**found, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])
+    return FourBarByKTask(**found, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])

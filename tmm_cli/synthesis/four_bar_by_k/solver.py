@@ -10,13 +10,13 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.roots import roots
+from tmm_cli.mechanics.numerics.roots import find_roots
 from tmm_cli.mechanics.numerics.vectors import settled, unit
 from tmm_cli.synthesis.construction import Angle, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box, circle
 from tmm_cli.synthesis.four_bar_by_k.arcs import (
     ARC,
     Found,
-    Task,
+    FourBarByKTask,
     arcs,
     at,
     bound,
@@ -34,7 +34,7 @@ LONGEST: Final = 20.0  # the whole family is on the diagrams when no rod is long
 CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
 
 
-def construction(task: Task, found: Found, family: Sequence[Found]) -> Construction:
+def construction(task: FourBarByKTask, found: Found, family: Sequence[Found]) -> Construction:
     """Both extreme positions, the circles on which C1C2 is seen under theta, and the pivots that may be A."""
     d, a = complex(task.support), complex(found.a)
     c1, c2 = (complex(d + task.l3 * np.exp(1j * psi)) for psi in (task.psi1, task.psi2))
@@ -95,7 +95,7 @@ def construction(task: Task, found: Found, family: Sequence[Found]) -> Construct
     )
 
 
-def diagrams(task: Task, found: Found, family: Sequence[Found]) -> tuple[Diagram, Diagram]:
+def diagrams(task: FourBarByKTask, found: Found, family: Sequence[Found]) -> tuple[Diagram, Diagram]:
     """Largest pressure angle, and the lengths of crank and frame, over that of the coupler along the arcs."""
     size, most = max(float(found.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
     if most > LONGEST * size:
@@ -173,19 +173,19 @@ ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 
 
-def _pressure(found: Found, __: Task) -> Any:
+def _pressure(found: Found, __: FourBarByKTask) -> Any:
     return found.pressure
 
 
-def _extent(found: Found, __: Task) -> Any:
+def _extent(found: Found, __: FourBarByKTask) -> Any:
     return found.l2 + found.l4
 
 
-def _away(found: Found, task: Task) -> Any:
+def _away(found: Found, task: FourBarByKTask) -> Any:
     return np.abs(found.a - task.near)
 
 
-def _rise(f: Found, task: Task) -> Any:
+def _rise(f: Found, task: FourBarByKTask) -> Any:
     """Proportional to the rise of the sine of the largest pressure angle over w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
@@ -202,8 +202,8 @@ def _rise(f: Found, task: Task) -> Any:
 
 
 # what is least at the pivot that is asked for, and what vanishes there
-LEAST: Final[Mapping[str, Callable[[Found, Task], Any]]] = {"best": _pressure, "near": _away}
-EQUATIONS: Final[Mapping[str, Callable[[Found, Task], Any]]] = {
+LEAST: Final[Mapping[str, Callable[[Found, FourBarByKTask], Any]]] = {"best": _pressure, "near": _away}
+EQUATIONS: Final[Mapping[str, Callable[[Found, FourBarByKTask], Any]]] = {
     "l1": lambda found, task: found.l1 - task.l1,
     "l2": lambda found, task: found.l2 - task.l2,
     "pressure": lambda found, task: found.pressure - task.pressure,
@@ -215,7 +215,7 @@ EQUATIONS: Final[Mapping[str, Callable[[Found, Task], Any]]] = {
 }
 
 
-def _crossings(task: Task, side: int, function: Any) -> list[Any]:
+def _crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]:
     """Where a function of what is found vanishes along an arc."""
     if task.choose in ON_LINE:
         fair = [w for w in line_places(task) if 1 < w < bound(task, side)]
@@ -225,20 +225,20 @@ def _crossings(task: Task, side: int, function: Any) -> list[Any]:
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
     if not here.size:
         return []
-    return list(roots(lambda x: function(at(task, x, side), task), w[here], w[here + 1]))
+    return list(find_roots(lambda x: function(at(task, x, side), task), w[here], w[here + 1]))
 
 
-def _best(task: Task, side: int, choice: str) -> Any:
+def _best(task: FourBarByKTask, side: int, choice: str) -> Any:
     """Where something of what is found is least along an arc: where its slope vanishes, or an end of the arc."""
     w = places(task, side)
     here = int(np.argmin(LEAST[choice](at(task, w, side), task)))
     if here in (0, len(w) - 1):
         return w[here]
     around = w[[here - 1]], w[[here + 1]]
-    return roots(lambda x: EQUATIONS[choice](at(task, x, side), task), *around)[0]
+    return find_roots(lambda x: EQUATIONS[choice](at(task, x, side), task), *around)[0]
 
 
-def choose(task: Task) -> Found:
+def choose(task: FourBarByKTask) -> Found:
     """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible.
 
     It is looked for with D in the origin: a support that is far away takes no digits.
@@ -269,19 +269,19 @@ def choose(task: Task) -> Found:
     return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
 
 
-def _beyond_pressure(task: Task) -> Infeasible:
+def _beyond_pressure(task: FourBarByKTask) -> Infeasible:
     """The refusal of a largest pressure angle that no pivot of the admissible arcs has."""
     least = min(float(at(task, _best(task, side, "best"), side).pressure) for side in arcs(task))
     reason = _("no pivot of the admissible arcs has this largest pressure angle")
     return Infeasible("pressure", reason, (least, "angle", 1) if task.pressure < least else None)
 
 
-def refuse(task: Task) -> None:
+def refuse(task: FourBarByKTask) -> None:
     """Raises Infeasible with the reason where there is no such pivot."""
     choose(task)
 
 
-def _refuse_numbers(task: Task) -> None:
+def _refuse_numbers(task: FourBarByKTask) -> None:
     if not task.k >= 1:
         raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
@@ -312,7 +312,7 @@ def _refuse_numbers(task: Task) -> None:
         raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"))
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: FourBarByKTask) -> Outcome:
     """The task of one file. Raises Infeasible."""
     f = choose(task)
     demands = [
@@ -350,7 +350,7 @@ def solve(task: Task) -> Outcome:
     )
 
 
-def _given(task: Task) -> tuple[Value, ...]:
+def _given(task: FourBarByKTask) -> tuple[Value, ...]:
     choice = {
         "best": N_("best transmission: the least largest pressure angle"),
         "level": N_("supports level: A as high as D"),
@@ -365,7 +365,7 @@ def _given(task: Task) -> tuple[Value, ...]:
     return *given(task, QUANTITIES), Value("", choice, "word", N_("choice of A"))
 
 
-def _found(task: Task, f: Found) -> tuple[Value, ...]:
+def _found(task: FourBarByKTask, f: Found) -> tuple[Value, ...]:
     """The four-bar, where its pivot stands, what that means for the crank, and how far the admissible arcs reach."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     found = [

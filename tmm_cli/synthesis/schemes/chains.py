@@ -83,7 +83,7 @@ def _refine(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int
 # contours and no vertex below degree 3; there are few of them, and the binary links are distributed over their edges.
 
 
-MOST_LINKS = 11  # 12 links with W = 1 are 6856 chains, and minutes of work
+MOST_LINKS_OF_CHAIN = 11  # 12 links with W = 1 are 6856 chains, and minutes of work
 
 Bundle = tuple[int, int, int]
 """Vertices i <= j of a multigraph and the number of edges between them (of loops, when i = j)."""
@@ -126,8 +126,8 @@ def contours(links: int, mobility: int) -> int | None:
 
 def chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
     """All chains of so many links, no two isomorphic, by assortment of links; links are at most MOST_LINKS."""
-    if links > MOST_LINKS:
-        raise ValueError(f"chains of at most {MOST_LINKS} links are listed")
+    if links > MOST_LINKS_OF_CHAIN:
+        raise ValueError(f"chains of at most {MOST_LINKS_OF_CHAIN} links are listed")
     loops = contours(links, mobility)
     if loops is None:
         return ()

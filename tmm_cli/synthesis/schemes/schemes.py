@@ -31,7 +31,7 @@ Kind = Literal["R", "P"]
 Joint = tuple[int, int, Kind]
 """Two links, the one placed earlier first, and the kind of their pair. Link 0 is the frame."""
 
-MOST_LINKS = 9
+MOST_LINKS_OF_SCHEME = 9
 MOST_CRANKS = 3
 MOST_SCHEMES = 2000
 
@@ -60,7 +60,7 @@ def _kind(letter: str) -> Kind:
     return "P" if letter == "P" else "R"
 
 
-TYPES: dict[str, GroupType] = {
+GROUP_TYPES: dict[str, GroupType] = {
     **{name: _dyad(name) for name in ("RRR", "RRP", "RPR", "PRP", "RPP")},
     # a ternary link and its three leads
     "III": GroupType("III", 3, 4, ((0, 1, "R"), (0, 2, "R"), (0, 3, "R")), ((1, "R"), (2, "R"), (3, "R"))),
@@ -145,19 +145,19 @@ class Scheme:
         return _first_joined(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
-def schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(TYPES)) -> tuple[Scheme, ...]:
+def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(GROUP_TYPES)) -> tuple[Scheme, ...]:
     """All admissible schemes with so many moving links and driving cranks, of the given types of groups.
 
     No two are the same. They are in the order of the types of their groups. Raises TooManySchemes.
     """
-    if not (mobility <= links <= MOST_LINKS and 1 <= mobility <= MOST_CRANKS):
-        raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS} moving links")
-    order = {TYPES[name].name: k for k, name in enumerate(types)}
+    if not (mobility <= links <= MOST_LINKS_OF_SCHEME and 1 <= mobility <= MOST_CRANKS):
+        raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS_OF_SCHEME} moving links")
+    order = {GROUP_TYPES[name].name: k for k, name in enumerate(types)}
     levels: dict[int, dict[Form, Scheme]] = {mobility: {(start := Scheme(mobility)).form: start}}
     for count in range(mobility, links):
         for scheme in levels.get(count, {}).values():
             for name in order:
-                kind = TYPES[name]
+                kind = GROUP_TYPES[name]
                 if count + kind.links > links:
                     continue
                 level = levels.setdefault(count + kind.links, {})
