@@ -8,11 +8,10 @@ from typing import Any
 from models import PROBLEMS, file_of
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper import Drawing
 from tmm_cli.drawing.run import sheets
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.note.blocks import Note
-from tmm_cli.note.register import note
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.note import Note, note
 
 AT_THE_TOP = [  # chains given by pairs alone have no dimensions: test_spatial
     path.stem for path in sorted(PROBLEMS.glob("*.yaml")) if "\nstructure:" not in path.read_text(encoding="utf-8")

@@ -6,9 +6,7 @@ import functools
 
 from bank import solved
 
-from tmm_cli.drawing.layout.contents import chosen
-from tmm_cli.drawing.layout.large import large_sheets
-from tmm_cli.drawing.layout.packing import SIZES, inner
+from tmm_cli.drawing.layout import SIZES, chosen, inner, large_sheets
 
 COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 

@@ -15,9 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.fonts import HALF, UNITS, drawable, font
-from tmm_cli.drawing.paper.fonts import corners as box_of
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
+from tmm_cli.drawing.paper import HALF, UNITS, Area, Circle, Drawing, Line, Text, corners as box_of, drawable, font
 
 TOUCH = 0.05  # mm: less than a thin line is wide
 

@@ -42,24 +42,24 @@ from fuzz_blocks import with_blocks
 from pydantic import BaseModel
 
 from tmm_cli import solve
-from tmm_cli.cli.app import application
+from tmm_cli.cli import application
 from tmm_cli.drawing.formats import here
-from tmm_cli.mechanics.accuracy.digits import at, exact
-from tmm_cli.mechanics.numerics.double_double import array, exactly, rounded
+from tmm_cli.mechanics.accuracy import at, exact
+from tmm_cli.mechanics.numerics import array, exactly, rounded
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import is_chain, problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.schema import File, SpatialFile
-from tmm_cli.problem.shape_errors import FOREIGN
-from tmm_cli.problem.units import SYMBOLS
-from tmm_cli.reports.digits import accuracy, cells_with_digits, computed_tables, keys_of
-from tmm_cli.reports.register import walk
-from tmm_cli.reports.result_json import sections
-from tmm_cli.reports.table import json_text
-from tmm_cli.synthesis.reading import task_of
-from tmm_cli.synthesis.tasks import TASKS, block
+from tmm_cli.problem import (
+    FOREIGN,
+    SYMBOLS,
+    File,
+    ProblemError,
+    SpatialFile,
+    build_chain,
+    is_chain,
+    problem_of,
+    read_text,
+)
+from tmm_cli.reports import accuracy, cells_with_digits, computed_tables, json_text, keys_of, sections, walk
+from tmm_cli.synthesis import TASKS, block, task_of
 
 ROOT = Path(__file__).parents[1]
 LONGEST = {"load": 10, "solve": 30, "run": 60, "grade": 60}  # seconds of the processor, of each command

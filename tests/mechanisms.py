@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.formats.svg import write_svg
+from tmm_cli.drawing.formats import write_svg
 from tmm_cli.drawing.run import sheets
 
 PROBLEMS = Path(__file__).parents[1] / "problems"

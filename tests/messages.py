@@ -20,7 +20,7 @@ from babel.messages.pofile import read_po, write_po
 
 from tmm_cli.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE
 from tmm_cli.locale.build import compile_catalogues
-from tmm_cli.problem.units import SYMBOLS
+from tmm_cli.problem import SYMBOLS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "tmm_cli"

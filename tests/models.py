@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import build_problem, read_text
 
 DATA = Path(__file__).parent / "data"
 PROBLEMS = Path(__file__).parent.parent / "problems"

@@ -12,8 +12,8 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME
 
 DIGITS = 60

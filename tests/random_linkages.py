@@ -12,12 +12,10 @@ import math
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.pairs.higher import SHAPES, CamLaw, Piece
-from tmm_cli.mechanics.groups.state import Pose
+from tmm_cli.mechanics.groups import SHAPES, CamLaw, Newton, Piece, Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Mesh, Sketch, Slide, Spring
-from tmm_cli.mechanics.numerics.linear import least_over_largest
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.numerics import least_over_largest
+from tmm_cli.mechanics.structure import analyse
 
 TYPES = ("RRR", "RRP", "RPR", "PRP", "RPP")
 HIGH = ("III", "IV", "VI")  # four, four and six links in one group

@@ -19,7 +19,7 @@ from io import StringIO
 from pathlib import Path
 from unittest import mock
 
-from tmm_cli.cli.app import application
+from tmm_cli.cli import application
 
 ROOT = Path(__file__).parents[1]
 DATA, PAGE = ROOT / "tests" / "data" / "sources.txt", ROOT / "problems" / "SOURCES.md"

@@ -12,12 +12,9 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.animation.content import FRAMES, frames, picture_of
-from tmm_cli.animation.page import FEWEST, MOST, animation_page
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.animation import FEWEST, FRAMES, MOST, animation_page, frames, picture_of
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4", "excavator", "summing-lever"]
 HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'

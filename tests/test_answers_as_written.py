@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tmm_cli.grading.record import Given
-from tmm_cli.grading.submissions.numbers import Heading, Headings, read_answer
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.grading import Given, Heading, Headings, read_answer
+from tmm_cli.problem import ProblemError
 
 
 def read(text):

@@ -17,18 +17,12 @@ from random_linkages import Maker
 from test_commands import described, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.enumerate import find_assemblies
-from tmm_cli.mechanics.assembly.search import close_from_afar, placed_by_angles
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import DriverMotion, driven_state, drives_at, frame_state
-from tmm_cli.mechanics.kinematics.driver_range import find_range
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.assembly import assemble, close_from_afar, find_assemblies, placed_by_angles
+from tmm_cli.mechanics.groups import DriverMotion, Newton, driven_state, drives_at, frame_state
+from tmm_cli.mechanics.kinematics import find_range, move
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SIX = Path(__file__).parent.parent / "problems" / "triad-six-assemblies.yaml"
 THREE_EQUAL_LEGS = """tmm: 1

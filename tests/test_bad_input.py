@@ -10,9 +10,7 @@ from models import PARALLELOGRAM
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SHAPER = (ROOT / "problems" / "shaper.yaml").read_text(encoding="utf-8")
 FIVE_BAR = """tmm: 1

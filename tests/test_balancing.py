@@ -10,17 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.mechanics.dynamics.balancing import BalancingTask, Place, Plane, Rotor, balanced, shaking
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.dynamics import BalancingTask, Place, Plane, Rotor, balanced, shaking
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 

@@ -13,19 +13,31 @@ import pytest
 from test_commands import tmm
 from write_bench_references import BANK, DATA, answers, solved
 
-from tmm_cli.bench import rivals
-from tmm_cli.bench.accuracy import TARGETS, Accuracy, Row, measure_accuracy, places
-from tmm_cli.bench.chart_accuracy import chart
+from tmm_cli.bench import (
+    CLOSED_FORM,
+    FEWER,
+    METHODS,
+    QUANTITIES,
+    REFERENCE_NAMES,
+    TARGETS,
+    Accuracy,
+    Answers,
+    Case,
+    Loops,
+    Method,
+    Row,
+    chart,
+    errors,
+    measure_accuracy,
+    places,
+    recast,
+    reference,
+    rivals,
+)
 from tmm_cli.bench.methods import board
-from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, errors
-from tmm_cli.bench.methods.loops import Loops
-from tmm_cli.bench.methods.product import recast
-from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS
-from tmm_cli.bench.references import REFERENCE_NAMES, reference
-from tmm_cli.mechanics.plans.record import sheet_scale
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.solving import load
+from tmm_cli.mechanics.plans import sheet_scale
+from tmm_cli.problem import problem_of, read_text
+from tmm_cli.synthesis import load
 
 BY_NAME = {method.name: method for method in METHODS}
 UNIT = np.finfo(float).eps

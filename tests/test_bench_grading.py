@@ -7,11 +7,9 @@ from dataclasses import replace
 
 from test_commands import ROOT, tmm
 
-from tmm_cli.bench import grading
-from tmm_cli.bench.grading import Figure, Grades, grading_task_text
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.solving import load
+from tmm_cli.bench import Figure, Grades, grading, grading_task_text
+from tmm_cli.problem import problem_of, read_text
+from tmm_cli.synthesis import load
 
 
 def test_the_task_is_the_six_bar_of_the_bank_with_twelve_answers():

@@ -11,19 +11,11 @@ import numpy as np
 import pytest
 from test_commands import tmm
 
-from tmm_cli.bench import measured, speed
-from tmm_cli.bench.by_hand import MECHANISMS
-from tmm_cli.bench.scenes import chain
-from tmm_cli.bench.speed import Growth, Race, Rival, Speed, exponent
-from tmm_cli.bench.speed_of_iterated import Iterated
-from tmm_cli.bench.speed_of_sweeps import Sweeping
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.forces.lever import compute_lever
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import power, react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.bench import MECHANISMS, Growth, Iterated, Race, Rival, Speed, Sweeping, chain, exponent, measured, speed
+from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.forces import applied, compute_lever, power, react
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
 
 Q = np.linspace(0.1, 6.2, 40)
 TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair

@@ -14,13 +14,27 @@ import pytest
 from test_commands import tmm
 from write_stability_references import Closely, circles, closed, starts, written
 
-from tmm_cli.bench import stability
-from tmm_cli.bench.chart_stability import stability_charts
-from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Method, Unable
-from tmm_cli.bench.methods.loops import close
-from tmm_cli.bench.references import KEYS, known_scenes, seeds
-from tmm_cli.bench.scenes import BY_NAME, FAMILIES
-from tmm_cli.bench.stability import PRODUCT, RIVALS, WRONG, limit, measure_stability, ours
+from tmm_cli.bench import (
+    BY_NAME,
+    FAMILIES,
+    KEYS,
+    PRODUCT,
+    QUANTITIES,
+    RIVALS,
+    WRONG,
+    Answers,
+    Case,
+    Method,
+    Unable,
+    close,
+    known_scenes,
+    limit,
+    measure_stability,
+    ours,
+    seeds,
+    stability,
+    stability_charts,
+)
 from tmm_cli.mechanics.linkage import FRAME
 
 METHODS = {method.name: method for method in RIVALS}

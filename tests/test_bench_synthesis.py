@@ -11,8 +11,7 @@ import pytest
 from test_bench_speed import once
 from test_commands import ROOT, tmm
 
-from tmm_cli.bench import searches
-from tmm_cli.bench.searches import (
+from tmm_cli.bench import (
     PER_SECOND,
     REDUCED_PATHS,
     SEARCH_NAMES,
@@ -24,8 +23,9 @@ from tmm_cli.bench.searches import (
     best_known,
     prepared,
     search_problem_text,
+    searches,
 )
-from tmm_cli.synthesis.optimal.polish import exactly
+from tmm_cli.synthesis import exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND[SEARCHED])
 FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))

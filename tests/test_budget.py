@@ -4,8 +4,7 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli import load
-from tmm_cli.problem.build import refuse_options
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem import ProblemError, refuse_options
 
 SHAPER = (ROOT / "problems" / "shaper.yaml").read_text(encoding="utf-8")
 LOAD = "F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}"

@@ -10,9 +10,8 @@ import zipfile
 import pytest
 import xlsxwriter
 
-from tmm_cli.grading import cells
-from tmm_cli.grading.cells import rows_of
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.grading import cells, rows_of
+from tmm_cli.problem import ProblemError
 
 ROWS = [["студент", "OA, mm"], ["Ана", "80,5"]]
 

@@ -9,13 +9,12 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis.in_detail import with_centres
-from tmm_cli.mechanics.kinematics.centres import find_centres
+from tmm_cli.mechanics.analysis import with_centres
+from tmm_cli.mechanics.kinematics import find_centres
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import cross
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.register import walk
+from tmm_cli.mechanics.numerics import cross
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 LINKAGES = ("crank-rocker", "crank-slider", "six-bar", "shaper", "whitworth", "press-class-iii", "gear-doubling")

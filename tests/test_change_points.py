@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from models import SI, results_of
 
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.reports import collect_warnings
 
 DIGITS = 1e-12  # rad
 

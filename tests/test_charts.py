@@ -13,30 +13,33 @@ from models import DATA
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper.chart import (
+from tmm_cli.drawing.paper import (
     LOWEST,
+    POINT,
     SAMPLE,
     Across,
+    Circle,
     Curve,
     Jump,
+    Line,
     Panel,
     Plot,
+    Sheet,
+    Space,
+    Text,
     across,
     axis_room,
+    corners,
     decades,
     draw_chart,
     equal,
     round_up,
     upwards,
+    within,
 )
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.picture import Space, within
-from tmm_cli.drawing.paper.record import POINT, Circle, Line, Text
-from tmm_cli.drawing.paper.sheet import Sheet
-from tmm_cli.drawing.sheets.diagrams import LINES, draw_diagrams
-from tmm_cli.mechanics.plans.record import LANDSCAPE
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.drawing.sheets import LINES, draw_diagrams
+from tmm_cli.mechanics.plans import LANDSCAPE
+from tmm_cli.problem import build_problem, read_text
 
 
 def shaper(*changes):

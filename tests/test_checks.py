@@ -7,7 +7,7 @@ import pytest
 from bank import solved
 from test_commands import tmm
 
-from tmm_cli.reports.register import tables
+from tmm_cli.reports import tables
 
 MECHANISM = """tmm: 1
 units: {{length: mm, angle: deg}}

@@ -22,13 +22,18 @@ import yaml
 from bank import EVERY, solved
 from rich.console import Console
 
-from tmm_cli.cli.app import COMMANDS, main
-from tmm_cli.cli.bench import MEASUREMENTS
-from tmm_cli.problem.templates import list_templates, template_text, translations
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.compare import Difference, difference_table, differences
-from tmm_cli.reports.register import tables
-from tmm_cli.reports.terminal import MORE_ROWS, MORE_ROWS_AS_JSON, MOST_ROWS, show
+from tmm_cli.cli import COMMANDS, MEASUREMENTS, main
+from tmm_cli.problem import UnitSystem, list_templates, template_text, translations
+from tmm_cli.reports import (
+    MORE_ROWS,
+    MORE_ROWS_AS_JSON,
+    MOST_ROWS,
+    Difference,
+    difference_table,
+    differences,
+    show,
+    tables,
+)
 
 ROOT = Path(__file__).parent.parent
 SHAPER = ROOT / "problems" / "shaper.yaml"

@@ -12,10 +12,10 @@ from bank import solved
 from test_commands import tmm
 
 import tmm_cli.mechanics.plans.lever as drawn_plans
-from tmm_cli.mechanics.forces.equilibrium import loaded_parts
+from tmm_cli.mechanics.forces import loaded_parts
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.plans.lever import drawn_check, sheets
-from tmm_cli.note.forces.equations import by_moments
+from tmm_cli.mechanics.plans import drawn_check, sheets
+from tmm_cli.note import by_moments
 
 COURSE = Path("problems/course-1.yaml").read_text(encoding="utf-8")
 DRIVEN = ("course-1", "course-2", "course-3", "course-4", "shaper", "crank-slider", "six-bar", "cylinder", "whitworth")

@@ -5,7 +5,7 @@ import pytest
 from test_loads import MACHINE, load, refused, solved, work_of_cycle
 
 from tmm_cli import prepare
-from tmm_cli.reports.understood import doubts
+from tmm_cli.reports import doubts
 
 AREA = 1e-3  # m2
 FOUR_STROKES = """cycle: 2 turns

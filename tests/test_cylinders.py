@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from models import solved_text
 
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem import ProblemError
 
 SWINGING = """tmm: 1
 points: {O: [0, -300], D: [350, 0]}

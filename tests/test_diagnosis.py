@@ -7,13 +7,10 @@ from functools import cache
 import numpy as np
 from test_commands import SHAPER
 
-from tmm_cli.batch.family import families
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading.diagnose import diagnose_students
-from tmm_cli.grading.mistakes import cases
-from tmm_cli.grading.sheet import Written, predicted, right
+from tmm_cli.batch import families, read_task
+from tmm_cli.grading import Written, cases, diagnose_students, predicted, right
 from tmm_cli.mechanics.quantities import ANGULAR_SPEED, LENGTH
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import read_text
 
 ASKED = """
 variants: {OA: {from: 90, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}

@@ -27,16 +27,26 @@ from random_linkages import any_linkage, linkage
 from test_commands import ROOT, SHAPER, described, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.accuracy.digits import Digits, at, bare, bounds, exact, quantities, relative, sizes
-from tmm_cli.mechanics.accuracy.lengths import changed, list_lengths
-from tmm_cli.mechanics.accuracy.searches import Wide, searched
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.lever import Item, Lever
-from tmm_cli.mechanics.groups.pairs.higher import SHAPES
-from tmm_cli.mechanics.kinematics.driver_range import find_range
+from tmm_cli.mechanics.accuracy import (
+    Digits,
+    Wide,
+    at,
+    bare,
+    bounds,
+    changed,
+    exact,
+    list_lengths,
+    quantities,
+    relative,
+    searched,
+    sizes,
+)
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.forces import Item, Lever
+from tmm_cli.mechanics.groups import SHAPES
+from tmm_cli.mechanics.kinematics import find_range
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
-from tmm_cli.mechanics.numerics.double_double import exactly
-from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
+from tmm_cli.mechanics.numerics import ROUNDOFF, exactly
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -47,13 +57,16 @@ from tmm_cli.mechanics.quantities import (
     MOMENT,
     SPEED,
 )
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build_problem, problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.digits import accuracy, cells_with_digits, computed_tables
-from tmm_cli.reports.register import tables_of
-from tmm_cli.reports.table import true_digits
-from tmm_cli.reports.terminal import terminal_cells as shown
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import build_problem, problem_of, read_text
+from tmm_cli.reports import (
+    accuracy,
+    cells_with_digits,
+    computed_tables,
+    tables_of,
+    terminal_cells as shown,
+    true_digits,
+)
 
 BARRED = """tmm: 1
 units: {length: m, angle: rad}

@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from tmm_cli.mechanics.numerics.double_double import EPS, DoubleDouble, array, exactly, rounded
+from tmm_cli.mechanics.numerics import EPS, DoubleDouble, array, exactly, rounded
 
 
 @pytest.fixture(autouse=True)

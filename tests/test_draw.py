@@ -9,15 +9,10 @@ from test_commands import SHAPER
 
 from tmm_cli import solve
 from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.labels import Label, extent, place
-from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper import Ground, Label, Sheet, extent, place
 from tmm_cli.drawing.run import files, remarks, sheets
-from tmm_cli.drawing.sheets.mechanism import detailed, position
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
-from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.drawing.sheets import all_positions, detailed, draw_motion_plans, position
+from tmm_cli.problem import build_problem, read_text
 
 
 def shaper(*changes):

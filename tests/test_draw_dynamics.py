@@ -9,8 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from bank import drawn as sheets_of
-from bank import problem, solved
+from bank import drawn as sheets_of, problem, solved
 from covering import covered
 from formulas import formulas
 from models import DATA
@@ -18,20 +17,15 @@ from scipy.integrate import cumulative_trapezoid
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.layout.contents import CONTENTS, chosen
-from tmm_cli.drawing.paper.record import Circle, Line, Text
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion, stretches_on_paper
-from tmm_cli.drawing.sheets.single_run import draw_single_run
+from tmm_cli.drawing.layout import CONTENTS, chosen
+from tmm_cli.drawing.paper import DARK, INERTIA, LOAD, REACTION, Circle, Line, Text
+from tmm_cli.drawing.sheets import draw_law_of_motion, draw_single_run, stretches_on_paper
 from tmm_cli.language import spoken
-from tmm_cli.mechanics.dynamics.motors import Linear
-from tmm_cli.mechanics.dynamics.task import Rim, SteadyTask
+from tmm_cli.mechanics.dynamics import Linear, Rim, SteadyTask
 from tmm_cli.mechanics.linkage import Load
+from tmm_cli.note import html, note
 from tmm_cli.note.dynamics import parts as words
-from tmm_cli.note.formats.html import html
-from tmm_cli.note.register import note
-from tmm_cli.reports.given import input_tables
+from tmm_cli.reports import input_tables
 
 THIN = 0.05  # mm: less than half of a line
 TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor

@@ -9,21 +9,24 @@ import pytest
 from bank import solved
 from test_draw import plain
 
-from tmm_cli.drawing.paper.record import Area, Line
-from tmm_cli.drawing.paper.script import plain as line
-from tmm_cli.drawing.paper.script import wrapped
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION, Sheet
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.drawing.sheets.acting import ARM, Forces
-from tmm_cli.drawing.sheets.beneath import Beneath, Table
-from tmm_cli.drawing.sheets.force_plans import force_plan_rows, forces, lanes
-from tmm_cli.drawing.sheets.group_loads import draw_group_loads, figure, table_of_forces, written
-from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.mechanics.forces.equilibrium import loaded_parts
-from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol
-from tmm_cli.mechanics.plans.forces import force_plans
-from tmm_cli.mechanics.plans.record import NamedVector
-from tmm_cli.note.expression import fixed, rounded
+from tmm_cli.drawing.paper import DARK, INERTIA, LOAD, REACTION, Area, Line, Sheet, plain as line, wrapped
+from tmm_cli.drawing.sheets import (
+    ARM,
+    Beneath,
+    Forces,
+    Table,
+    detailed,
+    draw_group_loads,
+    figure,
+    force_plan_rows,
+    forces,
+    lanes,
+    table_of_forces,
+    written,
+)
+from tmm_cli.mechanics.forces import Acting, Symbol, loaded_parts
+from tmm_cli.mechanics.plans import NamedVector, force_plans
+from tmm_cli.note import fixed, rounded
 
 
 def sheets_of(name, kind):

@@ -13,10 +13,8 @@ from fontTools import ttLib
 from PIL import Image
 from pypdf import PdfReader
 
-from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.formats.pdf import cut, write_pdf
-from tmm_cli.drawing.paper.fonts import corners, font, font_file, lacking, width
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
+from tmm_cli.drawing.formats import FORMATS, cut, write_pdf
+from tmm_cli.drawing.paper import Area, Circle, Drawing, Line, Text, corners, font, font_file, lacking, width
 
 LINE = Line((20 + 30j, 120 + 30j), "#b3261e", 0.5, layer="links")
 TRIANGLE = Area((20 + 60j, 60 + 60j, 40 + 90j), "#1f4e9c", None, 0.0)

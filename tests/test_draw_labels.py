@@ -5,11 +5,7 @@ import pytest
 from bank import EVERY, drawn
 from covering import covered
 
-from tmm_cli.drawing.paper import labels
-from tmm_cli.drawing.paper.boxes import gaps
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.labels import Label, place
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Text
+from tmm_cli.drawing.paper import Area, Circle, Drawing, Ground, Label, Line, Text, gaps, labels, place
 
 DARK = "#000000"
 A = Text(50 + 50j, "A", 4.0, DARK, "center")  # its letter is 2.7 mm wide and 2.9 mm high

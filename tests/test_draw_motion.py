@@ -8,11 +8,8 @@ from functools import cache
 import pytest
 from bank import solved
 
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Circle, Text
-from tmm_cli.drawing.paper.script import plain
-from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans, motion_plan_rows, sorts
+from tmm_cli.drawing.paper import Circle, Text, corners, plain
+from tmm_cli.drawing.sheets import detailed, draw_motion_plans, motion_plan_rows, sorts
 
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 

@@ -10,19 +10,13 @@ import pytest
 from higher import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.drawing.paper.record import Line
-from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper import Line, Sheet
 from tmm_cli.drawing.run import sheets
-from tmm_cli.drawing.symbols.actuators import BARREL, Cylinder, springs
-from tmm_cli.drawing.symbols.scene import Scene
-from tmm_cli.drawing.symbols.wheels import AROUND, contact, extent, outline
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.numerics.vectors import cross, dot
-from tmm_cli.mechanics.plans.forces import force_plans
-from tmm_cli.mechanics.plans.lever import lever_plan
-from tmm_cli.mechanics.plans.motion import acceleration_plan, letters, velocity_plan
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.drawing.symbols import AROUND, BARREL, Cylinder, Scene, contact, extent, outline, springs
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.numerics import cross, dot
+from tmm_cli.mechanics.plans import acceleration_plan, force_plans, letters, lever_plan, velocity_plan
+from tmm_cli.problem import build_problem, read_text
 
 WHEELS = ["gear", "inner", "planet", "rack"]
 CAMS = ["flat follower", "swinging follower"]

@@ -8,20 +8,15 @@ from functools import cache
 import numpy as np
 import pytest
 from bank import moved, solved
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from test_commands import ROOT
 
 from tmm_cli import solve
-from tmm_cli.drawing.paper.dimensions import TICK, spread
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Area, Line, Text
-from tmm_cli.drawing.sheets.mechanism import detailed, position
-from tmm_cli.drawing.sheets.positions import all_positions, extreme_states, extremes, output_track, ratio
-from tmm_cli.mechanics.plans.record import ground_of
+from tmm_cli.drawing.paper import TICK, Area, Line, Text, corners, spread
+from tmm_cli.drawing.sheets import all_positions, detailed, extreme_states, extremes, output_track, position, ratio
+from tmm_cli.mechanics.plans import ground_of
 from tmm_cli.mechanics.quantities import LENGTH
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import build_problem, read_text
 
 
 @cache

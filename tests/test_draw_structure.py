@@ -12,20 +12,14 @@ from bank import NAMES, moved, solved
 from test_commands import ROOT, SHAPER, imported, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Circle, Line, Text
-from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper import Circle, Line, Sheet, Text, corners
 from tmm_cli.drawing.run import sheets
-from tmm_cli.drawing.sheets.structure import Legend, at_sketch, groups, parts, scheme, side_by_side, whole_scheme
-from tmm_cli.drawing.symbols.forms import by_pairs
-from tmm_cli.drawing.symbols.parts import STRUCTURAL
-from tmm_cli.drawing.symbols.scene import Scene
-from tmm_cli.drawing.symbols.wheels import outline, replacement
-from tmm_cli.mechanics.groups.state import Pose
+from tmm_cli.drawing.sheets import Legend, at_sketch, groups, parts, scheme, side_by_side, whole_scheme
+from tmm_cli.drawing.symbols import STRUCTURAL, Scene, by_pairs, outline, replacement
+from tmm_cli.mechanics.groups import Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import build_problem, read_text
 
 
 def scene(points, links, slides=(), driver="O", turn=0.4):

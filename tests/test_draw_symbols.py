@@ -8,16 +8,23 @@ import numpy as np
 import pytest
 from bank import NAMES, solved
 
-from tmm_cli.drawing.paper.labels import gather_labels
-from tmm_cli.drawing.paper.record import Area, Circle, Line
-from tmm_cli.drawing.paper.sheet import THIN, Sheet
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.drawing.sheets.structure import at_sketch
-from tmm_cli.drawing.symbols.parts import MEASURED, PLATE, STRUCTURAL, WELD, free_runs, mass_centre, support_side, tint
-from tmm_cli.drawing.symbols.render import render_scene
-from tmm_cli.drawing.symbols.scene import fitted, to_scale
+from tmm_cli.drawing.paper import DARK, THIN, Area, Circle, Line, Sheet, gather_labels
+from tmm_cli.drawing.sheets import at_sketch
+from tmm_cli.drawing.symbols import (
+    MEASURED,
+    PLATE,
+    STRUCTURAL,
+    WELD,
+    fitted,
+    free_runs,
+    mass_centre,
+    render_scene,
+    support_side,
+    tint,
+    to_scale,
+)
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.numerics import cross, dot
 
 LOOKS = (STRUCTURAL, MEASURED)  # the scheme, to scale
 NEAR = 0.35  # mm

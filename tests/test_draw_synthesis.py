@@ -8,27 +8,44 @@ import numpy as np
 import pytest
 from bank import moved
 
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Area, Line, Text
-from tmm_cli.drawing.paper.sheet import LOAD, THIN, border
-from tmm_cli.drawing.sheets.construction import PAD, SMALLER, draw_construction, granted, inside, rename
-from tmm_cli.drawing.sheets.synthesis import draw_synthesis
-from tmm_cli.mechanics.plans.record import sheet_scale
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis import crank_slider, shaper, slotted_lever
+from tmm_cli.drawing.paper import LOAD, THIN, Area, Line, Text, border, corners
+from tmm_cli.drawing.sheets import PAD, SMALLER, draw_construction, draw_synthesis, granted, inside, rename
+from tmm_cli.mechanics.plans import sheet_scale
+from tmm_cli.problem import UnitSystem
+from tmm_cli.synthesis import (
+    AnglePairsTask,
+    CouplerPositionsTask,
+    CrankSliderTask,
+    Evolved,
+    FourBarByKTask,
+    ShaperTask,
+    Side,
+    SlottedLeverTask,
+    crank_slider,
+    frame,
+    history,
+    shaper,
+    slotted_lever,
+)
 from tmm_cli.synthesis.coupler_positions import solver as coupler_positions
-from tmm_cli.synthesis.coupler_positions.burmester import Side
-from tmm_cli.synthesis.coupler_positions.curve import frame
 from tmm_cli.synthesis.four_bar_by_angles import solver as four_bar_by_angles
 from tmm_cli.synthesis.four_bar_by_k import solver as four_bar_by_k
-from tmm_cli.synthesis.optimal.evolution import Evolved
-from tmm_cli.synthesis.optimal.outcome import history
 
 ROOT = Path(__file__).parents[1]
 
 
+TASKS = {
+    coupler_positions: CouplerPositionsTask,
+    crank_slider: CrankSliderTask,
+    four_bar_by_angles: AnglePairsTask,
+    four_bar_by_k: FourBarByKTask,
+    shaper: ShaperTask,
+    slotted_lever: SlottedLeverTask,
+}
+
+
 def drawn(solver, **asked):
-    return [d for d in solver.solve(solver.Task(**asked)).drawings if hasattr(d, "spots")]
+    return [d for d in solver.solve(TASKS[solver](**asked)).drawings if hasattr(d, "spots")]
 
 
 def rocker(k, low, high, **more):

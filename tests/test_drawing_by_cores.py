@@ -7,9 +7,8 @@ from functools import partial
 import pytest
 from bank import moved
 
-from tmm_cli.cli import drawing
-from tmm_cli.cli.drawing import FEW, by_all_cores
-from tmm_cli.drawing.layout.files import files_of_sheets
+from tmm_cli.cli import FEW, by_all_cores, drawing
+from tmm_cli.drawing.layout import files_of_sheets
 from tmm_cli.drawing.run import files, parts
 
 

@@ -14,10 +14,9 @@ from bank import EVERY, problem
 from random_linkages import any_linkage
 from transforms import mirrored, moved, renamed, reversed_in_time, turned, with_other_axes
 
-from tmm_cli.mechanics.analysis.mechanism import Inputs
-from tmm_cli.mechanics.analysis.pipeline import at_positions, solve, with_forces
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.analysis import Inputs, at_positions, solve, with_forces
+from tmm_cli.mechanics.forces import react
+from tmm_cli.mechanics.kinematics import output_run
 from tmm_cli.mechanics.linkage import FRAME, Friction, Load, Output, Request, Sketch
 
 BY, ASIDE = 0.7, 0.3 - 0.2j  # rad, m

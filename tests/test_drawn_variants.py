@@ -9,12 +9,9 @@ import pytest
 from test_commands import SHAPER
 
 from tmm_cli import solve
-from tmm_cli.batch.choices import read_choices, with_vary
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading import draw_variants
-from tmm_cli.grading.draw_variants import Variety, draw, draw_for
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.batch import read_choices, read_task, with_vary
+from tmm_cli.grading import Variety, draw, draw_for, draw_variants
+from tmm_cli.problem import ProblemError, read_text
 
 ASKED = """
 variants: {OA: {from: 100, to: 240, step: 5}, DE: [150, 250], n1: {among: [70 rpm, 80 rpm, 90 rpm]}}

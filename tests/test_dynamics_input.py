@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.problem import ProblemError, build_problem, read_text
+from tmm_cli.reports import collect_warnings, doubts
 
 MACHINE = """tmm: 1
 points: {O: [0, 0]}

@@ -6,27 +6,30 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from multibody import compared
 from scipy.integrate import quad, solve_ivp
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.mechanics.dynamics.laws import Cycle
-from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
-from tmm_cli.mechanics.dynamics.reduced import fitted, reduce_machine
-from tmm_cli.mechanics.dynamics.steady import find_steady_running, fluctuation, reduced_machine, running
-from tmm_cli.mechanics.dynamics.task import SteadyTask
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.dynamics import (
+    Cycle,
+    Kloss,
+    Linear,
+    SteadyTask,
+    find_steady_running,
+    fitted,
+    fluctuation,
+    reduce_machine,
+    reduced_machine,
+    running,
+)
 from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.problem import ProblemError, problem_of, read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi

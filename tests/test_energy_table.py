@@ -9,9 +9,8 @@ from fuzz import beyond
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.force_tables import energy_tables as tables
+from tmm_cli.problem import problem_of, read_text
+from tmm_cli.reports import energy_tables as tables
 
 
 @pytest.mark.parametrize("name, header", [("crank-slider", "dJ/dphi, SI"), ("cylinder", "dm/ds, SI")])

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
@@ -24,9 +23,7 @@ from tmm_cli.mechanics.quantities import (
     TIME,
     Dimension,
 )
-from tmm_cli.problem.arithmetic import evaluate, evaluate_quantity, resolve_parameters
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
+from tmm_cli.problem import PhysicalValue, ProblemError, UnitSystem, evaluate, evaluate_quantity, resolve_parameters
 
 UNITS = UnitSystem()
 GIVEN = {

@@ -8,9 +8,8 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.sheets.hodographs import reactions
-from tmm_cli.mechanics.analysis.extremes import with_extremes
-from tmm_cli.mechanics.analysis.pipeline import at_places
+from tmm_cli.drawing.sheets import reactions
+from tmm_cli.mechanics.analysis import at_places, with_extremes
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 

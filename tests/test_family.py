@@ -8,18 +8,19 @@ import numpy as np
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch.prepare import everything, prepare_batch
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.traced import TracedNumber
-from tmm_cli.batch.taped import OneByOne, Taped
-from tmm_cli.batch.variant import NoTapeError, Places, Variant
+from tmm_cli.batch import NoTapeError, OneByOne, Places, Taped, TracedNumber, Variant, everything, prepare_batch, record
 from tmm_cli.mechanics.linkage import Request
-from tmm_cli.problem import schema
-from tmm_cli.problem.arithmetic import evaluate_quantity, resolve_parameters
-from tmm_cli.problem.build import build_shape
-from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    PhysicalValue,
+    UnitSystem,
+    ValueReader,
+    VariedUnits,
+    build_shape,
+    evaluate_quantity,
+    read_file,
+    resolve_parameters,
+    schema,
+)
 
 
 def maker(name, given):

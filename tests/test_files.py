@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
-from tmm_cli.reports import files
-from tmm_cli.reports.files import Staged, folder_name, folder_of, held, listed, write_whole
+from tmm_cli.reports import Staged, files, folder_name, folder_of, held, listed, write_whole
 
 SHAPER = ROOT / "problems" / "shaper.yaml"
 SINE = ROOT / "problems" / "sine.yaml"

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from random_linkages import any_linkage
 
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.driver_range import find_range
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import find_range, move
+from tmm_cli.mechanics.structure import analyse
 
 # the last ones: barred only after more than a turn; the second group stops the driver; a rack that goes on and on;
 # a cylinder that is looked at as far as it is for the largest group

@@ -14,14 +14,9 @@ import numpy as np
 import pytest
 from test_commands import ROOT, tmm
 
-from tmm_cli.mechanics.analysis.pipeline import at_places
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.formats import foreign_of
-from tmm_cli.problem.formats.foreign import written
-from tmm_cli.problem.formats.pmks_link import DIGITS
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.solving import load, solve
+from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.problem import DIGITS, ProblemError, foreign_of, problem_of, read_text, written
+from tmm_cli.synthesis import load, solve
 
 FILES = ROOT / "tests" / "data" / "foreign"
 PYLINKAGE = json.loads((FILES / "pylinkage.json").read_text(encoding="utf-8"))

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from tmm_cli import load
-from tmm_cli.mechanics.groups.closed_forms import CLOSED
-from tmm_cli.mechanics.numerics.roots import bisect, find_roots
-from tmm_cli.mechanics.numerics.vectors import leaves, mapped
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.groups import CLOSED
+from tmm_cli.mechanics.numerics import bisect, find_roots, leaves, mapped
+from tmm_cli.mechanics.structure import analyse
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.longdouble])

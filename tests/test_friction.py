@@ -11,10 +11,9 @@ import pytest
 from models import linkage_of, results_of, solved_text
 from transforms import turned
 
-from tmm_cli.mechanics.analysis.mechanism import Inputs
-from tmm_cli.mechanics.analysis.pipeline import solve
+from tmm_cli.mechanics.analysis import Inputs, solve
 from tmm_cli.mechanics.linkage import Friction, Request
-from tmm_cli.reports.digits import accuracy, computed_tables
+from tmm_cli.reports import accuracy, computed_tables
 
 G = 9.81
 SLIDER = {

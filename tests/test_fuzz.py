@@ -11,10 +11,8 @@ from fuzz_blocks import BLOCKS, Parts
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.mechanics.groups.state import State
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.groups import State
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 
 def test_no_file_ends_in_anything_but_a_problem_or_the_products_own_error() -> None:

@@ -14,14 +14,11 @@ from bank import moved
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.animation.content import picture_of
-from tmm_cli.animation.gallery.card import card
-from tmm_cli.animation.gallery.page import gallery_page
-from tmm_cli.animation.gallery.turning import PLACE, ROW, TURN, places_of
+from tmm_cli.animation import PLACE, ROW, TURN, card, gallery_page, picture_of, places_of
 from tmm_cli.language import spoken
-from tmm_cli.mechanics.analysis.pipeline import at_positions
+from tmm_cli.mechanics.analysis import at_positions
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.spatial import SpatialChain, SpatialPair
+from tmm_cli.mechanics.structure import SpatialChain, SpatialPair
 
 NAMES = ("crank-slider", "slotted-lever", "cam-lever", "excavator", "double-crank", "manipulator-open")
 MOST = 3_000_000 / 60  # bytes of a mechanism

@@ -8,7 +8,7 @@ import pytest
 from test_commands import ROOT, tmm
 from write_graded_examples import MISTAKES, NAMES
 
-from tmm_cli.grading.mistakes import MISTAKES as KINDS
+from tmm_cli.grading import MISTAKES as KINDS
 
 GRADED = {
     file.parent.name: json.loads(file.read_text(encoding="utf-8"))["result"]["students"]

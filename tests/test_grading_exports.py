@@ -16,16 +16,28 @@ from python_calamine import CalamineWorkbook
 from rich.console import Console
 from test_commands import SHAPER
 
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading import exports
-from tmm_cli.grading.cells import shown
-from tmm_cli.grading.exports import EXPORTS, write, xlsx
-from tmm_cli.grading.exports.book import ANSWERS_HEADER, Gradebook, direction, points_text, share_text
-from tmm_cli.grading.group_chart import chart
-from tmm_cli.grading.record import Mark, StudentMarks
-from tmm_cli.grading.statistics import commonest, hardest, histogram, statistics_tables
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.terminal import show
+from tmm_cli.batch import read_task
+from tmm_cli.grading import (
+    ANSWERS_HEADER,
+    EXPORTS,
+    Gradebook,
+    Mark,
+    StudentMarks,
+    chart,
+    commonest,
+    direction,
+    exports,
+    hardest,
+    histogram,
+    points_text,
+    share_text,
+    shown,
+    statistics_tables,
+    write,
+)
+from tmm_cli.grading.exports import xlsx
+from tmm_cli.problem import read_text
+from tmm_cli.reports import show
 
 ASKED = """
 grading:

@@ -8,16 +8,23 @@ from test_commands import ROOT, SHAPER
 from test_diagnosis import ASKED, group
 from test_variants_of_task import family_of
 
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading.copies import with_copies
-from tmm_cli.grading.diagnose import diagnose_students
-from tmm_cli.grading.mistakes.data import OtherZero, Sense
-from tmm_cli.grading.own_answers import following, own_answer
-from tmm_cli.grading.record import Given, Submission, VariantTable
-from tmm_cli.grading.run import grade
-from tmm_cli.grading.sheet import Written, predicted
-from tmm_cli.grading.solution import solve
-from tmm_cli.problem.reader import read_text
+from tmm_cli.batch import read_task
+from tmm_cli.grading import (
+    Given,
+    OtherZero,
+    Sense,
+    Submission,
+    VariantTable,
+    Written,
+    diagnose_students,
+    following,
+    grade,
+    own_answer,
+    predicted,
+    solve,
+    with_copies,
+)
+from tmm_cli.problem import read_text
 
 TASK = read_task(read_text(SHAPER.read_text(encoding="utf-8") + ASKED, "task.yaml"))
 NAMES = [f"student {n}" for n in range(8)]

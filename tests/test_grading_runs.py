@@ -14,14 +14,9 @@ from dataclasses import replace
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch import workers
-from tmm_cli.batch.task import read_task
-from tmm_cli.batch.workers import cluster, here, processes
-from tmm_cli.grading import run
-from tmm_cli.grading.record import Given, Mark, StudentMarks, Submission, VariantTable
-from tmm_cli.grading.run import graded, keep, read_kept
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.batch import cluster, here, processes, read_task, workers
+from tmm_cli.grading import Given, Mark, StudentMarks, Submission, VariantTable, graded, keep, read_kept, run
+from tmm_cli.problem import ProblemError, read_text
 
 SINE = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
 ASKED = "\ngrading: {answers: [{of: H}, {of: v of E, at: 3}]}\n"

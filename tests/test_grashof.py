@@ -6,24 +6,24 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.four_bar import FOUR_BAR_TYPES, FourBar, turning
-from tmm_cli.synthesis.grashof import (
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import (
+    FOUR_BAR_TYPES,
     LEVERS,
     SLIDERS,
     CrankSlider,
+    FourBar,
     SlottedLever,
+    build,
     classify_crank_slider,
     classify_slotted_lever,
+    turning,
 )
-from tmm_cli.synthesis.reading import build
 
 FOUR_BAR = """
 points: {O: [0, 0], C: [l4, 0]}

@@ -7,9 +7,8 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.structure.redundancy import space
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.structure import space
+from tmm_cli.problem import build_problem, read_text
 
 
 def in_space(text):

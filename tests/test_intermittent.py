@@ -13,12 +13,8 @@ from bank import drawn, moved
 from models import PROBLEMS, solved_text
 from test_commands import tmm
 
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.properties import properties_shown
-from tmm_cli.reports.register import tables
-from tmm_cli.reports.result_json import to_json
+from tmm_cli.problem import ProblemError, build_problem, read_text
+from tmm_cli.reports import properties_shown, tables, to_json
 
 SLOTS = (PROBLEMS / "slotted/intermittent.yaml").read_text(encoding="utf-8")
 RATCHET = (PROBLEMS / "gear-lever/ratchet-feed.yaml").read_text(encoding="utf-8")

@@ -16,16 +16,11 @@ from test_bad_input import place, refusal
 from test_bad_linkages import changed
 from test_commands import tmm
 
-from tmm_cli.mechanics.forces.friction import FrictionSolution, LockedRange, find_locked_ranges
-from tmm_cli.mechanics.groups.pairs.higher import CamLaw, Piece
-from tmm_cli.mechanics.numerics.double_double import exactly
-from tmm_cli.mechanics.numerics.linear import solve as solve_linear
-from tmm_cli.note.blocks import Paragraph
-from tmm_cli.note.context import Subject
-from tmm_cli.note.forces.loads import losses
-from tmm_cli.reports.result_json import to_json
-from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import collect_warnings as words
+from tmm_cli.mechanics.forces import FrictionSolution, LockedRange, find_locked_ranges
+from tmm_cli.mechanics.groups import CamLaw, Piece
+from tmm_cli.mechanics.numerics import exactly, solve as solve_linear
+from tmm_cli.note import Paragraph, Subject, losses
+from tmm_cli.reports import collect_warnings as words, doubts, to_json
 
 # ---------------------------------------------------------------- wheels
 
@@ -253,7 +248,7 @@ def test_a_range_over_the_beginning_of_the_cycle_is_one_range():
 
 
 def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
-    monkeypatch.setattr("tmm_cli.drawing.formats.FORMATS", dict.fromkeys(("png", "svg"), lambda drawing: b""))
+    monkeypatch.setattr("tmm_cli.drawing.formats.register.FORMATS", dict.fromkeys(("png", "svg"), lambda drawing: b""))
     text = changed(blocks.SLIDER, "coefficient: 0.1", "coefficient: 10") + "positions: {count: 12, detail: [9]}\n"
     file = tmp_path / "locked.yaml"
     file.write_text(text, encoding="utf-8")

@@ -14,16 +14,13 @@ from test_commands import tmm
 
 from tests import messages
 from tmm_cli import load, solve
-from tmm_cli.cli.common import each
-from tmm_cli.cli.opening import opened
-from tmm_cli.cli.reporting import bounds_of
-from tmm_cli.cli.talk import speaking
-from tmm_cli.drawing.paper.chart import filling
+from tmm_cli.cli import bounds_of, each, opened, speaking
+from tmm_cli.drawing.paper import filling
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
-from tmm_cli.mechanics.forces.free_bodies import balance_symbol, load_symbols
+from tmm_cli.mechanics.forces import balance_symbol, load_symbols
 from tmm_cli.mechanics.quantities import KINDS
-from tmm_cli.problem.units import UnitSystem, parse_unit
-from tmm_cli.reports.files import write_results
+from tmm_cli.problem import UnitSystem, parse_unit
+from tmm_cli.reports import write_results
 
 KEPT, UPDATED = cache(messages.catalogue), cache(messages.updated)  # read once for all tests
 

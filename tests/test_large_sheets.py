@@ -10,17 +10,13 @@ import pytest
 from bank import problem, solved
 from big_sheets import COURSES, about, apart, boxes, drawn, free, used
 from covering import covered
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tmm_cli import solve
-from tmm_cli.drawing.layout.contents import chosen
-from tmm_cli.drawing.layout.large import PAPERS, field_of, large_sheets
-from tmm_cli.drawing.layout.packing import SIZES, Field, inner, pack, spread
-from tmm_cli.drawing.paper.record import Circle, Drawing, Line, Text
-from tmm_cli.drawing.paper.writing import cut, wrap
+from tmm_cli.drawing.layout import PAPERS, SIZES, Field, chosen, field_of, inner, large_sheets, pack, spread
+from tmm_cli.drawing.paper import Circle, Drawing, Line, Text, cut, wrap
 from tmm_cli.drawing.run import sheets
-from tmm_cli.mechanics.plans.record import ROUND
+from tmm_cli.mechanics.plans import ROUND
 
 
 @given(st.lists(st.tuples(st.floats(10, 300), st.floats(10, 200)), min_size=1, max_size=12))

@@ -11,11 +11,13 @@ from collections.abc import Iterator
 from fnmatch import fnmatch
 from functools import cache
 from graphlib import TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "tmm_cli"
 LAYERS = (  # from below; parts of one layer do not know one another
+    ("interfaces",),
     ("language",),
     ("mechanics",),
     ("problem",),
@@ -111,6 +113,26 @@ def entry(name: str) -> str:
     return name.partition(".")[0]
 
 
+def subpackage(name: str) -> str:
+    """The subpackage whose interface a module stands behind: an entry at the top, or one of mechanics or drawing."""
+    return ".".join(name.split(".")[: 2 if entry(name) in ("mechanics", "drawing") else 1])
+
+
+@cache
+def subpackages() -> set[str]:
+    """Those with an interface."""
+    return {subpackage(name) for name, path in MODULES.items() if path.with_suffix(".pyi").exists()}
+
+
+def reached(path: Path, own: str | None) -> Iterator[tuple[str, str]]:
+    """Names that a file takes of other subpackages, with the module from which it takes them."""
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("tmm_cli."):
+            module = str(node.module).removeprefix("tmm_cli.")
+            if subpackage(module) in subpackages() and subpackage(module) != own:
+                yield from ((module, alias.name) for alias in node.names)
+
+
 def upward(layers: tuple[tuple[str, ...], ...], part: dict[str, str]) -> list[str]:
     """Imports that do not point downwards in these layers; part: of a module, in which of them it is."""
     floor = {name: number for number, names in enumerate(layers) for name in names}
@@ -154,6 +176,37 @@ def test_few_entries_know_one_another():
     assert len({(one, other) for one, other in pairs if one != other}) <= MOST_PAIRS
 
 
+def test_nobody_reaches_past_an_interface():
+    offered = {name: set(import_module(f"tmm_cli.{name}").__all__) for name in subpackages()}
+    past = [
+        f"{name}: {module}.{thing}"
+        for name, path in MODULES.items()
+        for module, thing in reached(path, subpackage(name))
+        if thing not in offered.get(module, ())
+    ]
+    assert not past
+
+
+def test_tests_use_interfaces_too():
+    past = [
+        f"{path.name}: {module}.{thing}"
+        for path in (ROOT / "tests").glob("*.py")
+        for module, thing in reached(path, None)
+        if module not in subpackages() and f"{module}.{thing}" not in MODULES  # a module, whose parts a test replaces
+    ]
+    assert not past
+
+
+def test_what_an_interface_offers_is_there_and_used():
+    homes = {path: subpackage(name) for name, path in MODULES.items()}
+    used = {pair for path in (*homes, *(ROOT / "tests").glob("*.py")) for pair in reached(path, homes.get(path))}
+    for name in subpackages():
+        interface = import_module(f"tmm_cli.{name}")
+        for thing in interface.__all__:
+            assert getattr(interface, thing) is not None
+            assert (name, thing) in used, f"{name}.{thing} is used by nobody else"
+
+
 def test_no_modules_import_one_another_in_a_circle():
     TopologicalSorter(ours()).prepare()  # raises CycleError, which names the circle
 
@@ -194,7 +247,7 @@ def test_without_its_block_nothing_of_dynamics_is_loaded(tmp_path):
         "import sys; from tmm_cli.cli.app import main\n"
         f"sys.argv = ['tmm', 'run', 'problems/sine.yaml', '--no-drawings', '-o', {str(tmp_path)!r}]\n"
         "try: main()\nfinally: import tmm_cli.drawing.run, tmm_cli.note.register; print('loaded:', *sorted(\n"
-        "    name for name in sys.modules if name.startswith('tmm_cli.mechanics.dynamics') or name == 'scipy'))"
+        "    name for name in sys.modules if name.startswith('tmm_cli.mechanics.dynamics.') or name == 'scipy'))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", told], cwd=ROOT, env=environment, capture_output=True, text=True)

@@ -13,16 +13,13 @@ from models import PROBLEMS, file_of
 from multibody import compared
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis.mechanism import redriven
-from tmm_cli.mechanics.analysis.pipeline import at_places
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.solving import redrive
+from tmm_cli.mechanics.analysis import at_places, redriven
+from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.synthesis import redrive
 
 FORMULAS = {
     "positioner": "I(1,2) -> II(1,2,3) -> II(4,5), II(1,2,3) -> II(6,7)",

@@ -11,22 +11,15 @@ from scipy.interpolate import CubicSpline
 from test_commands import ROOT, tmm
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.batch.prepare import prepare_batch as prepare_all
-from tmm_cli.batch.task import Task
-from tmm_cli.drawing.sheets.diagrams import closely
-from tmm_cli.mechanics.accuracy.digits import bounds, judged
-from tmm_cli.mechanics.analysis.pipeline import at_places
-from tmm_cli.mechanics.dynamics.steady import reduced_machine
-from tmm_cli.mechanics.numerics.double_double import DoubleDouble, rounded
-from tmm_cli.mechanics.numerics.interpolation import Table
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.templates import template_text
-from tmm_cli.reports.given import input_tables
-from tmm_cli.reports.warnings import collect_warnings
-from tmm_cli.sweep.grid import read_axes
-from tmm_cli.sweep.mechanisms import Mechanisms
-from tmm_cli.sweep.run import swept
+from tmm_cli.batch import Task, prepare_batch as prepare_all
+from tmm_cli.drawing.sheets import closely
+from tmm_cli.mechanics.accuracy import bounds, judged
+from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.mechanics.dynamics import reduced_machine
+from tmm_cli.mechanics.numerics import DoubleDouble, Table, rounded
+from tmm_cli.problem import problem_of, read_text, template_text
+from tmm_cli.reports import collect_warnings, input_tables
+from tmm_cli.sweep import Mechanisms, read_axes, swept
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}

@@ -8,15 +8,11 @@ from models import PARALLELOGRAM, solved_text
 from scipy.interpolate import CubicSpline
 
 from tmm_cli import prepare, solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.mechanics.dynamics.steady import reduced_machine
-from tmm_cli.mechanics.numerics.interpolation import Table
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.given import input_tables
-from tmm_cli.reports.understood import doubts
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.dynamics import reduced_machine
+from tmm_cli.mechanics.numerics import Table
+from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.reports import collect_warnings, doubts, input_tables
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}

@@ -8,17 +8,12 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.batch.task import Task, read_task
-from tmm_cli.grading.record import Given, Submission, VariantTable
-from tmm_cli.grading.run import grade
-from tmm_cli.mechanics.accuracy.digits import judged
-from tmm_cli.problem.build import build_problem, problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.given import input_tables
-from tmm_cli.sweep.grid import read_axes
-from tmm_cli.sweep.mechanisms import Mechanisms
-from tmm_cli.sweep.run import swept
+from tmm_cli.batch import Task, read_task
+from tmm_cli.grading import Given, Submission, VariantTable, grade
+from tmm_cli.mechanics.accuracy import judged
+from tmm_cli.problem import ProblemError, build_problem, problem_of, read_text
+from tmm_cli.reports import input_tables
+from tmm_cli.sweep import Mechanisms, read_axes, swept
 
 V_ENGINE = Path("tests/data/v-compressor.yaml").read_text(encoding="utf-8")
 R, ROD = 0.05, 0.2  # m

@@ -13,9 +13,8 @@ from models import PROBLEMS
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.properties import properties_shown
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import properties_shown
 
 
 def shown(name):

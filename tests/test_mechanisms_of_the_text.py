@@ -11,8 +11,7 @@ from models import PROBLEMS
 from test_mechanisms import meet, shown, slope, unit
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import build_problem, read_text
 
 
 def root(function, low, high):

@@ -12,8 +12,8 @@ from models import PROBLEMS
 from random_linkages import linkage
 from test_properties import CHAINS, SEEDS, generic
 
-from tmm_cli.mechanics.forces.equilibrium import loaded_parts
-from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.forces import loaded_parts
+from tmm_cli.mechanics.numerics import cross, dot
 
 IN_DETAIL = [name for name in NAMES if "detail: [" in (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")]
 

@@ -12,16 +12,19 @@ import pytest
 
 from tests.test_language import Cyrillic
 from tmm_cli import load, solve
-from tmm_cli.animation.content import charts
+from tmm_cli.animation import charts
 from tmm_cli.drawing.run import remarks, sheets
 from tmm_cli.language import CATALOGUES, spoken
-from tmm_cli.note.formats.html import html
-from tmm_cli.note.register import note
-from tmm_cli.reports.explain import explain_tables, in_words
-from tmm_cli.reports.register import tables
-from tmm_cli.reports.spreadsheets import spreadsheet_cells
-from tmm_cli.reports.understood import doubts, summarise_file
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.note import html, note
+from tmm_cli.reports import (
+    collect_warnings,
+    doubts,
+    explain_tables,
+    in_words,
+    spreadsheet_cells,
+    summarise_file,
+    tables,
+)
 
 PROBLEMS = ("shaper", "planetary-dwell-press", "crank-rocker-synthesis", "press-class-iii", "cylinder", "valve-drive")
 WORD = re.compile(r"(?<!\w)[A-Za-z]{3,}(?!\w)")

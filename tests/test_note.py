@@ -19,16 +19,24 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.language import spoken
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.forces.plan import find_transmitted_forces
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Symbol, find_transmitted_forces
 from tmm_cli.mechanics.quantities import KINDS
-from tmm_cli.note.blocks import Heading, Rows
-from tmm_cli.note.expression import EXACT, MOST_FIGURES, Found, Function, Leaf, Sum, evaluate, largest_term
-from tmm_cli.note.formats.html import html
-from tmm_cli.note.register import note
-from tmm_cli.reports.result_json import sections
-from tmm_cli.reports.table import json_text
+from tmm_cli.note import (
+    EXACT,
+    MOST_FIGURES,
+    Found,
+    Function,
+    Heading,
+    Leaf,
+    Rows,
+    Sum,
+    evaluate,
+    html,
+    largest_term,
+    note,
+)
+from tmm_cli.reports import json_text, sections
 
 LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 FIGURES = r"(?<![\w.,′'])[−-]?\d+(?:\.\d+)?(?![\w.]*\w)"

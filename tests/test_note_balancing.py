@@ -9,15 +9,9 @@ from formulas import formulas
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.note import centres
+from tmm_cli.note import Figure, Found, Heading, Note, Subject, centres, html, note
 from tmm_cli.note.balancing import chapter as balancing
-from tmm_cli.note.blocks import Figure, Heading, Note
-from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Found
-from tmm_cli.note.formats.html import html
-from tmm_cli.note.register import note
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import build_problem, read_text
 
 HEADINGS = {"Balancing", "Instantaneous centres"}
 SHAFT = """{masses: [{mass: 200, radius: 80}, {mass: 300, radius: 70, angle: 45, at: 300},

@@ -7,24 +7,28 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tmm_cli.drawing.paper.record import Drawing, Line, Text
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.note.blocks import (
+from tmm_cli.drawing.paper import Drawing, Line, Text
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.note import (
+    FORMATS,
     Contents,
     Equation,
     Figure,
+    Found,
+    Function,
     Heading,
+    Leaf,
+    Letter,
     Note,
     Ref,
     Rows,
     Source,
     Sources,
+    Sum,
     Title,
     paragraph,
+    row,
 )
-from tmm_cli.note.expression import Found, Function, Leaf, Sum
-from tmm_cli.note.formats import FORMATS
-from tmm_cli.note.math import Letter, row
 
 docx = pytest.importorskip("docx")
 

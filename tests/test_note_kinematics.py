@@ -9,13 +9,9 @@ from models import PROBLEMS, solved_text
 from test_jams import planets
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper.picture import Picture
-from tmm_cli.note.blocks import Equation, Heading, Paragraph
-from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import Found
-from tmm_cli.note.kinematics.chapter import blocks
-from tmm_cli.note.kinematics.on_paper import Here
-from tmm_cli.note.math import Letter, Row
+from tmm_cli.drawing.paper import Picture
+from tmm_cli.note import Equation, Found, Heading, Here, Letter, Paragraph, Row, Subject
+from tmm_cli.note.kinematics import chapter as kinematics
 
 
 @cache
@@ -25,7 +21,7 @@ def subject(name, *, drawn=False):
 
 @cache
 def chapter(name):
-    return tuple(blocks(subject(name)))
+    return tuple(kinematics.blocks(subject(name)))
 
 
 def found(name):
@@ -91,7 +87,7 @@ def test_scales_are_those_of_the_drawings(name):
 def test_wheels_that_turn_evenly_have_no_accelerations_made_of_rounding():
     """Three planets hold one another twice: least squares leave 1e-31 rad/s2 where nothing accelerates."""
     results = solved_text(planets(3, "h"))
-    told = [block for block in blocks(Subject(results, drawn=False)) if isinstance(block, Found)]
+    told = [block for block in kinematics.blocks(Subject(results, drawn=False)) if isinstance(block, Found)]
     rates = {block.name.name: block.result for block in told if block.name.name.startswith(("ω", "ε"))}
     assert rates["ωs"] == pytest.approx(3.0)  # Willis: 1 + 80/40
     assert all(value == 0 for name, value in rates.items() if name.startswith("ε"))

@@ -10,7 +10,7 @@ from bank import EVERY
 from models import DATA, PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import read_text
 
 SAMPLE = ("boom-lift", "crank-rocker")  # a cylinder, and a crank that rotates fully
 REFUSED = {"lifting-boom": "how far the driver goes is wanted"}  # a single run has no single position

@@ -11,10 +11,8 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SIX_BAR, SHAPER, EXCAVATOR = (Path(f"problems/{name}.yaml") for name in ("six-bar", "shaper", "excavator"))
 

@@ -14,15 +14,12 @@ import random_linkages
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading.record import Given, Submission, VariantTable
-from tmm_cli.grading.run import grade
+from tmm_cli.batch import read_task
+from tmm_cli.grading import Given, Submission, VariantTable, grade
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.result_json import to_json
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import ProblemError, build_problem, read_text
+from tmm_cli.reports import to_json
 
 V_ENGINE = Path("tests/data/v-compressor.yaml").read_text(encoding="utf-8")
 SIX_BAR = Path("problems/six-bar.yaml")

@@ -5,19 +5,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bank import solved
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from random_linkages import linkage
-from test_properties import CHAINS, SEEDS, generic
-from test_properties import solved as solved_for
+from test_properties import CHAINS, SEEDS, generic, solved as solved_for
 
-from tmm_cli.mechanics.forces.free_bodies import Symbol, named, reaction_symbol
-from tmm_cli.mechanics.forces.lever import compute_lever
-from tmm_cli.mechanics.numerics.vectors import cross, dot
-from tmm_cli.mechanics.plans.forces import force_plans
-from tmm_cli.mechanics.plans.lever import lever_plan
-from tmm_cli.mechanics.plans.motion import Reading, acceleration_plan, readings, turns, velocity_plan
-from tmm_cli.mechanics.plans.record import ROUND, round_scale
+from tmm_cli.mechanics.forces import Symbol, compute_lever, named, reaction_symbol
+from tmm_cli.mechanics.numerics import cross, dot
+from tmm_cli.mechanics.plans import (
+    ROUND,
+    Reading,
+    acceleration_plan,
+    force_plans,
+    lever_plan,
+    readings,
+    round_scale,
+    turns,
+    velocity_plan,
+)
 
 
 @given(SEEDS, CHAINS)

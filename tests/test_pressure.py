@@ -9,7 +9,7 @@ import pytest
 from bank import solved
 from models import results_of
 
-from tmm_cli.mechanics.forces.plan import find_transmitted_forces
+from tmm_cli.mechanics.forces import find_transmitted_forces
 
 FOUR_BAR = {
     "tmm": 1,

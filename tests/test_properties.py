@@ -7,19 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from random_linkages import TYPES, linkage
 
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.lever import compute_lever
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.forces import applied, compute_lever, react
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME, Link
-from tmm_cli.mechanics.numerics.vectors import cross, dot
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.numerics import cross, dot
+from tmm_cli.mechanics.structure import analyse
 
 CHAINS = st.lists(st.sampled_from(TYPES), min_size=1, max_size=4).map(tuple)
 SEEDS = st.integers(0, 2**32 - 1)

@@ -7,15 +7,12 @@ import pytest
 from random_linkages import any_linkage
 from transforms import mirrored, renamed, reversed_in_time, sized, turned
 
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.energy import compute_energy
-from tmm_cli.mechanics.forces.lever import compute_lever
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import power, react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.numerics.vectors import cross
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.forces import applied, compute_energy, compute_lever, power, react
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.numerics import cross
+from tmm_cli.mechanics.structure import analyse
 
 LINKAGES = [
     (1, ("III", "gear"), "crank"),

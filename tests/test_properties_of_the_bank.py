@@ -19,9 +19,8 @@ from mpmath import arg, conj, cos, mpf, pi, sin, sqrt
 from pydantic import BaseModel
 
 from tmm_cli import load, solve
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.schema import File, SpatialFile
-from tmm_cli.reports.properties import properties_shown
+from tmm_cli.problem import File, SpatialFile, read_text
+from tmm_cli.reports import properties_shown
 
 mp.mp.dps = 40
 STEP = mpf(10) ** -12  # of differences: what they miss is below 1e-20

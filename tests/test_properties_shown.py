@@ -12,9 +12,8 @@ from models import PROBLEMS
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.properties import properties_shown
-from tmm_cli.reports.result_json import to_json
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import properties_shown, to_json
 
 SLIDER = (PROBLEMS / "crank-slider-offset.yaml").read_text(encoding="utf-8")
 

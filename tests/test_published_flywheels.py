@@ -11,11 +11,8 @@ import pytest
 from test_loads import MACHINE
 
 from tmm_cli import solve
-from tmm_cli.mechanics.dynamics.reduced import reduce_machine
-from tmm_cli.mechanics.dynamics.steady import find_steady_running as running
-from tmm_cli.mechanics.dynamics.task import SteadyTask
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.dynamics import SteadyTask, find_steady_running as running, reduce_machine
+from tmm_cli.problem import problem_of, read_text
 
 TURN = 2 * np.pi
 RPM = np.pi / 30

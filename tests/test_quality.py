@@ -11,10 +11,9 @@ import pytest
 from models import SI, results_of
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.register import walk
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import problem_of, read_text
+from tmm_cli.reports import walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 DIGITS = 1e-12  # rad (m for a cylinder)

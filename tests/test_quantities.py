@@ -8,17 +8,11 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.drawing.sheets.lever import draw_lever
-from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
-from tmm_cli.mechanics.accuracy.digits import quantities
+from tmm_cli.drawing.sheets import detailed, draw_lever, draw_motion_plans
+from tmm_cli.mechanics.accuracy import quantities
 from tmm_cli.mechanics.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.digits import accuracy
-from tmm_cli.reports.register import tables
-from tmm_cli.reports.result_json import schema, to_json
-from tmm_cli.reports.terminal import terminal_cells
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import accuracy, schema, tables, terminal_cells, to_json
 
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
     "kinematics.points": (POINT, set()),

@@ -8,14 +8,12 @@ import re
 import numpy as np
 import pytest
 from higher import PROBLEMS
-from models import PROBLEMS as FILES
-from models import results_of
+from models import PROBLEMS as FILES, results_of
 
 from tmm_cli import solve
-from tmm_cli.mechanics.groups.pairs.higher import SHAPES
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.register import tables
+from tmm_cli.mechanics.groups import SHAPES
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import tables
 
 UNITS = {"length": "mm", "angle": "deg"}
 

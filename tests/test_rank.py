@@ -16,14 +16,12 @@ from test_commands import tmm
 from test_jams import planets
 
 from tmm_cli import solve
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Link
-from tmm_cli.mechanics.numerics.tolerances import CROSSING_AGREES
-from tmm_cli.mechanics.structure.assur import analyse, ties_of
-from tmm_cli.mechanics.structure.graph import classification
-from tmm_cli.mechanics.structure.group import Passive
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.structure_tables import left_out
+from tmm_cli.mechanics.numerics import CROSSING_AGREES
+from tmm_cli.mechanics.structure import Passive, analyse, classification, ties_of
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import left_out
 
 WITH_A_DYAD = Path("tests/data/redundant-first.yaml").read_text(encoding="utf-8")
 

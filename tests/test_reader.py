@@ -9,12 +9,21 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
-from tmm_cli.problem import reader as composer
-from tmm_cli.problem.errors import Mark, ProblemError, WrittenNumber, clean, nearest, quote
-from tmm_cli.problem.reader import MAX_BYTES, decimal_comma_hint, read_file, read_text
+from tmm_cli.problem import (
+    MAX_BYTES,
+    Mark,
+    ProblemError,
+    WrittenNumber,
+    clean,
+    decimal_comma_hint,
+    nearest,
+    quote,
+    read_file,
+    read_text,
+    reader as composer,
+)
 
 
 @pytest.fixture(params=[name for name in ("CSafeLoader", "SafeLoader") if hasattr(yaml, name)])

@@ -8,10 +8,8 @@ from higher import PROBLEMS
 from test_draw_pairs import solved
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.explain import explain_tables
-from tmm_cli.reports.register import tables
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import explain_tables, tables
 
 
 def table(name, of):

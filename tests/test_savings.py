@@ -11,28 +11,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bank import NAMES, solved
-from bank import problem as read
+from bank import NAMES, problem as read, solved
 from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.bench.chart_savings import savings_charts
-from tmm_cli.bench.counting import all_orders, counted, no_closed_form
-from tmm_cli.bench.savings import NAMED, Saving, Savings
+from tmm_cli.bench import NAMED, Saving, Savings, all_orders, counted, no_closed_form, savings_charts
 from tmm_cli.drawing.run import files as drawings
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.groups.sequence import DriverMotion, NotComputed, towards
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.groups import DriverMotion, NotComputed, towards
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.reader import read_file, read_text
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.files import Staged, listed
-from tmm_cli.reports.stages import describe_stages, heavy
-from tmm_cli.reports.table import Column, Table, csv_text, json_bytes, json_text
-from tmm_cli.synthesis.solving import count, structure_of
+from tmm_cli.mechanics.structure import analyse
+from tmm_cli.problem import UnitSystem, build_chain, problem_of, read_file, read_text
+from tmm_cli.reports import Column, Staged, Table, csv_text, describe_stages, heavy, json_bytes, json_text, listed
+from tmm_cli.synthesis import count, structure_of
 
 NAMES = [name for name in NAMES if name != "crank-rocker-optimal"]  # a four-bar, sought for seconds
 

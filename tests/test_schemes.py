@@ -18,21 +18,19 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.cli import schemes as scheme_files
-from tmm_cli.cli.schemes import named_types, skeleton
-from tmm_cli.drawing.sheets.group_table import EXAMPLES
+from tmm_cli.cli import named_types, schemes as scheme_files, skeleton
+from tmm_cli.drawing.sheets import EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.mechanics.structure.group import ROMAN, group_class
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.space_tables import schemes_table
-from tmm_cli.reports.terminal import show
-from tmm_cli.synthesis.schemes.chains import KinematicChain, canonical
-from tmm_cli.synthesis.schemes.chains import chains as every_chain
-from tmm_cli.synthesis.schemes.schemes import MOST_SCHEMES
-from tmm_cli.synthesis.schemes.schemes import enumerate_schemes as every_scheme
+from tmm_cli.mechanics.structure import ROMAN, analyse, group_class
+from tmm_cli.problem import UnitSystem, build_problem, read_text
+from tmm_cli.reports import schemes_table, show
+from tmm_cli.synthesis import (
+    MOST_SCHEMES,
+    KinematicChain,
+    canonical,
+    chains as every_chain,
+    enumerate_schemes as every_scheme,
+)
 
 chains, schemes = cache(every_chain), cache(every_scheme)
 

@@ -13,18 +13,12 @@ from big_sheets import about
 from pypdf import PdfReader
 from test_commands import ROOT, SHAPER, tmm
 
-from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.formats.dxf import plain
-from tmm_cli.drawing.layout.files import files_of_sheets
-from tmm_cli.drawing.layout.large import PAPERS, field_of, framed
-from tmm_cli.drawing.layout.packing import SIZES, Titles, inner
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Drawing, Text
-from tmm_cli.drawing.sheets.mechanism import detailed
-from tmm_cli.drawing.symbols.scene import Scene
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.drawing.formats import FORMATS, plain
+from tmm_cli.drawing.layout import PAPERS, SIZES, Titles, field_of, files_of_sheets, framed, inner
+from tmm_cli.drawing.paper import Drawing, Text, corners
+from tmm_cli.drawing.sheets import detailed
+from tmm_cli.drawing.symbols import Scene
+from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SINE = ROOT / "problems" / "sine.yaml"
 PRECISE = 0.01  # mm

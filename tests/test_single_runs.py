@@ -6,16 +6,10 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
-from tmm_cli.mechanics.dynamics.reduced import reduce_machine
-from tmm_cli.mechanics.dynamics.single_run import acceleration, run
-from tmm_cli.mechanics.dynamics.task import Profile, RunTask
+from tmm_cli.mechanics.dynamics import Kloss, Linear, Profile, RunTask, acceleration, reduce_machine, run
 from tmm_cli.mechanics.errors import LongRunError, StandstillError
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.register import walk
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.reports import collect_warnings, walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi

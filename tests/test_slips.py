@@ -11,12 +11,8 @@ from models import solved_text
 from test_bad_input import changed, refusal
 
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.arithmetic import evaluate
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.units import ExtendedUnits
-from tmm_cli.synthesis.reading import alone, task_of
+from tmm_cli.problem import ExtendedUnits, ProblemError, build_problem, evaluate, read_text
+from tmm_cli.synthesis import alone, task_of
 
 FOUR_BAR = """tmm: 1
 points: {O: [0, 0], D: [300, 0]}

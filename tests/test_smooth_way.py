@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from models import PARALLELOGRAM, solved_text
 
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.quality_tables import quality_tables as tables
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import collect_warnings, quality_tables
 
 KITE = """tmm: 1
 points: {O: [0, 0], D: [100, 0]}
@@ -81,7 +80,7 @@ def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparall
     half = np.mod(motion.q, 2 * np.pi) < np.pi
     assert np.allclose(motion.first["3"].w[half], 1) and np.all(motion.first["3"].w[~half] < 0)
     assert "the results keep to the side of the sketch" in next(iter(collect_warnings(results)))
-    (quality,) = tables(results)
+    (quality,) = quality_tables.quality_tables(results)
     assert (quality.columns[0].values[0], quality.columns[1].values[0]) == ("link 3 turns in a cycle by", 0)
 
 
@@ -137,7 +136,7 @@ def test_a_kite_whose_hinges_meet_has_its_rotation_in_the_table():
     Where A lies on D, omega_3/omega_1 is (1 + 100/250)/2, half a cycle later (1 - 100/250)/2.
     """
     results = moved(at_places(KITE, "[0, 360 deg]"))
-    (quality,) = tables(results)
+    (quality,) = quality_tables.quality_tables(results)
     rows = dict(zip(quality.columns[0].values, quality.columns[1].values, strict=True))
     assert rows["turns of the driver in a cycle"] == 2
     assert rows["link 3 turns in a cycle by"] == pytest.approx(360, abs=1e-9)  # deg

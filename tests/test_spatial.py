@@ -15,15 +15,21 @@ from test_commands import ROOT, described, tmm
 
 from tmm_cli import load
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.mechanics.structure.graph import classification, contours
-from tmm_cli.mechanics.structure.redundancy import CHOICES, rank_of, space, spatial_chain
-from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair, examine
-from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file, read_text
-from tmm_cli.synthesis.solving import count
+from tmm_cli.mechanics.structure import (
+    CHOICES,
+    KINDS,
+    SpatialChain,
+    SpatialPair,
+    analyse,
+    classification,
+    contours,
+    examine,
+    rank_of,
+    space,
+    spatial_chain,
+)
+from tmm_cli.problem import ProblemError, build_chain, build_problem, read_file, read_text
+from tmm_cli.synthesis import count
 
 LETTERS = {
     "R": "turning",

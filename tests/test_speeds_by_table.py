@@ -6,11 +6,9 @@ from scipy.integrate import quad
 from test_loads import MACHINE
 
 from tmm_cli import prepare, solve
-from tmm_cli.mechanics.accuracy.digits import bounds
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.given import input_tables
+from tmm_cli.mechanics.accuracy import bounds
+from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.reports import input_tables
 
 BODIES = """masses: {2: {mass: 3 kg, inertia: 0.01, centre: {on: AB}}, 3: {mass: 2 kg}}
 loads: {f: {on: 3, force: {resists: 100 N}}}

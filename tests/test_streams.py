@@ -10,12 +10,11 @@ from functools import partial
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
-from tmm_cli.batch.workers import processes
-from tmm_cli.cli.talk import tell_fault
+from tmm_cli.batch import processes
+from tmm_cli.cli import tell_fault
 from tmm_cli.mechanics.quantities import NUMBER, product_text
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.table import Column, Table, csv_text, table_of_words
+from tmm_cli.problem import UnitSystem, problem_of
+from tmm_cli.reports import Column, Table, csv_text, table_of_words
 
 SINE = ROOT / "problems" / "sine.yaml"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}

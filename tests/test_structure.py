@@ -15,19 +15,25 @@ from models import CLASS_III, SI, results_of
 from test_commands import SHAPER, tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis.pipeline import at_places
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
-from tmm_cli.mechanics.structure.naming import basic_schemes, four_link_scheme, link_motion, six_bar_schemes
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.structure_tables import (
+from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.mechanics.structure import (
+    analyse,
+    basic_schemes,
+    classification,
+    contours,
+    four_link_scheme,
+    is_dependent,
+    link_motion,
+    six_bar_schemes,
+)
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import (
+    collect_warnings,
     counted_by_classes,
     counted_generally,
     counted_with_replacements,
     motion_in_words,
 )
-from tmm_cli.reports.warnings import collect_warnings
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
 

@@ -10,14 +10,9 @@ import pytest
 import xlsxwriter
 from test_variants_of_task import TABLE, family_of, task
 
-from tmm_cli.grading.cells import rows_of
-from tmm_cli.grading.record import Given
-from tmm_cli.grading.run import grade
-from tmm_cli.grading.submissions import answers
-from tmm_cli.grading.submissions import read as reading
-from tmm_cli.grading.submissions.read import read_submissions
-from tmm_cli.grading.submissions.template import write_template
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.grading import Given, grade, read_submissions, rows_of, write_template
+from tmm_cli.grading.submissions import answers, read as reading
+from tmm_cli.problem import ProblemError
 
 OWN = task()  # asks H, k, class, v of E at 3 and 7, a of E at 3, R_34 at 7, M_b at 3 and 7
 FIVE = {

@@ -11,20 +11,24 @@ from scipy.optimize import minimize_scalar
 from test_commands import tmm
 from test_loads import MACHINE
 
-from tmm_cli.batch.task import Task
-from tmm_cli.drawing.paper.contours import contour, hatching, region
-from tmm_cli.mechanics.analysis.pipeline import at_places
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file, read_text, with_settings
-from tmm_cli.sweep.grid import read_axes
-from tmm_cli.sweep.mechanisms import Mechanisms
-from tmm_cli.sweep.quantities import read_shown
-from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
-from tmm_cli.sweep.run import refuse_points, swept
-from tmm_cli.sweep.sheet import sheets
-from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.batch import Task
+from tmm_cli.drawing.paper import contour, hatching, region
+from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.problem import ProblemError, problem_of, read_file, read_text, with_settings
+from tmm_cli.sweep import (
+    APART,
+    LIMIT,
+    REFUSED,
+    STOPS,
+    WORKS,
+    Mechanisms,
+    read_axes,
+    read_shown,
+    refuse_points,
+    sheets,
+    swept,
+)
+from tmm_cli.synthesis import measures, solve
 
 ROOT = Path(__file__).parents[1]
 PROBLEMS = ROOT / "problems"

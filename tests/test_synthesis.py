@@ -11,14 +11,9 @@ from test_commands import ROOT, tmm
 from test_synthesis_crank_slider import LINKAGE, MET
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.sheets.synthesis import diagram
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.record import TaskProblem
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis.construction import Diagram, Line
-from tmm_cli.synthesis.reading import build
-from tmm_cli.synthesis.tasks import TASKS
+from tmm_cli.drawing.sheets import diagram
+from tmm_cli.problem import ProblemError, TaskProblem, UnitSystem, read_text
+from tmm_cli.synthesis import TASKS, Diagram, Line, build
 
 
 def refusal(text):

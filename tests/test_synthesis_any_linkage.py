@@ -8,11 +8,8 @@ import pytest
 from models import file_of
 
 from tmm_cli import solve
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.reading import build, task_of
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import Candidates, build, measured, task_of
 
 
 def text_of(name, *edits):

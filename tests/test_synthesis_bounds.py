@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.reading import build
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import build
 
 FOUR_BAR = """tmm: 1
 units: {{length: mm, angle: deg}}

@@ -9,25 +9,24 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.coupler_positions import dyads as search
-from tmm_cli.synthesis.coupler_positions.burmester import (
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import (
     CouplerPositionsTask,
     Dyads,
+    Infeasible,
     Poses,
     beside,
+    build,
     by_turn,
     centre,
+    curve,
+    guiding,
     marks,
+    measured,
 )
-from tmm_cli.synthesis.coupler_positions.curve import curve
-from tmm_cli.synthesis.coupler_positions.dyads import guiding
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.reading import build
-from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.synthesis.coupler_positions import dyads as search
 
 LINKAGE = """
 points: {A: [Ax, Ay], D: [Dx, Dy]}

@@ -7,18 +7,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.crank_slider import CrankSliderTask, find, largest_theta, least_pressure, shortest
-from tmm_cli.synthesis.measures import k_of, measured, theta_of
-from tmm_cli.synthesis.reading import build
+from tmm_cli.mechanics.numerics import find_roots
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import (
+    CrankSliderTask,
+    build,
+    find,
+    k_of,
+    largest_theta,
+    least_pressure,
+    measured,
+    shortest,
+    theta_of,
+)
 
 LINKAGE = """
 points: {{O: [0, 0]}}

@@ -10,8 +10,8 @@ from test_synthesis_four_bar_by_k import problem
 from test_synthesis_slotted_lever import lever
 
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import settled
-from tmm_cli.synthesis.four_bar_by_k.arcs import FourBarByKTask
+from tmm_cli.mechanics.numerics import settled
+from tmm_cli.synthesis import FourBarByKTask
 
 
 @pytest.mark.parametrize("k", [1.01, 1.1, 1.5, 2.5])

@@ -9,14 +9,23 @@ import numpy as np
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, of_zeros, outputs, signed_bars, solutions
-from tmm_cli.synthesis.four_bar_by_angles.pairs import AnglePairsTask, chosen, quality, real, through
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.reading import build
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import (
+    AnglePairsTask,
+    Bars,
+    build,
+    chosen,
+    measured,
+    of_zeros,
+    outputs,
+    quality,
+    real,
+    signed_bars,
+    solutions,
+    through,
+)
 
 LINKAGE = """
 points: {A: [0, 0], D: [l4, 0]}

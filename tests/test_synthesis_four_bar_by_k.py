@@ -10,17 +10,27 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import FRAME, Sketch
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.four_bar import FourBar, turning
-from tmm_cli.synthesis.four_bar_by_k.arcs import ARC, Found, FourBarByKTask, arcs, at, bound, places, widest
-from tmm_cli.synthesis.four_bar_by_k.solver import choose
-from tmm_cli.synthesis.measures import k_of, measured
-from tmm_cli.synthesis.reading import build
-from tmm_cli.synthesis.record import Infeasible
+from tmm_cli.mechanics.numerics import find_roots
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import (
+    ARC,
+    Found,
+    FourBar,
+    FourBarByKTask,
+    Infeasible,
+    arcs,
+    at,
+    bound,
+    build,
+    choose,
+    k_of,
+    measured,
+    places,
+    turning,
+    widest,
+)
 
 LINKAGE = """
 points: {A: [xA, yA], D: [30, -20]}

@@ -10,12 +10,8 @@ import pytest
 
 from tmm_cli import solve
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.reading import alone, build, rounded
-from tmm_cli.synthesis.record import Infeasible, Outcome, Value, sound
+from tmm_cli.problem import ProblemError, UnitSystem, read_text
+from tmm_cli.synthesis import Infeasible, Outcome, Value, alone, build, measured, rounded, sound
 
 SEEDS = range(2)
 FARTHER = 2e-4  # relative: beyond the limit

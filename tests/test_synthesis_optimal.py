@@ -11,14 +11,9 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.numerics.roots import peak, zero
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.crank_slider import CrankSliderTask, find
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.optimal.evolution import evolve
-from tmm_cli.synthesis.optimal.polish import DONE, Local, polish
-from tmm_cli.synthesis.reading import build
+from tmm_cli.mechanics.numerics import peak, zero
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import DONE, CrankSliderTask, Local, build, evolve, find, measured, polish
 
 SLIDER = """
 tmm: 1
@@ -81,8 +76,7 @@ def test_the_same_seed_gives_the_same_answer_to_the_last_bit():
 
 
 def test_least_pressure_angle_of_a_crank_slider_is_the_least_that_its_k_allows():
-    from tmm_cli.synthesis.crank_slider import least_pressure
-    from tmm_cli.synthesis.measures import theta_of
+    from tmm_cli.synthesis import least_pressure, theta_of
 
     problem = slider("""
   objective: pressure

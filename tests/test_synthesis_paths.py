@@ -7,14 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tmm_cli.bench.searches import PROBLEMS
-from tmm_cli.problem.reader import read_text
+from tmm_cli.bench import PROBLEMS
+from tmm_cli.problem import read_text
+from tmm_cli.synthesis import Candidates, Ends, Rows, Settling, best, descend, outcome_of, residuals, step_of, task_of
 from tmm_cli.synthesis.optimal import many_starts
-from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.optimal.many_starts import Ends, Rows, Settling, descend, residuals, step_of
-from tmm_cli.synthesis.optimal.outcome import outcome_of
-from tmm_cli.synthesis.optimal.solver import best
-from tmm_cli.synthesis.reading import task_of
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
 SEMICIRCLE, ELLIPSE = "semicircle of 6 points, timed", "ellipse of 10 points"

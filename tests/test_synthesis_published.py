@@ -26,10 +26,9 @@ from test_synthesis_four_bar_by_k import problem as by_k
 from test_synthesis_slotted_lever import lever, shaping
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.reading import build
+from tmm_cli.batch import prepare_batch
+from tmm_cli.problem import read_text
+from tmm_cli.synthesis import build, measured
 
 
 def found(problem):

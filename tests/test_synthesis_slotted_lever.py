@@ -10,14 +10,11 @@ import pytest
 from test_synthesis_crank_slider import MET
 
 from tmm_cli import solve
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import FRAME, Sketch
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis import shaper, slotted_lever
-from tmm_cli.synthesis.measures import k_of, measured
-from tmm_cli.synthesis.reading import build
+from tmm_cli.mechanics.numerics import find_roots
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import build, k_of, measured, shaper, slotted_lever
 
 LEVER = """
 points: {O: [xO, yO], C: [xC, yC]}
@@ -105,7 +102,7 @@ def test_k_and_two_places_of_the_end_come_back(side):
     a = random(1, 7)
     k = k_of(0.05 + 2.5 * a[0])
     b1, b2 = a[1] - 0.5 + 1j * a[2], a[3] + 1 + 1j * a[4]
-    task = slotted_lever.Task(b1=b1, b2=b2, k=k, side=side, OC=1.0)
+    task = slotted_lever.SlottedLeverTask(b1=b1, b2=b2, k=k, side=side, OC=1.0)
     longest = slotted_lever.find(task).longest
     found = slotted_lever.find(replace(task, OC=longest * (0.05 + 0.94 * a[5])))
     places = lever_comes_back(found, k, side)
@@ -117,7 +114,9 @@ def test_swing_and_length_come_back_with_the_frame_within_bounds():
     a = random(2, 6)
     swing, length = 0.05 + 2.5 * a[0], 0.02 * 100 ** a[1]
     within = (length * 0.1, length * (0.2 + a[2]))
-    task = slotted_lever.Task(CB=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within)
+    task = slotted_lever.SlottedLeverTask(
+        CB=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within
+    )
     found = slotted_lever.find(task)
     assert np.all((found.frame >= within[0]) & (found.frame <= within[1]))
     assert np.all(found.frame + found.crank <= length * (1 + 1e-15))
@@ -131,7 +130,7 @@ def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
     a = random(3, 4)
     theta, stroke = 0.2 + 1.9 * a[0], 0.01 * 200 ** a[3]
     most, steepest = 1 / (1 + np.sin(theta / 2)), np.pi / 2 - theta / 2
-    task = shaper.Task(
+    task = shaper.ShaperTask(
         stroke=stroke, k=k_of(theta), frame_ratio=most * (0.05 + 0.9 * a[1]), pressure=steepest * (0.02 + 0.83 * a[2])
     )
     found = shaper.find(task)
@@ -165,7 +164,7 @@ def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
 
 
 def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
-    f = shaper.find(shaper.Task(stroke=0.4, k=1.5, frame_ratio=0.5, rod_ratio=0.3))
+    f = shaper.find(shaper.ShaperTask(stroke=0.4, k=1.5, frame_ratio=0.5, rod_ratio=0.3))
     heights = f.lever * np.cos(np.linspace(-1, 1, 2001) * f.theta / 2) - f.frame
     levels = f.level + np.linspace(-0.1, 0.1, 401) * f.lever
     largest = np.max(np.abs(np.arcsin((heights[:, None] - levels) / f.rod)), axis=0)
@@ -176,7 +175,7 @@ def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
 def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
     # OA = 110, OC = 350, CD = 650 mm: sin(theta/2) = OA/OC, H = 2 CD OA/OC
     theta = 2 * math.asin(110 / 350)
-    f = shaper.find(shaper.Task(stroke=1.3 * 110 / 350, k=float(k_of(theta)), OC=0.35, DE=0.21))
+    f = shaper.find(shaper.ShaperTask(stroke=1.3 * 110 / 350, k=float(k_of(theta)), OC=0.35, DE=0.21))
     assert (f.crank, f.lever) == (pytest.approx(0.11, rel=1e-14), pytest.approx(0.65, rel=1e-14))
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from bank import solved
 
-from tmm_cli.synthesis.measures import ratio_of_curve as ratio
-from tmm_cli.synthesis.measures import ratio_open
+from tmm_cli.synthesis import ratio_of_curve as ratio, ratio_open
 
 PROBLEMS = Path(__file__).parent.parent / "problems"
 ROUND = np.arange(720) / 720

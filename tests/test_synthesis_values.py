@@ -8,12 +8,8 @@ import pytest
 from models import file_of
 
 from tmm_cli import solve
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.measures import measured_on
-from tmm_cli.synthesis.optimal.quantities import QUANTITIES
-from tmm_cli.synthesis.optimal.quantities.strokes import longest
-from tmm_cli.synthesis.reading import build, task_of
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.synthesis import QUANTITIES, build, longest, measured_on, task_of
 
 
 def measure(of, results, name=""):

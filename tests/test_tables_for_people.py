@@ -11,10 +11,8 @@ from python_calamine import CalamineWorkbook
 from tmm_cli import load, solve
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.quantities import FORCE, LENGTH
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.files import write_results
-from tmm_cli.reports.spreadsheets import local_csv, workbook
-from tmm_cli.reports.table import Column, Table
+from tmm_cli.problem import UnitSystem
+from tmm_cli.reports import Column, Table, local_csv, workbook, write_results
 
 UNITS = UnitSystem()
 HOSTILE = ("=1+1", "+1", "@SUM(A1)", "-2+3", "\t=1", "http://example.org", "1e400", "{=A1}")

@@ -7,20 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bank import NAMES, problem
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from models import linkage_of
 from random_linkages import linkage
 from test_properties import CHAINS
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.batch.prepare import CHECKS, everything, prepare_batch
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.program import CHUNK
-from tmm_cli.batch.tape.traced import DependsOnData
-from tmm_cli.batch.variant import NotAlikeError, varying
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.batch import CHECKS, CHUNK, DependsOnData, NotAlikeError, everything, prepare_batch, record, varying
+from tmm_cli.mechanics.structure import analyse
 
 Q = np.linspace(0.1, 6.3, 24)
 

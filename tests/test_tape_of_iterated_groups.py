@@ -6,18 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from models import CLASS_III, linkage_of
 from test_tape import agree, kind, largest_of_kinds, plainly
 
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
+from tmm_cli.bench import errors, reference
 from tmm_cli.bench.methods import product as taped
-from tmm_cli.bench.methods.case import errors
-from tmm_cli.bench.references import reference
-from tmm_cli.mechanics.numerics.linear import Eliminated, Order
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.mechanics.numerics import Eliminated, Order
+from tmm_cli.problem import build_problem, read_text
 
 ROUND = np.linspace(0.123, 6.28, 90)
 ROCKED = CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}"

@@ -13,26 +13,15 @@ from test_commands import ROOT
 from test_cylinders import SWINGING
 
 from tmm_cli import load, solve
-from tmm_cli.batch.prepare import everything, prepare_batch
-from tmm_cli.batch.prepare import solved as stages
-from tmm_cli.batch.taped import OneByOne, Taped
-from tmm_cli.batch.variant import Places
-from tmm_cli.mechanics.accuracy.lengths import widened
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.enumerate import find_assemblies
-from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.groups.state import State
-from tmm_cli.mechanics.groups.telescope import Telescope, TelescopeParts
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.numerics.double_double import EPS, exactly
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.measures import measured
-from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.reading import build, task_of
+from tmm_cli.batch import OneByOne, Places, Taped, everything, prepare_batch, solved as stages
+from tmm_cli.mechanics.accuracy import widened
+from tmm_cli.mechanics.assembly import assemble, find_assemblies, mobile
+from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.groups import DriverMotion, Newton, State, Telescope, TelescopeParts
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.numerics import EPS, exactly
+from tmm_cli.problem import read_text
+from tmm_cli.synthesis import Candidates, build, measured, task_of
 
 # pairs of the arm with what it hangs on, of the arm with the cylinder's far end, and of its near end
 CHAINS = ("RRR", "RRP", "PRR", "RPR", "PRP", "RPP", "PPR")

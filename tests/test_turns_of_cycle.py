@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tmm_cli import solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.problem import build_problem, read_text
 
 TRAIN = """tmm: 1
 title: Planetary train driven by its sun

@@ -10,9 +10,8 @@ from bank import EVERY, problem
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.understood import doubts, summarise_file
+from tmm_cli.problem import build_problem, read_text
+from tmm_cli.reports import doubts, summarise_file
 
 SHAPER = Path(__file__).parent.parent / "problems" / "shaper.yaml"
 TEXT = SHAPER.read_text(encoding="utf-8")

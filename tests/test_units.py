@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.quantities import (
@@ -24,8 +23,7 @@ from tmm_cli.mechanics.quantities import (
     TIME,
     Dimension,
 )
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import SYMBOLS, PhysicalValue, UnitError, UnitSystem, parse_unit
+from tmm_cli.problem import SYMBOLS, PhysicalValue, ProblemError, UnitError, UnitSystem, parse_unit
 
 
 @pytest.mark.parametrize(

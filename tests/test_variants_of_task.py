@@ -7,13 +7,9 @@ import pytest
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import solve
-from tmm_cli.batch.family import families
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading.record import Given, Submission, VariantTable
-from tmm_cli.grading.run import grade, numbers_of
-from tmm_cli.grading.solution import solve as solved
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
+from tmm_cli.batch import families, read_task
+from tmm_cli.grading import Given, Submission, VariantTable, grade, numbers_of, solve as solved
+from tmm_cli.problem import ProblemError, read_text
 
 ASKED = """
 variants: {OA: {from: 100, to: 120, step: 5}, n1: {among: [70 rpm, 80 rpm, 90 rpm]}}

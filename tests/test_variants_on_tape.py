@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from test_synthesis_any_linkage import block, text_of
 
-from tmm_cli.batch.taped import OneByOne
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.reading import task_of
+from tmm_cli.batch import OneByOne
+from tmm_cli.problem import read_text
+from tmm_cli.synthesis import Candidates, task_of
 
 ALWAYS = (", when: working stroke", ""), ("from: working stroke", "from: 90")
 TASKS = {

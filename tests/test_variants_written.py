@@ -10,13 +10,19 @@ from test_commands import SHAPER, tmm
 from test_drawn_variants import ASKED, task
 
 from tmm_cli import load, solve
-from tmm_cli.grading import draw_variants
-from tmm_cli.grading.answer_key import compute_answer_key, idle_questions
-from tmm_cli.grading.cells import rows_of
-from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.tables import read_students, read_table
-from tmm_cli.grading.task_sheets import TaskSheets, meaning, problem_text
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.grading import (
+    TaskSheets,
+    VariantTable,
+    compute_answer_key,
+    draw_variants,
+    idle_questions,
+    meaning,
+    problem_text,
+    read_students,
+    read_table,
+    rows_of,
+)
+from tmm_cli.problem import ProblemError
 
 NAMES = ["=cmd|A1", "<script>alert(1)</script>", "../../etc/passwd", "Иванов Иван"]
 

@@ -6,7 +6,7 @@ import pytest
 from models import PROBLEMS
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.plans.vector_equations import About, Along, OnGuide, steps
+from tmm_cli.mechanics.plans import About, Along, OnGuide, steps
 
 
 def of(name):

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.pairs.higher import CamLaw, Piece
+from tmm_cli.mechanics.groups import CamLaw, Piece
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Linkage, Mesh, Output
 
 

@@ -15,10 +15,9 @@ import numpy as np
 from multibody import Multibody
 
 from tmm_cli import solve
-from tmm_cli.bench.methods.case import Case
-from tmm_cli.mechanics.analysis.pipeline import at_positions
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
+from tmm_cli.bench import Case
+from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.problem import build_problem, read_text
 
 NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
 BANK = Path(__file__).parent.parent / "problems"

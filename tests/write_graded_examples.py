@@ -13,13 +13,9 @@ from pathlib import Path
 import numpy as np
 import xlsxwriter
 
-from tmm_cli.batch.family import families
-from tmm_cli.batch.task import read_task
-from tmm_cli.grading.mistakes import cases
-from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.run import numbers_of
-from tmm_cli.grading.sheet import predicted, right
-from tmm_cli.problem.reader import read_file
+from tmm_cli.batch import families, read_task
+from tmm_cli.grading import VariantTable, cases, numbers_of, predicted, right
+from tmm_cli.problem import read_file
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 NAMES = [

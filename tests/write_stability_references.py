@@ -17,12 +17,12 @@ import mpmath as mp
 import numpy as np
 from multibody import Multibody
 
-from tmm_cli.bench.scenes import BY_NAME, FAMILIES, shape, triad
-from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.bench import BY_NAME, FAMILIES, shape, triad
+from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.kinematics.driver_range import find_range
+from tmm_cli.mechanics.kinematics import find_range
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure import analyse
 
 DATA = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "stability"
 DIGITS, SEEDS = 50, 5

@@ -9,8 +9,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from tmm_cli.bench.searches import SEARCHED, prepared
-from tmm_cli.synthesis.optimal.solver import best
+from tmm_cli.bench import SEARCHED, prepared
+from tmm_cli.synthesis import best
 
 BEST = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "synthesis" / "best.json"
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 # Nothing is imported here: the command reads this file before its own, where an interruption is caught.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from tmm_cli.synthesis.solving import load, prepare, redrive, solve
+    from tmm_cli.synthesis import load, prepare, redrive, solve
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "load", "prepare", "redrive", "solve"]

@@ -6,7 +6,7 @@ import sys
 def main() -> None:
     """Entry point of the command."""
     try:
-        from tmm_cli.cli.app import main as command
+        from tmm_cli.cli import main as command
 
         command()
     except KeyboardInterrupt:

@@ -12,17 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark
-from tmm_cli.drawing.paper.sheet import Sheet
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.drawing.symbols.actuators import SPRING_OF, cylinders
-from tmm_cli.drawing.symbols.forms import Form
-from tmm_cli.drawing.symbols.parts import MOVING, mass_centre
-from tmm_cli.drawing.symbols.render import BOX, render_scene
-from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.drawing.paper import DARK, Area, Circle, Line, Mark, Sheet
+from tmm_cli.drawing.symbols import BOX, MOVING, ON_LINE, SPRING_OF, Form, Scene, cylinders, mass_centre, render_scene
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, unit
+from tmm_cli.mechanics.numerics import Real, Vector, unit
 
 
 @dataclass

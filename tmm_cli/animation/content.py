@@ -8,19 +8,17 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture, labels, pair
-from tmm_cli.drawing.paper.picture import mark_corners
-from tmm_cli.drawing.paper.sheet import COLOURS, THIN, Sheet, with_unit
-from tmm_cli.drawing.sheets.motion_plans import Sort, sorts
-from tmm_cli.drawing.sheets.over_cycle import Quantities, balances, output
-from tmm_cli.drawing.symbols.scene import Scene, fit, fixed_pivots, to_scale
+from tmm_cli.drawing.paper import COLOURS, THIN, Sheet, mark_corners, with_unit
+from tmm_cli.drawing.sheets import Quantities, Sort, balances, output, sorts
+from tmm_cli.drawing.symbols import Scene, fit, fixed_pivots, to_scale
 from tmm_cli.language import ENGLISH, _, language, spelt
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
-from tmm_cli.mechanics.forces.free_bodies import subscript
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, largest, without_rounding
-from tmm_cli.mechanics.plans.record import in_letters
+from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.forces import subscript
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Real, Vector, largest, without_rounding
+from tmm_cli.mechanics.plans import in_letters
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem import ProblemError
 
 PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
 USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut

@@ -15,9 +15,9 @@ from string import Template
 from typing import Any
 
 from tmm_cli.animation.content import FRAMES, content, frames, paths, picture_of, view
-from tmm_cli.drawing.formats.svg import element
+from tmm_cli.drawing.formats import element
 from tmm_cli.language import _, language
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 
 MOST = 300_000  # bytes of a page
 FEWEST = 36  # frames a turn

@@ -12,10 +12,9 @@ import numpy as np
 
 from tmm_cli.batch.task import MOST, SAME, Blocks, Chosen, Task, two
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem.errors import Path, ProblemError, Tree, quote, under
-from tmm_cli.problem.scalars import plain_value
+from tmm_cli.problem import Path, ProblemError, Tree, plain_value, quote, under
 
 STEPS = 50  # at least so many between two bounds that were given without a step
 VARY = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(.+?)\s*)?")

@@ -16,14 +16,9 @@ from tmm_cli.batch.tape import record
 from tmm_cli.batch.tape.program import Program
 from tmm_cli.batch.tape.traced import TracedArray
 from tmm_cli.batch.variant import each
-from tmm_cli.mechanics.groups.base import Closed, Kernel
-from tmm_cli.mechanics.groups.branch import BranchTrace
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
-from tmm_cli.mechanics.groups.unrolled import Unrolled
+from tmm_cli.mechanics.groups import BranchTrace, Closed, Kernel, LinkStates, Newton, Unrolled, link_states
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.tolerances import CONVERGED, SAME_STATE
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
 EACH = 1440  # places of a table in a turn of the driver, or in its whole range
 STEPS = 4  # of Newton's method from the trace's own nodes to places of a table

@@ -12,24 +12,27 @@ from tmm_cli.batch.continuation import CORRECTION, EACH_TURN, Marches, Varied, W
 from tmm_cli.batch.prepare import straight
 from tmm_cli.batch.tape.traced import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Make, NoTapeError, each, stands, stood_for
-from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.assembly.search import CLOSE, sketched_angles
+from tmm_cli.mechanics.analysis import Inputs, Mechanism
+from tmm_cli.mechanics.assembly import CLOSE, assemble, mobile, sketched_angles
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.groups.base import Closed, Kernel
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
-from tmm_cli.mechanics.groups.state import Drive, Drives, Pose, Poses, State
-from tmm_cli.mechanics.groups.unrolled import Unrolled
-from tmm_cli.mechanics.kinematics.driver_range import cycle_of
-from tmm_cli.mechanics.kinematics.strokes import Curve, OutputCurve, Stroke, Strokes, moving_slope, resisted, runs_of
+from tmm_cli.mechanics.groups import (
+    Closed,
+    Drive,
+    Drives,
+    Kernel,
+    LinkStates,
+    Newton,
+    Pose,
+    Poses,
+    State,
+    Unrolled,
+    link_states,
+    towards,
+)
+from tmm_cli.mechanics.kinematics import Curve, OutputCurve, Stroke, Strokes, cycle_of, moving_slope, resisted, runs_of
 from tmm_cli.mechanics.linkage import Linkage, Request
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
-from tmm_cli.mechanics.numerics.vectors import Real, mapped, unit
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.mechanics.numerics import SAME_PLACE, Real, find_roots, mapped, unit
+from tmm_cli.mechanics.structure import Structure, output_link
 
 
 @dataclass(frozen=True)

@@ -32,22 +32,15 @@ from tmm_cli.batch.tape.program import Outputs, Program
 from tmm_cli.batch.tape.terms import Term
 from tmm_cli.batch.tape.traced import DependsOnData
 from tmm_cli.batch.variant import changed, parts, varying
-from tmm_cli.mechanics.analysis.selection import values
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.forces.friction import solve_friction
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import Reactions, react
-from tmm_cli.mechanics.groups.base import Closed, Kernel
-from tmm_cli.mechanics.groups.sequence import DriverMotion, drives_at
-from tmm_cli.mechanics.groups.state import Drive
-from tmm_cli.mechanics.groups.unrolled import NotUnrolledError
-from tmm_cli.mechanics.kinematics.motion import Motion, move
-from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.mechanics.analysis import values
+from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.forces import Reactions, applied, react, solve_friction
+from tmm_cli.mechanics.groups import Closed, Drive, DriverMotion, Kernel, NotUnrolledError, drives_at
+from tmm_cli.mechanics.kinematics import Motion, Strokes, move
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure import Structure
 
 Wanted = Callable[[Motion, Reactions | None], Mapping[str, Any]]
 CHECKS = ("placed", "moving", "margin")

@@ -19,15 +19,13 @@ from tmm_cli.batch.tape import record
 from tmm_cli.batch.tape.program import Program
 from tmm_cli.batch.tape.traced import DependsOnData, TracedArray, TracedNumber
 from tmm_cli.batch.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, each, sketch_of, stood_for
-from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.analysis import Inputs, Mechanism
+from tmm_cli.mechanics.assembly import assemble, mobile
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.kinematics.driver_range import cycle_of
-from tmm_cli.mechanics.kinematics.strokes import places as places_of
+from tmm_cli.mechanics.groups import Kernel
+from tmm_cli.mechanics.kinematics import cycle_of, places as places_of
 from tmm_cli.mechanics.linkage import Linkage, Sketch
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 
 class Taped:

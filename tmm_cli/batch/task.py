@@ -13,18 +13,35 @@ from pydantic_core import PydanticCustomError
 from tmm_cli.batch.tape.traced import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Variant
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.named_quantities import Quantity, quantities
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.analysis import Quantity, quantities
+from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.quantities import NUMBER, Dimension
-from tmm_cli.problem.arithmetic import evaluate_quantity
-from tmm_cli.problem.build import build_shape, checked_shape, early_parameters, parameters, problem_of, validated
-from tmm_cli.problem.errors import Path, ProblemError, Tree, placed_in, quote, unknown_name
-from tmm_cli.problem.reader import with_settings
-from tmm_cli.problem.record import Problem, TaskProblem
-from tmm_cli.problem.refusals import in_words_of
-from tmm_cli.problem.schema_parts import Name, Strict, Value
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    Name,
+    Path,
+    PhysicalValue,
+    Problem,
+    ProblemError,
+    Strict,
+    TaskProblem,
+    Tree,
+    UnitSystem,
+    Value,
+    ValueReader,
+    VariedUnits,
+    build_shape,
+    checked_shape,
+    early_parameters,
+    evaluate_quantity,
+    in_words_of,
+    parameters,
+    placed_in,
+    problem_of,
+    quote,
+    unknown_name,
+    validated,
+    with_settings,
+)
 
 MOST = 10_000  # values of a parameter
 SAME = 1e-9  # of a step: what is left over by rounding

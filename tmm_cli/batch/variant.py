@@ -9,12 +9,10 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch.tape.traced import TracedNumber
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.groups import DriverMotion, Kernel
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import Linkage, Request, Sketch
-from tmm_cli.mechanics.numerics.tolerances import SAME_SKETCH
-from tmm_cli.mechanics.numerics.vectors import Real, leaves, mapped
+from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, leaves, mapped
 
 LEFT = ("sketch",)  # what says how a linkage is assembled, not what it is
 

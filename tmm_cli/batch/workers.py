@@ -20,7 +20,7 @@ from typing import Any
 
 import tmm_cli
 from tmm_cli.language import Course, _, course, speaking
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem import ProblemError, quote
 
 RETRIES = 3  # of what a cluster failed at
 ANSWERS = 10  # s within which a scheduler answers, and has a worker

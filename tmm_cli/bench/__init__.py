@@ -1,1 +1,5 @@
 """Measurements of the product against other ways to compute the same; nothing else needs them."""
+
+from tmm_cli.interfaces import lazy
+
+__getattr__, __all__ = lazy(__name__, __file__)

@@ -16,8 +16,8 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Meth
 from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS, TAPED
 from tmm_cli.bench.references import REFERENCE_NAMES, reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.reports.table import Table
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.reports import Table
 
 NAMED: dict[Compared, str] = {
     "positions": "Positions",

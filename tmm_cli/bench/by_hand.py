@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import Batch, everything, prepare_batch
+from tmm_cli.batch import Batch, everything, prepare_batch
 from tmm_cli.bench.references import reference
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 G = 9.81
 

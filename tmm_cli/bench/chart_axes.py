@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.plans import LANDSCAPE
 
 MM = 1 / 25.4  # inches
 DARK, GREY, RED, BLUE, GREEN, ORANGE = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c77700"

@@ -15,12 +15,8 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis import mechanism, pipeline
 from tmm_cli.mechanics.assembly import choose, search
-from tmm_cli.mechanics.groups import sequence
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.dyads import DYADS
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.kinematics import driver_range as quality
-from tmm_cli.mechanics.kinematics import motion, pressure, strokes
+from tmm_cli.mechanics.groups import DYADS, Kernel, Newton, sequence
+from tmm_cli.mechanics.kinematics import driver_range as quality, motion, pressure, strokes
 
 STAGES = (choose, search, mechanism, motion, pipeline, pressure, quality, strokes)
 

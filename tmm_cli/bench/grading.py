@@ -19,21 +19,27 @@ from typing import Literal
 import numpy as np
 
 import tmm_cli
-from tmm_cli.batch.family import Family, families
-from tmm_cli.batch.task import Task, read_task
+from tmm_cli.batch import Family, Task, families, read_task
 from tmm_cli.bench.measured import CLOCK, Measured, slack, words
-from tmm_cli.grading.diagnose import diagnose_students
-from tmm_cli.grading.draw_variants import CHUNK, Variety
-from tmm_cli.grading.mistakes import cases
-from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.own_answers import following, own_answer
-from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.run import numbers_of
-from tmm_cli.grading.sheet import Right, Written, predicted, right
-from tmm_cli.grading.solution import solve
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.table import Table
+from tmm_cli.grading import (
+    CHUNK,
+    Mistake,
+    Right,
+    VariantTable,
+    Variety,
+    Written,
+    cases,
+    diagnose_students,
+    following,
+    numbers_of,
+    own_answer,
+    predicted,
+    right,
+    solve,
+)
+from tmm_cli.mechanics.numerics import Real, Vector
+from tmm_cli.problem import read_text
+from tmm_cli.reports import Table
 
 DRAWING = 0.01  # of the largest value: how far off answers are at most
 MOVES = 4  # times that a mistake must move an answer, or nobody could see it

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 import numpy as np
 
 from tmm_cli import __version__
-from tmm_cli.reports.table import Column, Table
+from tmm_cli.reports import Column, Table
 
 SLACK_WHEN_REDUCED = 2.0
 TURNS, REDUCED_TURNS = 41, 15

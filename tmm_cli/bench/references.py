@@ -14,12 +14,10 @@ import numpy as np
 
 from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared
 from tmm_cli.bench.scenes import BY_NAME, Family, Numbers, Scene
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import Tree
-from tmm_cli.problem.reader import read_text
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.problem import Tree, build_problem, read_text
+from tmm_cli.synthesis import solve
 
 REFERENCE_NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
 

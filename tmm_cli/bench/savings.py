@@ -11,20 +11,17 @@ from typing import Any
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.measured import Measured
 from tmm_cli.drawing.run import files
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions, with_forces
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.groups.sequence import DriverMotion, towards
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.analysis import Results, at_positions, with_forces
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.forces import applied
+from tmm_cli.mechanics.groups import DriverMotion, towards
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.templates import template_text
-from tmm_cli.reports.table import Column, Table
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.problem import Problem, build_problem, read_text, template_text
+from tmm_cli.reports import Column, Table
+from tmm_cli.synthesis import solve
 
 MEASURED = "shaper"  # the problem of `tmm new`
 NOTHING = 1e-300  # kg: a link so light carries all its loads, and they are nothing

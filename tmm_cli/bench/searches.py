@@ -18,14 +18,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.batch.taped import Taped
+from tmm_cli.batch import Taped
 from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.table import Table
-from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.optimal.solver import best
-from tmm_cli.synthesis.reading import task_of
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.problem import read_text
+from tmm_cli.reports import Table
+from tmm_cli.synthesis import Candidates, best, task_of
 
 Bounds = tuple[float, float]
 TURN: Final = (0.0, 360.0)

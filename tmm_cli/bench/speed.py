@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import Batch, prepare_batch
+from tmm_cli.batch import Batch, prepare_batch
 from tmm_cli.bench import speed_of_iterated, speed_of_sweeps
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
@@ -20,10 +20,10 @@ from tmm_cli.bench.rivals import installed
 from tmm_cli.bench.scenes import chain
 from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar
 from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweeping
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.reports.table import Table
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.reports import Table
 
 POSITIONS = (12, 360, 36_000)
 VARIANTS = (100, 10_000)

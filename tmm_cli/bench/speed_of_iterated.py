@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import prepare_batch
+from tmm_cli.batch import prepare_batch
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import reference
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.reports.table import Table
+from tmm_cli.reports import Table
 
 ITERATED = ("press-class-iii",)
 POSITIONS = (360, 36_000)

@@ -7,12 +7,11 @@ from dataclasses import asdict, dataclass
 from time import perf_counter
 from typing import Any
 
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import Task
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import tree_of
-from tmm_cli.reports.table import Table
-from tmm_cli.sweep.grid import grid_points, read_axes
-from tmm_cli.sweep.mechanisms import Mechanisms
+from tmm_cli.reports import Table
+from tmm_cli.sweep import Mechanisms, grid_points, read_axes
 
 SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
 SHOWN = ("H,k,pressure,M_b,R_34",)

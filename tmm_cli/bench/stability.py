@@ -20,11 +20,10 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Meth
 from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.references import Known, known_scenes
 from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.mechanics.accuracy.digits import bare, bounds
+from tmm_cli.mechanics.accuracy import bare, bounds
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.reports.table import Table
+from tmm_cli.mechanics.numerics import ROUNDOFF, Real
+from tmm_cli.reports import Table
 
 PRODUCT = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself

@@ -8,13 +8,12 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.animation.page import animation_page
+from tmm_cli.animation import animation_page
 from tmm_cli.cli.common import Settings, Variant, Variants, refusing
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.language import _
-from tmm_cli.reports.files import folder_name, refuse_place, write_whole
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.reports import collect_warnings, folder_name, refuse_place, write_whole
 
 
 def animate(

@@ -14,15 +14,20 @@ from tmm_cli import __version__
 from tmm_cli.cli.common import console, problems_in, progress, refusing
 from tmm_cli.cli.reporting import computed
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
-from tmm_cli.grading.examples import grades
+from tmm_cli.grading import grades
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.compare import Difference, brief, difference_table, differences, recorded
-from tmm_cli.reports.files import write_whole
-from tmm_cli.reports.result_json import to_json
-from tmm_cli.reports.table import json_bytes
-from tmm_cli.reports.terminal import show
+from tmm_cli.problem import ProblemError, UnitSystem
+from tmm_cli.reports import (
+    Difference,
+    brief,
+    difference_table,
+    differences,
+    json_bytes,
+    recorded,
+    show,
+    to_json,
+    write_whole,
+)
 
 TOLERANCE = 1e-9
 

@@ -17,9 +17,8 @@ from rich.segment import Segment
 
 from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, tell_fault
 from tmm_cli.language import _, language, spoken
-from tmm_cli.problem.errors import ProblemError, visible
-from tmm_cli.reports.files import folder_name, refuse_place
-from tmm_cli.reports.spreadsheets import Kind
+from tmm_cli.problem import ProblemError, visible
+from tmm_cli.reports import Kind, folder_name, refuse_place
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]

@@ -10,7 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import TypeVar
 
-from tmm_cli.batch.workers import begin
+from tmm_cli.batch import begin
 from tmm_cli.cli.common import bars
 from tmm_cli.drawing.formats import here
 from tmm_cli.language import _, course, speaking

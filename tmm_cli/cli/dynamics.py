@@ -6,8 +6,8 @@ from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Variant, Va
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.problem import ProblemError
+from tmm_cli.synthesis import solve
 
 SHOWN = ("dynamics", "law-of-motion", "balancing", "shaking")
 

@@ -10,10 +10,8 @@ from tmm_cli.cli.common import Files, Settings, console, each
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import OK
 from tmm_cli.language import typeset
-from tmm_cli.reports.explain import explain_tables as tables
-from tmm_cli.reports.explain import in_words
-from tmm_cli.reports.terminal import show
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.reports import explain_tables as tables, in_words, show
+from tmm_cli.synthesis import solve
 
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
 

@@ -11,9 +11,9 @@ from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.opening import opened
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.errors import chosen_names
-from tmm_cli.reports.exports import EXPORTS
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.problem import chosen_names
+from tmm_cli.reports import EXPORTS
+from tmm_cli.synthesis import solve
 
 
 def export(

@@ -9,8 +9,8 @@ import typer
 from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
 from tmm_cli.cli.opening import opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
-from tmm_cli.mechanics.analysis.extremes import with_extremes
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.mechanics.analysis import with_extremes
+from tmm_cli.synthesis import solve
 
 Extremes = Annotated[bool, typer.Option("--extremes", help="Largest and smallest reactions over the cycle.")]
 Hodographs = Annotated[bool, typer.Option("--hodographs", help="Draw the hodograph of every reaction.")]

@@ -8,14 +8,13 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.animation.gallery.card import Card, card
-from tmm_cli.animation.gallery.page import gallery_page
+from tmm_cli.animation import Card, card, gallery_page
 from tmm_cli.cli.common import problems_in, refusing
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.files import refuse_place, write_whole
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import refuse_place, write_whole
 
 
 def gallery(

@@ -12,24 +12,26 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch.task import Task, read_task
-from tmm_cli.batch.workers import cluster, processes
+from tmm_cli.batch import Task, cluster, processes, read_task
 from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
 from tmm_cli.cli.opening import introduce, read_in_its_language
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say, warn
-from tmm_cli.grading.draw_variants import tables_apart
-from tmm_cli.grading.exports import EXPORTS
-from tmm_cli.grading.exports.book import Gradebook
-from tmm_cli.grading.record import StudentMarks, Submission
-from tmm_cli.grading.run import graded, written
-from tmm_cli.grading.statistics import statistics_tables
-from tmm_cli.grading.submissions.read import read_submissions
-from tmm_cli.grading.submissions.template import write_template
-from tmm_cli.grading.tables import read_table
+from tmm_cli.grading import (
+    EXPORTS,
+    Gradebook,
+    StudentMarks,
+    Submission,
+    graded,
+    read_submissions,
+    read_table,
+    statistics_tables,
+    tables_apart,
+    write_template,
+    written,
+)
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, chosen_names
-from tmm_cli.reports.files import refuse_place
-from tmm_cli.reports.terminal import show
+from tmm_cli.problem import ProblemError, chosen_names
+from tmm_cli.reports import refuse_place, show
 
 KEPT = ".graded"  # in the output folder: marks of earlier runs
 

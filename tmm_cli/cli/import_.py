@@ -10,11 +10,7 @@ import typer
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.build import problem_of
-from tmm_cli.problem.errors import ProblemError, clean, path_text
-from tmm_cli.problem.formats import foreign_of
-from tmm_cli.problem.formats.foreign import written
-from tmm_cli.problem.reader import file_text, read_text
+from tmm_cli.problem import ProblemError, clean, file_text, foreign_of, path_text, problem_of, read_text, written
 
 
 def import_(

@@ -13,12 +13,10 @@ from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.extremes import with_extremes
-from tmm_cli.mechanics.analysis.in_detail import with_assemblies, with_centres
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.assembly.enumerate import listed
-from tmm_cli.problem.refusals import in_words_of
-from tmm_cli.synthesis.solving import inputs_of, solve
+from tmm_cli.mechanics.analysis import Results, with_assemblies, with_centres, with_extremes
+from tmm_cli.mechanics.assembly import listed
+from tmm_cli.problem import in_words_of
+from tmm_cli.synthesis import inputs_of, solve
 
 INTERMITTENT = ("intermittent", "intermittent-cycle")
 Assemblies = Annotated[

@@ -10,8 +10,7 @@ import typer
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _, language
-from tmm_cli.problem.errors import ProblemError, nearest
-from tmm_cli.problem.templates import list_templates, template_text
+from tmm_cli.problem import ProblemError, list_templates, nearest, template_text
 
 
 def new(

@@ -13,10 +13,8 @@ from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.run import remarks
 from tmm_cli.language import _
-from tmm_cli.note.formats import FORMATS, formats_of
-from tmm_cli.note.register import note as note_of
-from tmm_cli.reports.files import folder_name, write_whole
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.note import FORMATS, formats_of, note as note_of
+from tmm_cli.reports import collect_warnings, folder_name, write_whole
 
 
 def note(

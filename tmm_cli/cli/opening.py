@@ -6,11 +6,20 @@ from collections.abc import Sequence
 
 from tmm_cli.cli.talk import say, speak_as, warn, write_as
 from tmm_cli.language import ENGLISH, _
-from tmm_cli.problem.build import problem_of, refuse_options
-from tmm_cli.problem.errors import ProblemError, Tree
-from tmm_cli.problem.reader import decoded, file_bytes, language_in, read_text, with_settings
-from tmm_cli.problem.record import Problem, TaskProblem
-from tmm_cli.reports.understood import bare_units, doubts, summarise_file
+from tmm_cli.problem import (
+    Problem,
+    ProblemError,
+    TaskProblem,
+    Tree,
+    decoded,
+    file_bytes,
+    language_in,
+    problem_of,
+    read_text,
+    refuse_options,
+    with_settings,
+)
+from tmm_cli.reports import bare_units, doubts, summarise_file
 
 
 def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
@@ -52,8 +61,8 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
         return given
     if variants is None or variant is None:
         raise ProblemError(_("a table and which of its variants are wanted"), allowed="--variants FILE --variant 7")
-    from tmm_cli.batch.task import read_task
-    from tmm_cli.grading.tables import read_table, variant_in  # few runs have a table
+    from tmm_cli.batch import read_task
+    from tmm_cli.grading import read_table, variant_in  # few runs have a table
 
     try:
         values = variant_in(read_table(variants, read_task(tree_of(file))), variant)

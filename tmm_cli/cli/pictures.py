@@ -12,7 +12,7 @@ from tmm_cli.cli.talk import say
 from tmm_cli.drawing import run as draw
 from tmm_cli.drawing.formats import Drawn, files
 from tmm_cli.drawing.sheets import assemblies, centres, group_table, hodographs, synthesis
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 
 
 def _whole(results: Results, *, quiet: bool = False) -> Pictures:

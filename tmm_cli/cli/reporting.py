@@ -10,21 +10,28 @@ from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, count_detail, introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.mechanics.analysis.pipeline import Results, Stage
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import is_chain, problem_of
-from tmm_cli.reports.digits import AccuracyReport, accuracy, beside
-from tmm_cli.reports.files import Staged, WrittenFolder, folder_name, listed, write_results
-from tmm_cli.reports.properties import properties_shown
-from tmm_cli.reports.register import walk
-from tmm_cli.reports.result_json import sections
-from tmm_cli.reports.spreadsheets import Kind
-from tmm_cli.reports.table import Table, json_text
-from tmm_cli.reports.terminal import show as print_table
-from tmm_cli.reports.warnings import collect_warnings
-from tmm_cli.synthesis.measures import measured_on
-from tmm_cli.synthesis.solving import count, redrive, solve, structure_of
+from tmm_cli.mechanics.analysis import Results, Stage
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.problem import build_chain, is_chain, problem_of
+from tmm_cli.reports import (
+    AccuracyReport,
+    Kind,
+    Staged,
+    Table,
+    WrittenFolder,
+    accuracy,
+    beside,
+    collect_warnings,
+    folder_name,
+    json_text,
+    listed,
+    properties_shown,
+    sections,
+    show as print_table,
+    walk,
+    write_results,
+)
+from tmm_cli.synthesis import count, measured_on, redrive, solve, structure_of
 
 
 def computed(

@@ -23,9 +23,8 @@ from tmm_cli.cli.common import (
 from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
 from tmm_cli.cli.talk import warn
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.reports.files import write_results
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.reports import collect_warnings, write_results
 
 SHOWN = (
     "synthesis-found",

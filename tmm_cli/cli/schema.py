@@ -6,11 +6,11 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch.task import Blocks
+from tmm_cli.batch import Blocks
 from tmm_cli.cli.common import emit_json
-from tmm_cli.problem.schema import file_schema
-from tmm_cli.reports.result_json import schema as result_schema
-from tmm_cli.synthesis.tasks import TASKS, block
+from tmm_cli.problem import file_schema
+from tmm_cli.reports import schema as result_schema
+from tmm_cli.synthesis import TASKS, block
 
 
 def schema(

@@ -12,31 +12,35 @@ import typer
 from tmm_cli.cli.common import Json, console, drawn, emit_json, progress, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import ProblemError, unknown_name
-from tmm_cli.problem.reader import read_text
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.files import Staged, write_whole
-from tmm_cli.reports.space_tables import WrittenSchemes, chains_json, chains_table, schemes_json, schemes_table
-from tmm_cli.reports.terminal import MORE_ROWS_AS_JSON, show
-from tmm_cli.reports.warnings import collect_warnings
-from tmm_cli.synthesis.schemes.chains import MOST_LINKS_OF_CHAIN as MOST_CHAIN_LINKS
-from tmm_cli.synthesis.schemes.chains import KinematicChain, chains
-from tmm_cli.synthesis.schemes.layout import layouts
-from tmm_cli.synthesis.schemes.schemes import (
+from tmm_cli.problem import ProblemError, UnitSystem, build_problem, read_text, unknown_name
+from tmm_cli.reports import (
+    MORE_ROWS_AS_JSON,
+    Staged,
+    WrittenSchemes,
+    chains_json,
+    chains_table,
+    collect_warnings,
+    schemes_json,
+    schemes_table,
+    show,
+    write_whole,
+)
+from tmm_cli.synthesis import (
     CLASSES,
     GROUP_TYPES,
     MOST_CRANKS,
+    MOST_LINKS_OF_CHAIN as MOST_CHAIN_LINKS,
     MOST_LINKS_OF_SCHEME,
     MOST_SCHEMES,
+    KinematicChain,
     Scheme,
     TooManySchemes,
-)
-from tmm_cli.synthesis.schemes.schemes import (
+    chains,
     enumerate_schemes as all_schemes,
+    layouts,
+    problem_text,
+    solve,
 )
-from tmm_cli.synthesis.schemes.skeleton import problem_text
-from tmm_cli.synthesis.solving import solve
 
 CANDIDATES = 24  # poses that are solved before the best of them is taken
 FEW = 6  # the same, of schemes with groups that are not solved in closed form

@@ -15,9 +15,9 @@ from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.layout.files import files_of_sheets, formats_of, refuse_plans
+from tmm_cli.drawing.layout import files_of_sheets, formats_of, refuse_plans
 from tmm_cli.drawing.run import remarks
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.reports import collect_warnings
 
 
 def sheets(

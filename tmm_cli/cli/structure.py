@@ -11,7 +11,7 @@ from tmm_cli.cli.opening import variant_settings
 from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
-from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.mechanics.structure import ChainResults
 
 Drawings = Annotated[
     bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")

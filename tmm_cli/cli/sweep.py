@@ -8,25 +8,36 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch.task import Task
-from tmm_cli.batch.workers import cluster, processes
+from tmm_cli.batch import Task, cluster, processes
 from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.formats import files as drawings
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.problem.record import Problem
-from tmm_cli.reports.files import RECORD, Staged, folder_name, refuse_place
-from tmm_cli.reports.table import csv_text, json_text, plain
-from tmm_cli.reports.terminal import show as show_table
-from tmm_cli.reports.understood import without_effect
-from tmm_cli.reports.warnings_of_forces import tables_of_many
-from tmm_cli.sweep.grid import read_axes
-from tmm_cli.sweep.mechanisms import Mechanisms
-from tmm_cli.sweep.record import Swept
-from tmm_cli.sweep.report import borders_table, points_table, sections
-from tmm_cli.sweep.run import refuse_points, swept
-from tmm_cli.sweep.sheet import sheets
+from tmm_cli.problem import Problem
+from tmm_cli.reports import (
+    RECORD,
+    Staged,
+    csv_text,
+    folder_name,
+    json_text,
+    plain,
+    refuse_place,
+    show as show_table,
+    tables_of_many,
+    without_effect,
+)
+from tmm_cli.sweep import (
+    Mechanisms,
+    Swept,
+    borders_table,
+    points_table,
+    read_axes,
+    refuse_points,
+    sections,
+    sheets,
+    swept,
+)
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML) with parameters.", show_default=False)]
 Over = Annotated[

@@ -9,19 +9,22 @@ from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each,
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.record import Synthesised
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.problem.values import ValueReader
-from tmm_cli.reports.files import Staged, folder_name, held
-from tmm_cli.reports.synthesis_tables import missed, synthesis_json, tables_of_synthesis
-from tmm_cli.reports.table import csv_text, json_bytes
-from tmm_cli.reports.terminal import show
-from tmm_cli.reports.understood import bare_speeds, bare_units
-from tmm_cli.synthesis.measures import measured_on
-from tmm_cli.synthesis.reading import TaskFile, alone, build
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.problem import ProblemError, Synthesised, UnitSystem, ValueReader
+from tmm_cli.reports import (
+    Staged,
+    bare_speeds,
+    bare_units,
+    csv_text,
+    folder_name,
+    held,
+    json_bytes,
+    missed,
+    show,
+    synthesis_json,
+    tables_of_synthesis,
+)
+from tmm_cli.synthesis import TaskFile, alone, build, measured_on, solve
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:

@@ -16,7 +16,7 @@ import typer
 
 import tmm_cli
 from tmm_cli.language import ENGLISH, USUAL, _, speak, spoken, write
-from tmm_cli.problem.errors import clean, visible
+from tmm_cli.problem import clean, visible
 
 OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
 TRACEBACK = "TMM_TRACEBACK"  # environment variable: 1 prints the traceback of an internal fault

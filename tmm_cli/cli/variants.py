@@ -7,21 +7,28 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch.choices import with_vary
-from tmm_cli.batch.task import Task, read_task
+from tmm_cli.batch import Task, read_task, with_vary
 from tmm_cli.cli.common import console, progress, refusing
 from tmm_cli.cli.opening import read_in_its_language
 from tmm_cli.cli.talk import printable, say, warn
-from tmm_cli.grading.answer_key import HEADER, compute_answer_key, idle_questions
-from tmm_cli.grading.draw_variants import Variety, draw, draw_for, tables_apart
-from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.tables import csv_of, read_students, rows_of_table, xlsx_of
-from tmm_cli.grading.task_sheets import TaskSheets
+from tmm_cli.grading import (
+    HEADER,
+    TaskSheets,
+    VariantTable,
+    Variety,
+    compute_answer_key,
+    csv_of,
+    draw,
+    draw_for,
+    idle_questions,
+    read_students,
+    rows_of_table,
+    tables_apart,
+    xlsx_of,
+)
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.files import Staged, refuse_place
-from tmm_cli.reports.table import table_of_words
-from tmm_cli.reports.terminal import show
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import Staged, refuse_place, show, table_of_words
 
 TABLE = "variants.csv"
 

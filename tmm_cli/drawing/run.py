@@ -8,23 +8,27 @@ from functools import partial
 from itertools import chain
 
 from tmm_cli.drawing.formats import Drawn, Way, here, in_parts
-from tmm_cli.drawing.sheets.centres import draw_centres as centres
-from tmm_cli.drawing.sheets.diagrams import draw_diagrams
-from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import draw_group_loads
-from tmm_cli.drawing.sheets.hodographs import balancing as shaking
-from tmm_cli.drawing.sheets.intermittent import draw_intermittent
-from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion
-from tmm_cli.drawing.sheets.lever import draw_lever
-from tmm_cli.drawing.sheets.mechanism import Position, position
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
-from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import draw_single_run
-from tmm_cli.drawing.sheets.structure import at_sketch, groups, scheme
-from tmm_cli.drawing.sheets.synthesis import synthesised
+from tmm_cli.drawing.sheets import (
+    Position,
+    all_positions,
+    at_sketch,
+    balancing as shaking,
+    draw_centres as centres,
+    draw_diagrams,
+    draw_group_loads,
+    draw_intermittent,
+    draw_law_of_motion,
+    draw_lever,
+    draw_motion_plans,
+    draw_single_run,
+    forces,
+    groups,
+    position,
+    scheme,
+    synthesised,
+)
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.in_detail import balancing, chosen_here, detailed_positions
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results, balancing, chosen_here, detailed_positions
 from tmm_cli.mechanics.quantities import FORCE, MOMENT
 
 OF_POSITION = (position, draw_motion_plans, draw_group_loads, forces, draw_lever)

@@ -8,8 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tmm_cli.batch.family import families
-from tmm_cli.batch.task import Asked, Task
+from tmm_cli.batch import Asked, Task, families
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.run import numbers_of
 from tmm_cli.grading.sheet import right

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from tmm_cli.language import N_, _
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem import ProblemError, quote
 
 LONGEST_SHOWN = 200  # characters of a name, or of an answer as it was written
 LONGEST_SENTENCE = 600

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.grading.record import StudentMarks
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 LEAST = 3  # answers
 MOST_OF = 0.8  # of the answers in which the variants differ must fit the other one

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.data import ScaleInverted
 from tmm_cli.grading.sheet import Right, Written, predicted, written_down
 from tmm_cli.grading.solution import solve
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.numerics import Real, Vector
 
 PER_ALLOWED = 3.0  # an answer may be off by so many standard errors of a drawing
 CAP = 5.0  # standard errors: what is farther off is off for another reason, and counts no more

@@ -12,23 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.choices import choice_values, read_choices
-from tmm_cli.batch.family import Family, families, together
-from tmm_cli.batch.task import Asked, Task
-from tmm_cli.batch.variant import Variant
+from tmm_cli.batch import Asked, Family, Task, Variant, choice_values, families, read_choices, together
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.run import numbers_of
 from tmm_cli.grading.sheet import Right, right
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.forces.loads import reach_of_tables
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
-from tmm_cli.mechanics.kinematics.pressure import angle, followers, named
-from tmm_cli.mechanics.kinematics.strokes import Strokes
-from tmm_cli.mechanics.numerics.tolerances import END_OF_SLOT, SAME_ASSEMBLY
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
-from tmm_cli.reports.warnings_of_forces import tables_of_many
-from tmm_cli.synthesis.solving import solve
+from tmm_cli.mechanics.forces import reach_of_tables
+from tmm_cli.mechanics.groups import LinkStates, link_states
+from tmm_cli.mechanics.kinematics import Strokes, angle, followers, named
+from tmm_cli.mechanics.numerics import END_OF_SLOT, SAME_ASSEMBLY, Real, Vector
+from tmm_cli.reports import tables_of_many
+from tmm_cli.synthesis import solve
 
 SCAN = 48  # places in a turn of the driver: extremes between them are found by parabolas
 

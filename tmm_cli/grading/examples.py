@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.batch.task import read_task
+from tmm_cli.batch import read_task
 from tmm_cli.grading.record import StudentMarks
 from tmm_cli.grading.run import graded
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.tables import read_table
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_file
+from tmm_cli.problem import ProblemError, read_file
 
 HANDED_IN = ("submissions", "answers.csv", "answers.xlsx")
 

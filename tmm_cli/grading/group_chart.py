@@ -7,19 +7,15 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import Task
 from tmm_cli.drawing.formats import files as pictures
-from tmm_cli.drawing.paper.chart import FINE, Panel, filling
-from tmm_cli.drawing.paper.fonts import width
-from tmm_cli.drawing.paper.record import POINT, Drawing
-from tmm_cli.drawing.paper.sheet import Sheet
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, FINE, POINT, Drawing, Panel, Sheet, filling, width
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import LANDSCAPE
 
 MOST, FEWEST = 10, 6  # bars that a panel has room for
 LONGEST = 32  # characters of a line beside a bar

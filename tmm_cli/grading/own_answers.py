@@ -8,19 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.diagnose import Claim
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.motion import Coriolis
 from tmm_cli.grading.sheet import Right, Written, written_down
 from tmm_cli.grading.solution import solve
-from tmm_cli.mechanics.analysis.named_quantities import Quantity
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.groups.base import Kernel, Wrapped
-from tmm_cli.mechanics.groups.state import Accel, Accels, Drives, GroupReactions, Placement, Poses, Rate, Rates, Wrench
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.forces import Applied
+from tmm_cli.mechanics.groups import (
+    Accel,
+    Accels,
+    Drives,
+    GroupReactions,
+    Kernel,
+    Placement,
+    Poses,
+    Rate,
+    Rates,
+    Wrapped,
+    Wrench,
+)
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, square
+from tmm_cli.mechanics.numerics import Real, Vector, cross, square
 
 
 @dataclass(frozen=True)

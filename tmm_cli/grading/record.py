@@ -11,11 +11,10 @@ import numpy as np
 
 from tmm_cli.grading.sheet import Right, Written
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.named_quantities import Quantity
-from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, FORCE, LENGTH, MOMENT, SPEED, Dimension
-from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.units import UnitError, UnitSystem, parse_unit
+from tmm_cli.problem import ProblemError, UnitError, UnitSystem, parse_unit, quote
 
 Key = tuple[str, int | None]  # a quantity and the position as the students count it; None: of the mechanism as a whole
 Form = Literal["number", "size", "components", "polar"]

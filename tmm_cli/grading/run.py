@@ -17,9 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.family import Family, families
-from tmm_cli.batch.task import Asked, Task
-from tmm_cli.batch.workers import Way, here, processes, program_digest
+from tmm_cli.batch import Asked, Family, Task, Way, families, here, processes, program_digest
 from tmm_cli.grading.copies import with_copies
 from tmm_cli.grading.diagnose import diagnose_students
 from tmm_cli.grading.exports import write
@@ -31,9 +29,9 @@ from tmm_cli.grading.sheet import right
 from tmm_cli.grading.submissions.answers import at_positions
 from tmm_cli.language import _, language
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem.errors import Tree
+from tmm_cli.problem import Tree
 
 NAMES = tuple(field.name for field in fields(Mark))
 VECTORS = ("value", "right")

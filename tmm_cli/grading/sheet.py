@@ -8,14 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from tmm_cli.batch.family import Family
-from tmm_cli.batch.task import Asked
-from tmm_cli.batch.variant import changed, numbers
+from tmm_cli.batch import Asked, Family, changed, numbers
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.solution import Solution, solve
-from tmm_cli.mechanics.analysis.named_quantities import Quantity
-from tmm_cli.mechanics.groups.base import Closed
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.groups import Closed
+from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,

@@ -8,13 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.batch.family import Family
-from tmm_cli.mechanics.forces.friction import solve_friction
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.forces.plan import Reactions, react
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import Motion, move
-from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.batch import Family
+from tmm_cli.mechanics.forces import Reactions, applied, react, solve_friction
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import Motion, Strokes, move
 from tmm_cli.mechanics.linkage import Linkage
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import Task
 from tmm_cli.grading.cells import sentence, shown
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.reports.table import Column, Table, table_of_words
+from tmm_cli.reports import Column, Table, table_of_words
 
 STEP = 10  # per cent: a bar of the histogram
 

@@ -8,15 +8,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.batch.choices import NUMBER
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import NUMBER, Task
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, quote, under, unknown_name
-from tmm_cli.problem.units import parse_unit
-from tmm_cli.reports.spreadsheets import empty_workbook
-from tmm_cli.reports.table import csv_cell
+from tmm_cli.problem import ProblemError, parse_unit, quote, under, unknown_name
+from tmm_cli.reports import csv_cell, empty_workbook
 
 LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
 WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")

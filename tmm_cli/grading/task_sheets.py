@@ -11,20 +11,17 @@ from itertools import groupby
 
 import yaml
 
-from tmm_cli.batch.task import Asked, Task
-from tmm_cli.drawing.formats.png import write_png
-from tmm_cli.drawing.sheets.task import task_picture
+from tmm_cli.batch import Asked, Task
+from tmm_cli.drawing.formats import write_png
+from tmm_cli.drawing.sheets import task_picture
 from tmm_cli.grading.cells import shown
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import KINDS, LENGTH, NUMBER, Dimension
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.reader import read_text
-from tmm_cli.reports.files import folder_name
-from tmm_cli.reports.given import input_tables
-from tmm_cli.reports.table import Table, table_of_words
-from tmm_cli.synthesis.solving import structure_of
+from tmm_cli.problem import ProblemError, read_text
+from tmm_cli.reports import Table, folder_name, input_tables, table_of_words
+from tmm_cli.synthesis import structure_of
 
 FOR_TEACHERS = ("variants", "grading")
 MEASURES = (LENGTH, *(kind.dimension for kind in KINDS.values()))

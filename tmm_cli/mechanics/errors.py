@@ -10,8 +10,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.structure.assur import Structure
-    from tmm_cli.mechanics.structure.group import Group
+    from tmm_cli.mechanics.structure import Group, Structure
 
 
 class LinkageError(Exception):

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from tmm_cli.mechanics.numerics.interpolation import Table
+from tmm_cli.mechanics.numerics import Table
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.groups.pairs.higher import CamLaw
+    from tmm_cli.mechanics.groups import CamLaw
 
 
 FRAME = "0"

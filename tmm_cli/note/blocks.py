@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper import Drawing
 from tmm_cli.language import filled
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note.expression import Found
 from tmm_cli.note.math import Node
 

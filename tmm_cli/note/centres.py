@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol, subscript
-from tmm_cli.mechanics.kinematics.centres import Centre, Links
+from tmm_cli.mechanics.forces import Symbol, subscript
+from tmm_cli.mechanics.kinematics import Centre, Links
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.tables import rows_of
-from tmm_cli.reports.cycle_tables import name
-from tmm_cli.reports.register import walk
+from tmm_cli.reports import name, walk
 
 ALL, LINKS = Symbol("N"), Symbol("k")
 

@@ -8,8 +8,7 @@ from tmm_cli.language import _
 from tmm_cli.note.blocks import Block, Heading, Items, paragraph, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import rows_of
-from tmm_cli.reports.register import walk
-from tmm_cli.reports.warnings import collect_warnings
+from tmm_cli.reports import collect_warnings, walk
 
 
 def blocks(subject: Subject) -> Iterable[Block]:

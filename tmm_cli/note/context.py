@@ -11,31 +11,34 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.drawing.formats import Drawn
-from tmm_cli.drawing.paper.picture import Space, within
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.sheets import centres, hodographs, law_of_motion
-from tmm_cli.drawing.sheets.diagrams import draw_diagrams
-from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import draw_group_loads
-from tmm_cli.drawing.sheets.lever import draw_lever
-from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver, position
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
-from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import draw_single_run
-from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
-from tmm_cli.drawing.sheets.synthesis import synthesised
+from tmm_cli.drawing.paper import Drawing, Space, within
+from tmm_cli.drawing.sheets import (
+    Position,
+    all_groups,
+    all_positions,
+    centres,
+    draw_diagrams,
+    draw_group_loads,
+    draw_lever,
+    draw_motion_plans,
+    draw_single_run,
+    forces,
+    hodographs,
+    law_of_motion,
+    place_of_driver,
+    position,
+    synthesised,
+    whole_scheme,
+)
 from tmm_cli.language import _, language, numeral, signed, typeset
-from tmm_cli.mechanics.analysis.in_detail import detailed_positions
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import subscript
-from tmm_cli.mechanics.forces.lever import Lever
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.plans.record import extent, round_scale
+from tmm_cli.mechanics.analysis import Results, detailed_positions
+from tmm_cli.mechanics.forces import Lever, Reactions, subscript
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.plans import extent, round_scale
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.note.blocks import Block, Figure, Ref, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
-from tmm_cli.problem.units import on_paper
+from tmm_cli.problem import on_paper
 
 EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption

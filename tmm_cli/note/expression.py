@@ -13,7 +13,7 @@ from functools import partial
 from itertools import chain
 
 from tmm_cli.language import half_up
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import math as paper
 
 FIGURES = 4  # of a result, and of what is put in if that does

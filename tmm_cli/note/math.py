@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from importlib import import_module
 from itertools import chain
 
 from tmm_cli.language import language
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.context import Subject
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.drawing.sheets.structure import counted, parts
+from tmm_cli.drawing.sheets import counted, parts
 from tmm_cli.language import _, printed, typeset
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.structure import Group, Structure
 from tmm_cli.note.blocks import (
     Block,
     Equation,
@@ -28,8 +27,7 @@ from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.math import Words
 from tmm_cli.note.tables import NONE, unbroken
-from tmm_cli.reports.stages import link_name
-from tmm_cli.reports.structure_tables import (
+from tmm_cli.reports import (
     PAIRS,
     ROLES,
     contours_in_words,
@@ -38,6 +36,7 @@ from tmm_cli.reports.structure_tables import (
     counted_with_replacements,
     kind_in_words,
     left_out,
+    link_name,
     mobility_with_rollers,
     motion_in_words,
     primary_mechanisms_in_words,

@@ -6,15 +6,14 @@ import math
 from collections.abc import Iterable
 
 from tmm_cli.language import _, translated
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note.blocks import Block, Heading, paragraph, said, tabled
 from tmm_cli.note.context import Subject, by_hand
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.tables import rows_of
-from tmm_cli.problem.record import Synthesised
-from tmm_cli.reports.synthesis_tables import tables_of_synthesis
-from tmm_cli.synthesis.construction import Diagram
-from tmm_cli.synthesis.measures import measured_on, theta_of
+from tmm_cli.problem import Synthesised
+from tmm_cli.reports import tables_of_synthesis
+from tmm_cli.synthesis import Diagram, measured_on, theta_of
 
 FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
 THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")

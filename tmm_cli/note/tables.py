@@ -9,10 +9,8 @@ from tmm_cli.language import _, spelt
 from tmm_cli.note.blocks import Line, Rows, cells
 from tmm_cli.note.context import Subject, by_hand, with_degrees
 from tmm_cli.note.expression import fixed, plain, rounded
-from tmm_cli.problem.units import UnitSystem, on_paper
-from tmm_cli.reports.table import Column, Table
-from tmm_cli.reports.terminal import figures
-from tmm_cli.reports.terminal import terminal_cells as cells_of
+from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.reports import Column, Table, figures, terminal_cells as cells_of
 
 DIGITS = 4
 NONE = "—"

@@ -8,16 +8,13 @@ from itertools import combinations
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol, named
+from tmm_cli.mechanics.forces import Symbol, named
 from tmm_cli.mechanics.linkage import FRAME, Link, Load
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
-from tmm_cli.reports.given import input_tables
-from tmm_cli.reports.stages import heavy, link_name
-from tmm_cli.reports.structure_tables import ROLES, called
-from tmm_cli.reports.understood import motion
+from tmm_cli.reports import ROLES, called, heavy, input_tables, link_name, motion
 
 # tables of `tmm explain` that the note has in words of its own; the others it has as they are
 IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")

@@ -28,7 +28,7 @@ from tmm_cli.problem.units import ExtendedUnits, PhysicalValue, UnitSystem
 from tmm_cli.problem.values import Part, ValueReader
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import WheelTask
+    from tmm_cli.mechanics.analysis import WheelTask
 
 
 TASK_READER = "tmm_cli.synthesis.reading"  # reads the block synthesis, which stands above the problem

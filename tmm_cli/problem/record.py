@@ -9,17 +9,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from tmm_cli.mechanics.linkage import Linkage, Request
-from tmm_cli.mechanics.structure.spatial import SpatialChain
+from tmm_cli.mechanics.structure import SpatialChain
 from tmm_cli.problem.errors import Tree
 from tmm_cli.problem.schema import NoteStyle, SheetTexts, Shown
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import WheelTask
-    from tmm_cli.mechanics.dynamics.balancing import BalancingTask
-    from tmm_cli.mechanics.dynamics.task import RunTask, SteadyTask
-    from tmm_cli.synthesis.record import Outcome
+    from tmm_cli.mechanics.analysis import WheelTask
+    from tmm_cli.mechanics.dynamics import BalancingTask, RunTask, SteadyTask
+    from tmm_cli.synthesis import Outcome
 
 
 @dataclass(frozen=True)

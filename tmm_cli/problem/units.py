@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import ENGLISH, _, language, spelt
-from tmm_cli.mechanics.numerics.double_double import PI, DoubleDouble
+from tmm_cli.mechanics.numerics import PI, DoubleDouble
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,

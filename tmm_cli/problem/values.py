@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.mechanics.numerics.tolerances import NO_COSINE
+from tmm_cli.mechanics.numerics import NO_COSINE
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.problem.arithmetic import MOST_ANGLE, evaluate, evaluate_quantity
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote, under, unknown_name

@@ -9,15 +9,11 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.analysis.selection import links as chosen_links
-from tmm_cli.mechanics.analysis.selection import moving_centres, moving_points
-from tmm_cli.mechanics.forces.plan import power
-from tmm_cli.mechanics.kinematics.centres import Centre
-from tmm_cli.mechanics.kinematics.motion import Motion, Turning
-from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.analysis import Results, links as chosen_links, moving_centres, moving_points
+from tmm_cli.mechanics.forces import power
+from tmm_cli.mechanics.kinematics import Centre, Motion, Turning, output_run
 from tmm_cli.mechanics.linkage import Driver, Linkage
-from tmm_cli.mechanics.numerics.vectors import Real, pi
+from tmm_cli.mechanics.numerics import Real, pi
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     FORCE,

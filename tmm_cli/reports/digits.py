@@ -10,14 +10,24 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, _, numeral, translated
-from tmm_cli.mechanics.accuracy.digits import FEWEST, PAPER, Digits, is_angle, judged, relative, sizes
-from tmm_cli.mechanics.accuracy.searches import Wide, blur, coarsely, searched
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions, near_dead
-from tmm_cli.mechanics.kinematics.motion import FIXED
+from tmm_cli.mechanics.accuracy import (
+    FEWEST,
+    PAPER,
+    Digits,
+    Wide,
+    blur,
+    coarsely,
+    is_angle,
+    judged,
+    relative,
+    searched,
+    sizes,
+)
+from tmm_cli.mechanics.analysis import Results, at_positions, near_dead
+from tmm_cli.mechanics.kinematics import FIXED
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF
-from tmm_cli.mechanics.numerics.vectors import Real, Record, mapped
-from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.mechanics.numerics import ROUNDOFF, Real, Record, mapped
+from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.reports.register import REPORTS, tables_of
 from tmm_cli.reports.result_json import LARGE, numbers

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.language import N_, _, numeral
-from tmm_cli.mechanics.analysis.intermittent import MOST_CYCLES, Intermittent, Part
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.dynamics.balancing import Balancing
-from tmm_cli.mechanics.dynamics.steady import Running, Steady
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.analysis import MOST_CYCLES, Intermittent, Part, Results
+from tmm_cli.mechanics.dynamics import Balancing, Running, Steady
+from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -34,7 +32,7 @@ from tmm_cli.reports.quality_tables import Row, of_rows
 from tmm_cli.reports.table import Column, Table
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+    from tmm_cli.mechanics.dynamics import SingleRun
 
 
 STEPS = 25  # of a single run, that are shown

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _, printed
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.structure import Group, Pair, Structure
 from tmm_cli.reports.given import input_tables
 from tmm_cli.reports.stages import skipped, stages_table, steps
 from tmm_cli.reports.structure_tables import (

@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
+from tmm_cli.mechanics.analysis import Results, at_places
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem import ProblemError
 
 
 def pylinkage(results: Results) -> tuple[str, list[str]]:

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tmm_cli.language import ENGLISH, _, spoken
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports.digits import AccuracyReport
 from tmm_cli.reports.register import walk
 from tmm_cli.reports.result_json import sections

@@ -8,14 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral, printed, symbol
-from tmm_cli.mechanics.analysis.in_detail import detailed_positions
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import load_names
-from tmm_cli.mechanics.forces.lever import Item
-from tmm_cli.mechanics.forces.plan import find_transmitted_forces
+from tmm_cli.mechanics.analysis import Results, detailed_positions
+from tmm_cli.mechanics.forces import Item, find_transmitted_forces, load_names
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, SAME_PLACE, SAME_RATIO
-from tmm_cli.mechanics.plans.lever import drawn_check, sheets
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.plans import drawn_check, sheets
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ENERGY,

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.quantities import (
     Dimension,
     place_dimension,
 )
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem import Problem
 from tmm_cli.reports.given_dynamics import law_of_motion
 from tmm_cli.reports.given_loads import loads, masses
 from tmm_cli.reports.given_parts import FILE_WORDS, parts, show, show_vector, speed, speeds
@@ -29,7 +29,7 @@ from tmm_cli.reports.synthesis_tables import parameters
 from tmm_cli.reports.table import Table, table_of_words
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import WheelTask
+    from tmm_cli.mechanics.analysis import WheelTask
 
 
 def input_tables(problem: Problem) -> Iterable[Table]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.dynamics.motors import Kloss, Linear, Motor
-from tmm_cli.mechanics.dynamics.task import Profile, RunTask, SteadyTask
+from tmm_cli.mechanics.dynamics import Kloss, Linear, Motor, Profile, RunTask, SteadyTask
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,
@@ -19,7 +18,7 @@ from tmm_cli.mechanics.quantities import (
     NUMBER,
     SPEED,
 )
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem import Problem
 from tmm_cli.reports.given_parts import show
 from tmm_cli.reports.table import Table, table_of_words
 

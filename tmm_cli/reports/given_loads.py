@@ -9,8 +9,7 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, MASS, MOMENT, NUMBER, Dimension
-from tmm_cli.problem.blocks.loads import stroke_dimension
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem import Problem, stroke_dimension
 from tmm_cli.reports.given_parts import FILE_WORDS, show, show_vector
 from tmm_cli.reports.stages import heavy
 from tmm_cli.reports.table import Table, table_of_words

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_cli.language import N_, _, numeral, spelt
 from tmm_cli.mechanics.linkage import FRAME, Driver, Mesh, SpeedTable, Spring
-from tmm_cli.mechanics.numerics.double_double import rounded
+from tmm_cli.mechanics.numerics import rounded
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -24,7 +24,7 @@ from tmm_cli.mechanics.quantities import (
     Dimension,
     place_dimension,
 )
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem import Problem
 from tmm_cli.reports.stages import link_name
 from tmm_cli.reports.table import Table, table_of_words, with_unit
 from tmm_cli.reports.understood import between_rows

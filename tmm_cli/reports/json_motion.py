@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.analysis.selection import links, moving_centres, moving_points
-from tmm_cli.mechanics.kinematics.motion import Sliding
+from tmm_cli.mechanics.analysis import Results, links, moving_centres, moving_points
+from tmm_cli.mechanics.kinematics import Sliding
 from tmm_cli.mechanics.linkage import Slide
-from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.quantities import BALANCE, ENERGY, LEVER_MOMENT, LINK, LOAD, POINT, REACTION, SLIDE
 from tmm_cli.reports.cycle_tables import states
 from tmm_cli.reports.shapes import (
@@ -32,7 +31,7 @@ from tmm_cli.reports.shapes import (
 )
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+    from tmm_cli.mechanics.dynamics import SingleRun
 
 
 SHAKING = record(

@@ -6,8 +6,7 @@ from operator import methodcaller
 from typing import NamedTuple
 
 from tmm_cli.mechanics.linkage import Link
-from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
-from tmm_cli.mechanics.structure.naming import basic_schemes, six_bar_schemes
+from tmm_cli.mechanics.structure import basic_schemes, classification, contours, is_dependent, six_bar_schemes
 from tmm_cli.reports.shapes import FLAG, INTEGER, NAMES, NUMBER, TEXT, Field, inside, list_of, map_of, optional, record
 from tmm_cli.reports.structure_tables import motion_of_link
 

@@ -11,21 +11,34 @@ from functools import lru_cache, partial
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import pipeline
-from tmm_cli.mechanics.analysis.named_quantities import STAGES, Quantity, of_wheels, quantities, relative_angles
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
-from tmm_cli.mechanics.groups.base import spread
-from tmm_cli.mechanics.numerics.roots import find_roots, greatest
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.analysis import (
+    STAGES,
+    Quantity,
+    Results,
+    at_places,
+    of_wheels,
+    pipeline,
+    quantities,
+    relative_angles,
+)
+from tmm_cli.mechanics.groups import spread
+from tmm_cli.mechanics.numerics import Real, find_roots, greatest
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.build import build_problem
-from tmm_cli.problem.errors import Path, ProblemError, no_position, path_text, quote, under, unknown_name
-from tmm_cli.problem.reader import with_settings
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals import in_words_of
-from tmm_cli.problem.schema import Shown
+from tmm_cli.mechanics.structure import ChainResults, analyse
+from tmm_cli.problem import (
+    Path,
+    Problem,
+    ProblemError,
+    Shown,
+    build_problem,
+    in_words_of,
+    no_position,
+    path_text,
+    quote,
+    under,
+    unknown_name,
+    with_settings,
+)
 
 STEPS = 720  # in a turn, or over the driver's way
 PARTS = 60  # of the way between two positions, through which an angle is followed

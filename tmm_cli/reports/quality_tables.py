@@ -9,16 +9,14 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral
-from tmm_cli.mechanics.analysis.checks import Check, run_checks
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.assembly.enumerate import Assemblies, GroupAssemblies, listed
-from tmm_cli.mechanics.kinematics.driver_range import SCAN
-from tmm_cli.mechanics.kinematics.strokes import OutputCurve, Stroke, Strokes, Travel
+from tmm_cli.mechanics.analysis import Check, Results, run_checks
+from tmm_cli.mechanics.assembly import Assemblies, GroupAssemblies, listed
+from tmm_cli.mechanics.kinematics import SCAN, OutputCurve, Stroke, Strokes, Travel
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import CAME_BACK, NO_PRESSURE, SAME_PLACE, SEAM_OF_EXTREMES
+from tmm_cli.mechanics.numerics import CAME_BACK, NO_PRESSURE, SAME_PLACE, SEAM_OF_EXTREMES
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.record import Problem
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.problem import Problem
 from tmm_cli.reports.properties import properties_shown
 from tmm_cli.reports.table import Column, Table, table_of_words, with_unit
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from importlib import import_module
 
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.structure.spatial import ChainResults
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports.table import Table
 
 # report, its module here without _tables, the part of Results that it needs, the tables it gives (of other names

@@ -11,11 +11,9 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from tmm_cli.language import ENGLISH, spoken
-from tmm_cli.mechanics.analysis.checks import run_checks
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.structure.redundancy import space
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.mechanics.analysis import Results, run_checks
+from tmm_cli.mechanics.structure import ChainResults, space
+from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.json_motion import MOTION_PARTS, WHEEL
 from tmm_cli.reports.json_structure import ASSEMBLIES, PROBLEM, SPACE, SPATIAL, STRUCTURE
 from tmm_cli.reports.properties import properties_shown
@@ -38,7 +36,7 @@ from tmm_cli.reports.synthesis_tables import synthesis_json as synthesis_json
 from tmm_cli.reports.table import plain
 from tmm_cli.reports.understood import doubts
 from tmm_cli.reports.warnings import collect_warnings
-from tmm_cli.synthesis.measures import measured_on
+from tmm_cli.synthesis import measured_on
 
 FORMAT = 1
 SI = UnitSystem({"length": "m", "angle": "rad"})

@@ -8,17 +8,24 @@ from pathlib import Path
 from typing import Any
 
 from tmm_cli.language import N_, _, printed
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.graph import Contour, contours, is_dependent
-from tmm_cli.mechanics.structure.group import ROMAN
-from tmm_cli.mechanics.structure.redundancy import space
-from tmm_cli.mechanics.structure.spatial import AXLES, CONTACTS, ChainResults, Findings, LocalFreedom
+from tmm_cli.mechanics.structure import (
+    AXLES,
+    CONTACTS,
+    ROMAN,
+    ChainResults,
+    Contour,
+    Findings,
+    LocalFreedom,
+    Structure,
+    contours,
+    is_dependent,
+    space,
+)
 from tmm_cli.reports.structure_tables import left_out
 from tmm_cli.reports.table import Column, Table, table_of_words
-from tmm_cli.synthesis.schemes.chains import KinematicChain
-from tmm_cli.synthesis.schemes.schemes import GROUP_TYPES, Scheme
+from tmm_cli.synthesis import GROUP_TYPES, KinematicChain, Scheme
 
 
 def space_tables(results: Results) -> Iterable[Table]:

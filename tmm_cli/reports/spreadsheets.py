@@ -14,8 +14,7 @@ from io import BytesIO
 from typing import Any, Final, Literal
 
 from tmm_cli.language import _, half_up, typeset
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.problem import ProblemError, UnitSystem, on_paper
 from tmm_cli.reports.table import Column, Table, csv_cell
 from tmm_cli.reports.terminal import figures
 

@@ -10,14 +10,12 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import CYCLE, Results
-from tmm_cli.mechanics.groups.base import Closed, Kernel
-from tmm_cli.mechanics.groups.sequence import towards
-from tmm_cli.mechanics.kinematics.driver_range import SCAN
+from tmm_cli.mechanics.analysis import CYCLE, Results
+from tmm_cli.mechanics.groups import Closed, Kernel, towards
+from tmm_cli.mechanics.kinematics import SCAN
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.structure.cycle import DENSE
-from tmm_cli.mechanics.structure.group import Group
-from tmm_cli.problem.record import Problem
+from tmm_cli.mechanics.structure import DENSE, Group
+from tmm_cli.problem import Problem
 from tmm_cli.reports.table import Table, table_of_words
 
 PANELS = 12 * 16  # places on a turn that a law of motion is computed at, at least

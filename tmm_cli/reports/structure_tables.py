@@ -8,11 +8,18 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import N_, _, printed
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.graph import classification, contours, is_dependent
-from tmm_cli.mechanics.structure.naming import basic_schemes, is_parallelogram_coupler, link_motion, six_bar_schemes
+from tmm_cli.mechanics.structure import (
+    Structure,
+    basic_schemes,
+    classification,
+    contours,
+    is_dependent,
+    is_parallelogram_coupler,
+    link_motion,
+    six_bar_schemes,
+)
 from tmm_cli.reports.table import Table, table_of_words
 
 PLACES, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad

@@ -10,13 +10,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tmm_cli.language import N_, _, numeral, translated
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import KINDS
-from tmm_cli.problem.record import Synthesised
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem import Synthesised, UnitSystem
 from tmm_cli.reports.table import Column, Table, plain
-from tmm_cli.synthesis.measures import MeasuredDemand, measured_on
-from tmm_cli.synthesis.record import Kind, Listing, Value
+from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, Value, measured_on
 
 NUMERIC = (*KINDS, "share")
 ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import numeral, spelt, translated, typeset
-from tmm_cli.mechanics.numerics.double_double import array
+from tmm_cli.mechanics.numerics import array
 from tmm_cli.mechanics.quantities import NUMBER, Dimension
-from tmm_cli.problem.units import Unit, UnitSystem, parse_unit
+from tmm_cli.problem import Unit, UnitSystem, parse_unit
 
 
 @dataclass(frozen=True)

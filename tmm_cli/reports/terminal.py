@@ -12,7 +12,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from tmm_cli.language import N_, _, numeral, typeset
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.table import Column, Table
 
 MOST_ROWS = 120  # on a terminal; files have them all

@@ -11,8 +11,7 @@ import numpy as np
 
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.linkage import FRAME, Driver, Link, SpeedTable
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.tolerances import PARALLEL
+from tmm_cli.mechanics.numerics import PARALLEL, rounded
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,
@@ -26,11 +25,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.problem.errors import Path, Tree, path_text
-from tmm_cli.problem.reader import unused
-from tmm_cli.problem.record import Problem, TaskProblem
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import Path, Problem, TaskProblem, Tree, UnitSystem, ValueReader, path_text, unused
 from tmm_cli.reports.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside

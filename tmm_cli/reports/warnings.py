@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.reports import warnings_of_forces as forces
-from tmm_cli.reports import warnings_of_motion as motion
-from tmm_cli.reports import warnings_of_motion as pairs
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.reports import warnings_of_forces as forces, warnings_of_motion as motion, warnings_of_motion as pairs
 
 WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
     motion.limited,

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.loads import (
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.forces import (
     Applied,
     acts,
     acts_always,
@@ -18,18 +18,17 @@ from tmm_cli.mechanics.forces.loads import (
     table_argument,
     twisted,
 )
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
-from tmm_cli.mechanics.numerics.tolerances import NO_WORK, SAME_PLACE, SAME_RATIO
-from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.numerics import NO_WORK, SAME_PLACE, SAME_RATIO, Real, dot
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.force_tables import locked_ranges
 from tmm_cli.reports.given_loads import argument_dimension
 from tmm_cli.reports.synthesis_tables import missed
 from tmm_cli.reports.table import with_unit
 from tmm_cli.reports.warnings_of_motion import driver_place
-from tmm_cli.synthesis.measures import measured_on
+from tmm_cli.synthesis import measured_on
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
 ENDS_MEET = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet

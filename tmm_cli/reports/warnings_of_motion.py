@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.assembly.search import sketch_deviations
-from tmm_cli.mechanics.groups.base import Closed
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.assembly import sketch_deviations
+from tmm_cli.mechanics.groups import Closed, DriverMotion
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, SPEED, place_dimension
 from tmm_cli.reports.table import with_unit
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.task import Profile
+    from tmm_cli.mechanics.dynamics import Profile
 
 
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words

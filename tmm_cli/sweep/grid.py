@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.choices import NUMBER
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import NUMBER, Task
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem.errors import ProblemError, quote
+from tmm_cli.problem import ProblemError, quote
 
 OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
 COUNT = (41, 21)  # values where none is given: of one parameter, of each of two

@@ -11,11 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.batch.family import named_strokes
-from tmm_cli.batch.variant import Variant, each
-from tmm_cli.mechanics.kinematics.strokes import Strokes, resisted
-from tmm_cli.mechanics.numerics.roots import find_roots, least
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.batch import Variant, each, named_strokes
+from tmm_cli.mechanics.kinematics import Strokes, resisted
+from tmm_cli.mechanics.numerics import Real, find_roots, least
 from tmm_cli.sweep.taped import FINELY, Closely, Turning, near_peaks, peaks_between, turned
 
 SCAN = 72  # places in a turn of the driver

@@ -9,30 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.tape.traced import DependsOnData
-from tmm_cli.batch.task import Task
-from tmm_cli.batch.variant import NoTapeError, sketch_of
+from tmm_cli.batch import DependsOnData, NoTapeError, Task, sketch_of
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import pipeline
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results, pipeline
 from tmm_cli.mechanics.errors import AssemblyError, LinkageError
-from tmm_cli.mechanics.forces.loads import reach_of_tables
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.mechanics.forces import Reactions, reach_of_tables
+from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.problem.errors import ProblemError, Tree
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals import refusal
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.problem import Problem, ProblemError, Tree, refusal
 from tmm_cli.sweep import looking
 from tmm_cli.sweep.grid import Axis
 from tmm_cli.sweep.looking import Looked, Wish, look, strokes_of
 from tmm_cli.sweep.quantities import PRESSURE, Shown, read_shown
 from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
 from tmm_cli.sweep.taped import CYCLE, Turning, beyond
-from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.solving import inputs_of
+from tmm_cli.synthesis import inputs_of, measures
 
 DOUBTS = 200  # of a job by the tape that are looked at one by one
 BLOCK = 1_000  # variants at once: what all of them have at the places of a scan stays in the cache

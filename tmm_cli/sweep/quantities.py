@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import Task
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.named_quantities import Quantity, Solved
-from tmm_cli.mechanics.numerics.roots import greatest
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.analysis import Quantity, Solved
+from tmm_cli.mechanics.numerics import Real, greatest
 from tmm_cli.mechanics.quantities import ANGLE, Dimension
-from tmm_cli.problem.errors import ProblemError, unknown_name
+from tmm_cli.problem import ProblemError, unknown_name
 
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
 USUAL = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for

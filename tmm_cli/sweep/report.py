@@ -9,8 +9,8 @@ import numpy as np
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.quantities import KINDS, NUMBER, product_text
-from tmm_cli.problem.record import Problem
-from tmm_cli.reports.table import Column, Table
+from tmm_cli.problem import Problem
+from tmm_cli.reports import Column, Table
 from tmm_cli.sweep.record import LIMIT, STATES, WORDS, Swept
 
 FORMAT = 1

@@ -8,13 +8,10 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.batch.workers import Way, here
+from tmm_cli.batch import Way, here
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.roots import bisect
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.problem.build import BUDGET, parts, refuse_work
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.record import Problem
+from tmm_cli.mechanics.numerics import Real, bisect
+from tmm_cli.problem import BUDGET, Problem, ProblemError, parts, refuse_work
 from tmm_cli.sweep.grid import MOST, Axis, grid_points
 from tmm_cli.sweep.looking import SCAN
 from tmm_cli.sweep.mechanisms import Found, Mechanisms

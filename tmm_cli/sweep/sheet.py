@@ -8,33 +8,43 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import (
+from tmm_cli.drawing.paper import (
+    DARK,
+    INERTIA,
     LEFT,
+    LOAD,
     PLAIN,
+    POINT,
     RIGHT,
     ROW,
     SMALL,
+    THIN,
     TICKS,
     Across,
     Curve,
+    Drawing,
     Panel,
     Plot,
+    Sheet,
+    Style,
     axis_room,
+    borders,
+    contour,
     draw_chart,
     filling,
+    hatching,
     limits,
+    region,
     round_up,
+    safe,
+    width,
+    with_unit,
 )
-from tmm_cli.drawing.paper.contours import borders, contour, hatching, region
-from tmm_cli.drawing.paper.fonts import width
-from tmm_cli.drawing.paper.record import POINT, Drawing, Style
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, THIN, Sheet, safe, with_unit
-from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import _, numeral, spelt, translated
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, on_paper
 from tmm_cli.sweep.grid import Axis
 from tmm_cli.sweep.quantities import Shown
 from tmm_cli.sweep.record import LIMIT, STOPS, WORDS, WORKS, Mark, Swept

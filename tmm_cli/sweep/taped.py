@@ -9,24 +9,26 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import CHECKS, SURE, solved
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.program import Program
-from tmm_cli.batch.tape.traced import TracedNumber
-from tmm_cli.batch.variant import Make, NoTapeError, Variant, each, stands, stood_for
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.groups.base import Closed
-from tmm_cli.mechanics.groups.sequence import link_states
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.pressure import angle, followers
-from tmm_cli.mechanics.kinematics.strokes import Stroke, Strokes, output_place, output_slope
-from tmm_cli.mechanics.numerics.roots import SIDE, peak
-from tmm_cli.mechanics.numerics.tolerances import END_OF_SLOT
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.cycle import turns_of_cycle
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.batch import (
+    CHECKS,
+    SURE,
+    Make,
+    NoTapeError,
+    Program,
+    TracedNumber,
+    Variant,
+    each,
+    record,
+    solved,
+    stands,
+    stood_for,
+)
+from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.groups import Closed, link_states
+from tmm_cli.mechanics.kinematics import Motion, Stroke, Strokes, angle, followers, output_place, output_slope
+from tmm_cli.mechanics.numerics import END_OF_SLOT, SIDE, Real, peak
+from tmm_cli.mechanics.structure import output_link, turns_of_cycle
 
 WINDOW, SHARE = 17, 30  # places about a peak, and how many steps of them are one of the scan
 SHIFTS = 12  # of a window whose largest value lies at its edge

@@ -12,11 +12,21 @@ from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, KINDS, LENGTH, NUMBER, SPEED, Dimension
-from tmm_cli.problem.errors import Path, ProblemError, Tree
-from tmm_cli.problem.schema_parts import VALUE, FileHead, Name, Strict, Value, checked_value
-from tmm_cli.problem.shape_errors import shape_error
-from tmm_cli.problem.units import PhysicalValue, UnitSystem
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    VALUE,
+    FileHead,
+    Name,
+    Path,
+    PhysicalValue,
+    ProblemError,
+    Strict,
+    Tree,
+    UnitSystem,
+    Value,
+    ValueReader,
+    checked_value,
+    shape_error,
+)
 from tmm_cli.synthesis.record import SMALLEST, Kind
 from tmm_cli.synthesis.tasks import TASKS, block
 

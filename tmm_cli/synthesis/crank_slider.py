@@ -9,9 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.problem.schema_parts import Value as FileValue
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.mechanics.numerics import find_roots
+from tmm_cli.problem import Value as FileValue, ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
 from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box, circle
 from tmm_cli.synthesis.measures import crank_turns, k_of, mean_speed, pressure, ratio, stroke, theta_of

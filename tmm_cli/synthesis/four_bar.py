@@ -15,11 +15,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
+from tmm_cli.mechanics.numerics import SAME_RATIO
 
 # In the order frame, input, coupler, output: by the shortest link, the longest, the shortest again.
 FOUR_BAR_TYPES: Final = (

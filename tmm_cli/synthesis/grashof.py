@@ -9,10 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import Value as FileValue
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.mechanics.numerics import SAME_RATIO
+from tmm_cli.problem import ProblemError, Value as FileValue, ValueReader
 from tmm_cli.synthesis.blocks import UNDETERMINED, Block, numbers
 from tmm_cli.synthesis.four_bar import CHANGE, FOUR_BAR_TYPES, FourBar, turning
 from tmm_cli.synthesis.measures import crank_turns

@@ -15,14 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.kinematics.driver_range import DriverRange
-from tmm_cli.mechanics.kinematics.pressure import find_pressure
-from tmm_cli.mechanics.kinematics.strokes import find_travel, output_slope
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.kinematics import DriverRange, find_pressure, find_travel, output_slope
 from tmm_cli.mechanics.linkage import FRAME, Output
-from tmm_cli.mechanics.numerics.roots import bisect
-from tmm_cli.mechanics.numerics.tolerances import MET, NO_DEMAND, SURE_SIGN
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import MET, NO_DEMAND, SURE_SIGN, Real, bisect
 from tmm_cli.synthesis.record import Demand, Outcome
 
 

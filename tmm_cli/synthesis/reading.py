@@ -13,16 +13,34 @@ import numpy as np
 from pydantic import BaseModel
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.mechanics.numerics.roots import bisect
+from tmm_cli.mechanics.numerics import bisect
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, NUMBER, Dimension
-from tmm_cli.problem import schema
-from tmm_cli.problem.arithmetic import Parser, check_parameter
-from tmm_cli.problem.build import build_problem as build_linkage
-from tmm_cli.problem.build import build_shape, checked_shape, parameters, unit_system, validated
-from tmm_cli.problem.errors import Path, ProblemError, Tree, path_text, placed_in, quote, under, unknown_name
-from tmm_cli.problem.record import Problem, Synthesised, TaskProblem
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, plain_text
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    Parser,
+    Path,
+    PhysicalValue,
+    Problem,
+    ProblemError,
+    Synthesised,
+    TaskProblem,
+    Tree,
+    UnitSystem,
+    ValueReader,
+    build_problem as build_linkage,
+    build_shape,
+    check_parameter,
+    checked_shape,
+    parameters,
+    path_text,
+    placed_in,
+    plain_text,
+    quote,
+    schema,
+    under,
+    unit_system,
+    unknown_name,
+    validated,
+)
 from tmm_cli.synthesis.blocks import Bounded, OfTheFile, SynthesisFile, checked
 from tmm_cli.synthesis.record import Infeasible, Outcome, sound
 from tmm_cli.synthesis.tasks import block, solver

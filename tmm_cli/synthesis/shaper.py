@@ -9,15 +9,13 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.tolerances import DEAD_SWING
-from tmm_cli.problem.schema_parts import Value as FileValue
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.mechanics.numerics import DEAD_SWING
+from tmm_cli.problem import Value as FileValue, ValueReader
 from tmm_cli.synthesis.blocks import Block, numbers, one_of
 from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
 from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke, theta_of
 from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
-from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, lever_parts
-from tmm_cli.synthesis.slotted_lever import Found as Lever
+from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, Found as Lever, lever_parts
 
 
 def construction(f: Found) -> Construction:
@@ -80,7 +78,7 @@ RODS: Final = ("DE", "rod_ratio", "pressure")
 
 
 @dataclass(frozen=True)
-class Task:
+class ShaperTask:
     """Stroke, k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio or the pressure angle (m, rad)."""
 
     stroke: Any
@@ -106,7 +104,7 @@ class Found:
     pressure: Any
 
 
-def find(task: Task) -> Found:
+def find(task: ShaperTask) -> Found:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
@@ -124,7 +122,7 @@ def find(task: Task) -> Found:
     return Found(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
 
 
-def refuse(task: Task) -> None:
+def refuse(task: ShaperTask) -> None:
     """Raises Infeasible with the reason."""
     if not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
@@ -140,11 +138,11 @@ def refuse(task: Task) -> None:
         raise Infeasible(_given_of(task, RODS), reason)
 
 
-def _given_of(task: Task, keys: tuple[str, ...]) -> str:
+def _given_of(task: ShaperTask, keys: tuple[str, ...]) -> str:
     return next(key for key in keys if getattr(task, key) is not None)
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: ShaperTask) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
     f = find(task)
@@ -191,8 +189,8 @@ class Shape(Block):
     )
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> ShaperTask:
     """The task in SI. Raises ProblemError."""
     for ways in (FRAMES, RODS):
         one_of(shape, [(key,) for key in ways])
-    return Task(**numbers(shape, values, QUANTITIES))
+    return ShaperTask(**numbers(shape, values, QUANTITIES))

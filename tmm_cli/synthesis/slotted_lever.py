@@ -10,13 +10,9 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.tolerances import DEAD_SWING
-from tmm_cli.mechanics.numerics.vectors import settled, unit
+from tmm_cli.mechanics.numerics import DEAD_SWING, settled, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import Value as FileValue
-from tmm_cli.problem.schema_parts import Vector
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import ProblemError, Value as FileValue, ValueReader, Vector
 from tmm_cli.synthesis.blocks import Block, Range, numbers, one_of
 from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box, circle
 from tmm_cli.synthesis.measures import crank_turns, end_angle, k_of, ratio, stroke, theta_of
@@ -79,7 +75,7 @@ def construction(f: Found) -> Construction:
     )
 
 
-def family(task: Task, f: Found) -> tuple[Diagram, Listing]:
+def family(task: SlottedLeverTask, f: Found) -> tuple[Diagram, Listing]:
     """OA and the stone's distances from C over the free distance OC within its bounds, drawn and in numbers."""
     assert task.within is not None
     low, high = (float(x) for x in task.within)
@@ -127,7 +123,7 @@ HALF_A_TURN: Final = N_("the lever of a crank that turns fully swings by less th
 
 
 @dataclass(frozen=True)
-class Task:
+class SlottedLeverTask:
     """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
 
     k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
@@ -168,7 +164,7 @@ class Found:
     longest: Any
 
 
-def find(task: Task) -> Found:
+def find(task: SlottedLeverTask) -> Found:
     """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = task.theta
     sine = np.sin(theta / 2)
@@ -196,7 +192,7 @@ def find(task: Task) -> Found:
     return Found(frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest)
 
 
-def refuse(task: Task) -> None:
+def refuse(task: SlottedLeverTask) -> None:
     """Raises Infeasible with the reason."""
     if task.k is not None and not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
@@ -212,7 +208,7 @@ def refuse(task: Task) -> None:
         raise Infeasible(("within", 0), _("within these bounds the stone always passes B"))
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: SlottedLeverTask) -> Outcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
     f = find(task)
@@ -235,7 +231,7 @@ def solve(task: Task) -> Outcome:
     return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
 
 
-def _given(task: Task) -> tuple[Value, ...]:
+def _given(task: SlottedLeverTask) -> tuple[Value, ...]:
     values: list[Value] = []
     if task.CB is None:
         for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
@@ -251,7 +247,7 @@ def _given(task: Task) -> tuple[Value, ...]:
     return tuple(values)
 
 
-def _found(task: Task, f: Found) -> tuple[Value, ...]:
+def _found(task: SlottedLeverTask, f: Found) -> tuple[Value, ...]:
     away = f.o - f.c
     return (
         Value("OA", f.crank, *QUANTITIES["OA"]),
@@ -312,7 +308,7 @@ class Shape(Block):
     )
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+def read(shape: Shape, values: ValueReader) -> SlottedLeverTask:
     """The task in SI. Raises ProblemError."""
     ends, *__ = (one_of(shape, sets) for sets in (ENDS, SWINGS, FRAMES))
     _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
@@ -326,7 +322,7 @@ def read(shape: Shape, values: ValueReader) -> Task:
         low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
         found["within"] = (low, high)
     choose = "shortest" if shape.choose == "shortest" else "force"
-    return Task(**found, side=1 if shape.C == "left" else -1, choose=choose)
+    return SlottedLeverTask(**found, side=1 if shape.C == "left" else -1, choose=choose)
 
 
 def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:

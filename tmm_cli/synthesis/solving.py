@@ -10,18 +10,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from tmm_cli.mechanics.analysis import pipeline
-from tmm_cli.mechanics.analysis.mechanism import Inputs, redriven
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Inputs, Results, pipeline, redriven
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.structure.spatial import ChainResults, examine
-from tmm_cli.problem.build import problem_of, refuse_law
-from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.record import ChainProblem, Problem, TaskProblem
-from tmm_cli.problem.refusals import in_words_of
+from tmm_cli.mechanics.structure import ChainResults, examine
+from tmm_cli.problem import ChainProblem, Problem, TaskProblem, in_words_of, problem_of, read_file, refuse_law
 
 if TYPE_CHECKING:
-    from tmm_cli.batch.prepare import Batch
+    from tmm_cli.batch import Batch
 
 
 def load(path: str) -> Problem | TaskProblem:
@@ -47,7 +42,7 @@ def solve(
         results = pipeline.solve(inputs_of(whole), stage, positions, of, whole)
     if not whole.request.centres or results.motion is None or of:
         return results
-    from tmm_cli.mechanics.analysis.in_detail import with_centres  # few files ask for them
+    from tmm_cli.mechanics.analysis import with_centres  # few files ask for them
 
     return with_centres(results)
 
@@ -119,7 +114,7 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
     """
-    from tmm_cli.batch.prepare import prepare_batch as every_variant  # and the tape under it
+    from tmm_cli.batch import prepare_batch as every_variant  # and the tape under it
 
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
     for one in several:

@@ -12,19 +12,14 @@ import numpy as np
 
 from tmm_cli.animation.gallery.turning import Turning, scheme, turning
 from tmm_cli.language import N_, _, signed, typeset
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel, output_run
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.kinematics import Strokes, Travel, output_run
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
-from tmm_cli.mechanics.structure.spatial import ChainResults
-from tmm_cli.problem.blocks.chain import build_chain
-from tmm_cli.problem.build import is_chain, problem_of
-from tmm_cli.problem.errors import Tree
-from tmm_cli.problem.reader import read_file
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.properties import MET, properties_shown
-from tmm_cli.reports.table import with_unit
-from tmm_cli.synthesis.solving import count, solve
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.problem import Tree, UnitSystem, build_chain, is_chain, problem_of, read_file
+from tmm_cli.reports import MET, properties_shown, with_unit
+from tmm_cli.synthesis import count, solve
 
 QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
 STILL, DWELL = 0.01, 60  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25

@@ -14,9 +14,9 @@ from typing import Any
 from tmm_cli.animation.gallery.card import PURPOSES, Card
 from tmm_cli.animation.gallery.turning import PLACE, TURN
 from tmm_cli.animation.page import data_text, filled
-from tmm_cli.drawing.formats.svg import NOT_XML
+from tmm_cli.drawing.formats import NOT_XML
 from tmm_cli.language import LANGUAGES, _, translated
-from tmm_cli.mechanics.structure.group import ROMAN
+from tmm_cli.mechanics.structure import ROMAN
 
 
 def gallery_page(cards: Sequence[Card]) -> str:

@@ -12,15 +12,13 @@ import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture
 from tmm_cli.animation.content import SECONDS, picture_of, view
-from tmm_cli.drawing.formats.svg import element
-from tmm_cli.drawing.paper.record import Area, Circle, Line, Mark, Text
-from tmm_cli.drawing.paper.sheet import GREY_TEXT
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.drawing.formats import element
+from tmm_cli.drawing.paper import DARK, GREY_TEXT, Area, Circle, Line, Mark, Text
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.spatial import SpatialChain
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.structure import SpatialChain
 
 FRAMES = 48  # a turn
 MOST_FRAMES = 240  # of mechanisms that repeat after many turns

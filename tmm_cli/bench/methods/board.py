@@ -15,10 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.mechanics.forces.plan import Reactions, react
-from tmm_cli.mechanics.groups.base import Wrapped
-from tmm_cli.mechanics.groups.sequence import driven_state, drives_at, frame_state
-from tmm_cli.mechanics.groups.state import (
+from tmm_cli.mechanics.forces import Reactions, react
+from tmm_cli.mechanics.groups import (
     Accel,
     Accels,
     GroupReactions,
@@ -28,14 +26,16 @@ from tmm_cli.mechanics.groups.state import (
     Poses,
     Rate,
     Rates,
+    Wrapped,
     Wrench,
+    driven_state,
+    drives_at,
+    frame_state,
 )
-from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.kinematics import Motion, move
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, unit
-from tmm_cli.mechanics.plans.forces import force_plans
-from tmm_cli.mechanics.plans.motion import acceleration_plan, velocity_plan
-from tmm_cli.mechanics.plans.record import Plan, sheet_scale
+from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
+from tmm_cli.mechanics.plans import Plan, acceleration_plan, force_plans, sheet_scale, velocity_plan
 
 
 def snapped(value: Vector, grid: Real) -> Vector:

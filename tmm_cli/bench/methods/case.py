@@ -9,17 +9,13 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.forces.loads import Applied, applied
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.groups.base import Kernel, spread
-from tmm_cli.mechanics.groups.sequence import DriverMotion, drives_at
-from tmm_cli.mechanics.groups.state import Accel, Pose, Rate, Wrench
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.strokes import Strokes
+from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.forces import Applied, Reactions, applied
+from tmm_cli.mechanics.groups import Accel, DriverMotion, Kernel, Pose, Rate, Wrench, drives_at, spread
+from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross
-from tmm_cli.mechanics.structure.assur import Structure, analyse
+from tmm_cli.mechanics.numerics import Real, Vector, cross
+from tmm_cli.mechanics.structure import Structure, analyse
 
 Compared = Literal["positions", "velocities", "accelerations", "reactions", "balancing"]
 QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.mechanics.forces.plan import react
-from tmm_cli.mechanics.groups.state import Accel, Rate
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.forces import react
+from tmm_cli.mechanics.groups import Accel, Rate
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.numerics import Real
 
 
 def prepare(step: float, case: Case) -> Callable[[Real], Answers]:

@@ -14,15 +14,24 @@ from typing import Protocol
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, answers
-from tmm_cli.mechanics.groups.pairs import PAIRS
-from tmm_cli.mechanics.groups.pairs.lower import Constraint, Driven, Guided
-from tmm_cli.mechanics.groups.sequence import frame_state
-from tmm_cli.mechanics.groups.state import Accel, Drives, Pose, Poses, Rate, Rates, Wrench
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.groups import (
+    PAIRS,
+    Accel,
+    Constraint,
+    Driven,
+    Drives,
+    Guided,
+    Pose,
+    Poses,
+    Rate,
+    Rates,
+    Wrench,
+    frame_state,
+)
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.linear import solve
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, unit
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.numerics import Real, Vector, dot, solve, unit
+from tmm_cli.mechanics.structure import Pair
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,9 @@ import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, answers
 from tmm_cli.bench.methods.loops import Rows, by_links, close, follow
-from tmm_cli.mechanics.groups.sequence import drives_at, frame_state
-from tmm_cli.mechanics.groups.state import Accel, Pose, Rate
+from tmm_cli.mechanics.groups import Accel, Pose, Rate, drives_at, frame_state
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.linear import solve
-from tmm_cli.mechanics.numerics.vectors import Real, unit
+from tmm_cli.mechanics.numerics import Real, solve, unit
 
 TOLERANCE = 0.0  # until gaps are rounding
 

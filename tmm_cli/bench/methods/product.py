@@ -11,17 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.prepare import Batch
-from tmm_cli.batch.prepare import prepare_batch as batch_of
+from tmm_cli.batch import Batch, prepare_batch as batch_of
 from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
-from tmm_cli.mechanics.accuracy.lengths import widened
-from tmm_cli.mechanics.forces.plan import Reactions, react
-from tmm_cli.mechanics.groups.base import Kernel, Wrapped
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.kinematics.motion import Motion, move
-from tmm_cli.mechanics.numerics.double_double import DoubleDouble, exactly
-from tmm_cli.mechanics.numerics.vectors import Real, mapped
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.accuracy import widened
+from tmm_cli.mechanics.forces import Reactions, react
+from tmm_cli.mechanics.groups import Kernel, Newton, Wrapped
+from tmm_cli.mechanics.kinematics import Motion, move
+from tmm_cli.mechanics.numerics import DoubleDouble, Real, exactly, mapped
+from tmm_cli.mechanics.structure import Group, Pair
 
 
 def recast(value: Any, real: type) -> Any:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from tmm_cli.bench.methods import board, differences, loops, multibody
-from tmm_cli.bench.methods import product as precision
-from tmm_cli.bench.methods import product as taped
+from tmm_cli.bench.methods import board, differences, loops, multibody, product as precision, product as taped
 from tmm_cli.bench.methods.case import Answers, Case, Method
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 
 def family(

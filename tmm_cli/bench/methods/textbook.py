@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, Unable
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, cross, dot, unit
+from tmm_cli.mechanics.numerics import Real, cross, dot, unit
 
 Angles = Callable[[Real, int], tuple[Real, Real]]
 

@@ -12,9 +12,9 @@ import kinepy
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, unit
+from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 STEP = 2 * np.pi / 360  # rad: places are at most so far apart, since differences over time are taken between them
 SAME = 1e-6  # of the linkage's size

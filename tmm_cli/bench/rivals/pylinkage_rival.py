@@ -13,10 +13,10 @@ from pylinkage.simulation import Linkage
 from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
-from tmm_cli.mechanics.kinematics.motion import move
+from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import Real, unit
+from tmm_cli.mechanics.structure import Group, Pair
 
 
 def prepare(case: Case) -> Callable[[Real], Answers]:

@@ -6,9 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.accuracy import measure_accuracy
-from tmm_cli.bench.chart_accuracy import accuracy_charts
-from tmm_cli.bench.references import REFERENCE_NAMES
+from tmm_cli.bench import REFERENCE_NAMES, accuracy_charts, measure_accuracy
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

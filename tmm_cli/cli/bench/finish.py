@@ -11,14 +11,11 @@ from typing import Annotated, NoReturn, TypeVar
 import typer
 from matplotlib.figure import Figure
 
-from tmm_cli.bench.chart_axes import png
-from tmm_cli.bench.measured import Measured
+from tmm_cli.bench import Measured, png
 from tmm_cli.cli.common import console, emit_json
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.reports.files import write_whole
-from tmm_cli.reports.table import csv_text, json_bytes
-from tmm_cli.reports.terminal import show
+from tmm_cli.problem import UnitSystem
+from tmm_cli.reports import csv_text, json_bytes, show, write_whole
 
 Charts = Mapping[str, Figure]  # by the names of their files
 M = TypeVar("M", bound=Measured)

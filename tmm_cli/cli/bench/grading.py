@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.grading import measure_grading
+from tmm_cli.bench import measure_grading
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

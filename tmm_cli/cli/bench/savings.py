@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.bench.chart_savings import savings_charts
-from tmm_cli.bench.savings import measure_savings
+from tmm_cli.bench import measure_savings, savings_charts
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.bench.chart_speed import speed_charts
-from tmm_cli.bench.speed import measure_speed
+from tmm_cli.bench import measure_speed, speed_charts
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

@@ -6,9 +6,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.bench.chart_stability import stability_charts
-from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.bench.stability import measure_stability
+from tmm_cli.bench import BY_NAME, measure_stability, stability_charts
 from tmm_cli.cli.bench.finish import Out, Reduced, chosen, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

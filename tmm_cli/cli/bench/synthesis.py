@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.bench.chart_searches import search_charts
-from tmm_cli.bench.searches import measure_searches
+from tmm_cli.bench import measure_searches, search_charts
 from tmm_cli.cli.bench.finish import Out, Reduced, finish
 from tmm_cli.cli.common import Json
 from tmm_cli.cli.talk import say

@@ -6,7 +6,7 @@ import io
 import re
 from typing import TYPE_CHECKING, get_args
 
-from tmm_cli.drawing.paper.record import DASHES, Area, Circle, Drawing, Layer, Line, Style, Text
+from tmm_cli.drawing.paper import DASHES, Area, Circle, Drawing, Layer, Line, Style, Text
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace

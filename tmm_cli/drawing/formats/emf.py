@@ -15,9 +15,8 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import foot, glyph_outline
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.drawing.paper import Area, Circle, Drawing, Line, Mark, Text, foot, glyph_outline
+from tmm_cli.mechanics.numerics import Vector
 
 UNIT = 100  # a millimetre
 DEVICE = 30000  # of pixels, over DEVICE / UNIT millimetres

@@ -12,8 +12,20 @@ from pathlib import Path
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from tmm_cli.drawing.paper.fonts import advance, drawable, font, font_file, foot
-from tmm_cli.drawing.paper.record import POINT, Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.drawing.paper import (
+    POINT,
+    Area,
+    Circle,
+    Drawing,
+    Line,
+    Mark,
+    Text,
+    advance,
+    drawable,
+    font,
+    font_file,
+    foot,
+)
 
 AS_THEY_ARE = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
 WORDS, SCALED, MORE, TWO_SCALES, TWO_BY_TWO = 0x01, 0x08, 0x20, 0x40, 0x80  # of a part of a composite letter

@@ -17,8 +17,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import foot, glyph_outline
-from tmm_cli.drawing.paper.record import POINT, Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.drawing.paper import POINT, Area, Circle, Drawing, Line, Mark, Text, foot, glyph_outline
 
 DPI = 110
 PACKED = 3  # of 9: drawings get hardly smaller beyond

@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterable
 from html import escape
 
-from tmm_cli.drawing.paper.fonts import FAMILY, HALF
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.drawing.paper import FAMILY, HALF, Area, Circle, Drawing, Line, Mark, Text
 
 ANCHOR = {"left": "start", "center": "middle", "right": "end"}
 SPACES = re.compile(r"^ +| +$| {2,}")  # that a browser would leave out, though what follows is placed after them

@@ -8,21 +8,26 @@ from typing import Any, Literal
 
 from tmm_cli.drawing.formats import Drawn
 from tmm_cli.drawing.layout.values import balance_table, forces_table, law_tables, motion_tables, structure_tables
-from tmm_cli.drawing.sheets.centres import draw_centres as centres
-from tmm_cli.drawing.sheets.diagrams import draw_diagrams
-from tmm_cli.drawing.sheets.force_plans import forces
-from tmm_cli.drawing.sheets.group_loads import draw_group_loads
-from tmm_cli.drawing.sheets.hodographs import balancing
-from tmm_cli.drawing.sheets.law_of_motion import draw_law_of_motion
-from tmm_cli.drawing.sheets.lever import draw_lever
-from tmm_cli.drawing.sheets.mechanism import Position, detailed, position
-from tmm_cli.drawing.sheets.motion_plans import draw_motion_plans
-from tmm_cli.drawing.sheets.positions import all_positions
-from tmm_cli.drawing.sheets.single_run import draw_single_run
-from tmm_cli.drawing.sheets.structure import all_groups, whole_scheme
-from tmm_cli.drawing.sheets.synthesis import synthesised
+from tmm_cli.drawing.sheets import (
+    Position,
+    all_groups,
+    all_positions,
+    balancing,
+    detailed,
+    draw_centres as centres,
+    draw_diagrams,
+    draw_group_loads,
+    draw_law_of_motion,
+    draw_lever,
+    draw_motion_plans,
+    draw_single_run,
+    forces,
+    position,
+    synthesised,
+    whole_scheme,
+)
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 
 SUBJECTS = (
     ("structure", N_("Structure")),

@@ -10,8 +10,8 @@ from tmm_cli.drawing.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
 from tmm_cli.drawing.layout.contents import chosen
 from tmm_cli.drawing.layout.large import large_sheets
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.problem.errors import ProblemError, chosen_names
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.problem import ProblemError, chosen_names
 
 MOST = 24  # positions of which plans are drawn
 

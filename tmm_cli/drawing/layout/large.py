@@ -31,10 +31,9 @@ from tmm_cli.drawing.layout.pieces import (
     spaced,
     tidier,
 )
-from tmm_cli.drawing.paper.picture import LEAST_PAPER, Picture, Space, within
-from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper import LEAST_PAPER, Drawing, Picture, Space, within
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.problem import ProblemError
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 EDGE = 6.0  # mm between the frame and what is drawn

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from itertools import combinations, islice
 from random import Random
 
-from tmm_cli.drawing.paper.record import Line, Mark
-from tmm_cli.drawing.paper.writing import DARK, written
+from tmm_cli.drawing.paper import DARK, Line, Mark, written
 from tmm_cli.language import _
-from tmm_cli.problem.schema import SheetTexts
+from tmm_cli.problem import SheetTexts
 
 Size = tuple[float, float]
 Step = tuple[float, float, float]  # of a skyline: from, to, down to

@@ -9,10 +9,10 @@ from functools import cache
 from itertools import combinations, islice, pairwise, product
 
 from tmm_cli.drawing.layout.packing import Field, Size, pack
-from tmm_cli.drawing.paper.picture import Picture
+from tmm_cli.drawing.paper import Picture
 from tmm_cli.language import _
-from tmm_cli.mechanics.plans.record import round_scale
-from tmm_cli.problem.errors import ProblemError
+from tmm_cli.mechanics.plans import round_scale
+from tmm_cli.problem import ProblemError
 
 GAP = 7.0  # mm between two drawings
 LEAST = 0.6  # of its usual size: what would be smaller comes on a further sheet

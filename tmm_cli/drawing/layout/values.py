@@ -10,15 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.picture import Picture, longest_for, render_picture
-from tmm_cli.drawing.paper.record import Drawing, Line, Mark, Text
-from tmm_cli.drawing.paper.script import Words, pieces, script_width
-from tmm_cli.drawing.paper.writing import DARK, cut
-from tmm_cli.drawing.sheets.mechanism import Position, place_of_driver
+from tmm_cli.drawing.paper import (
+    DARK,
+    Drawing,
+    Line,
+    Mark,
+    Picture,
+    Text,
+    Words,
+    cut,
+    longest_for,
+    pieces,
+    render_picture,
+    script_width,
+)
+from tmm_cli.drawing.sheets import Position, place_of_driver
 from tmm_cli.language import _, numeral, translated
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Loaded, Symbol, balance_symbol, reaction_symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Lettered, Loaded, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -32,9 +42,8 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.problem.units import UnitSystem, on_paper
-from tmm_cli.reports.register import walk
-from tmm_cli.reports.terminal import terminal_cells
+from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.reports import terminal_cells, walk
 
 SIZE = 3.2  # mm: letters of a table as it comes
 BOLD, FINE = 0.5, 0.2  # mm: lines

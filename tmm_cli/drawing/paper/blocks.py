@@ -12,8 +12,8 @@ import numpy as np
 from tmm_cli.drawing.paper.picture import longest_for, on_large_sheet
 from tmm_cli.drawing.paper.record import POINT
 from tmm_cli.drawing.paper.script import Words, script_width
-from tmm_cli.mechanics.numerics.vectors import Vector
-from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
+from tmm_cli.mechanics.numerics import Vector
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
 
 NOTE, CELL = 9.0, 8.0  # points
 BLOCK_LINE, ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from tmm_cli.drawing.paper.fonts import width as width_of
 from tmm_cli.drawing.paper.record import POINT, Align, Style
-from tmm_cli.drawing.paper.script import Words, parts
-from tmm_cli.drawing.paper.script import script_width as width_of_words
+from tmm_cli.drawing.paper.script import Words, parts, script_width as width_of_words
 from tmm_cli.drawing.paper.sheet import THIN, Sheet
 from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import numeral

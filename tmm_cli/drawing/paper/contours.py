@@ -9,7 +9,7 @@ import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray
 
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
+from tmm_cli.mechanics.numerics import SAME_PLACES
 
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
 Share = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies

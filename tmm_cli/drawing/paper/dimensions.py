@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.drawing.paper.boxes import about, around, aside, row
-from tmm_cli.drawing.paper.labels import extent
-from tmm_cli.drawing.paper.labels import gather_labels as in_place
+from tmm_cli.drawing.paper.labels import extent, gather_labels as in_place
 from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAMES, THIN, Sheet
 from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot
+from tmm_cli.mechanics.numerics import Real, Vector, cross, dot
 
 OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
 OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points

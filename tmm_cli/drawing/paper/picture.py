@@ -14,8 +14,8 @@ import numpy as np
 from tmm_cli.drawing.paper.fonts import corners
 from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
 from tmm_cli.drawing.paper.writing import DARK, LINE, wrap
-from tmm_cli.mechanics.numerics.vectors import Vector
-from tmm_cli.mechanics.plans.record import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
+from tmm_cli.mechanics.numerics import Vector
+from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
 
 HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
 NARROW = 70.0  # mm: a heading is not broken into shorter lines

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from tmm_cli.drawing.paper import fonts
 from tmm_cli.language import signed, typeset
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 
 Words = str | Symbol | tuple[str | Symbol, ...]
 

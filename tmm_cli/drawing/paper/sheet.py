@@ -13,8 +13,7 @@ from tmm_cli.drawing.paper.blocks import Block, Room, Row, nearest_free, roomies
 from tmm_cli.drawing.paper.boxes import about, outside, row, wider
 from tmm_cli.drawing.paper.fonts import SHARE
 from tmm_cli.drawing.paper.ground import AIR, Ground
-from tmm_cli.drawing.paper.labels import Label, place
-from tmm_cli.drawing.paper.labels import extent as label_extent
+from tmm_cli.drawing.paper.labels import Label, extent as label_extent, place
 from tmm_cli.drawing.paper.picture import (
     covering,
     extremes,
@@ -27,11 +26,11 @@ from tmm_cli.drawing.paper.picture import (
 from tmm_cli.drawing.paper.record import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
 from tmm_cli.drawing.paper.writing import DARK, in_a_line
 from tmm_cli.language import numeral, spelt
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.numerics.vectors import unit
-from tmm_cli.mechanics.plans.record import MARGIN, PAD, STRIP, extent, ground_of
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.numerics import unit
+from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, extent, ground_of
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, on_paper
 
 THIN, LOAD, INERTIA, REACTION, GREY = "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
 NAMES = "#7a3d99"  # of links, lines and angles

@@ -1,1 +1,5 @@
 """The sheets, one a file; `draw/__init__.py` lists those of a run."""
+
+from tmm_cli.interfaces import lazy
+
+__getattr__, __all__ = lazy(__name__, __file__)

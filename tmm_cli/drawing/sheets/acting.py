@@ -7,14 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.drawing.paper.dimensions import beside, dimension
-from tmm_cli.drawing.paper.ground import STEP
-from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import COLOURS, Sheet
-from tmm_cli.mechanics.forces.equilibrium import MomentEquation
-from tmm_cli.mechanics.forces.free_bodies import DRIVE, Acting
-from tmm_cli.mechanics.numerics.vectors import Vector, cross, dot
+from tmm_cli.drawing.paper import COLOURS, STEP, Sheet, Style, Words, beside, dimension
+from tmm_cli.mechanics.forces import DRIVE, Acting, MomentEquation
+from tmm_cli.mechanics.numerics import Vector, cross, dot
 
 ARM = "#00757d"
 LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)

@@ -8,23 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import THIN, Sheet, cells, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, THIN, Drawing, Ground, Sheet, cells, scale_words
 from tmm_cli.drawing.sheets.structure import colours
-from tmm_cli.drawing.symbols.parts import STRUCTURAL, Look, numbers, symbol_size
-from tmm_cli.drawing.symbols.render import names, render_scene, spot
-from tmm_cli.drawing.symbols.scene import Scene
+from tmm_cli.drawing.symbols import STRUCTURAL, Look, Scene, names, numbers, render_scene, spot, symbol_size
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.assembly.enumerate import Assemblies, Assembly, GroupAssemblies, listed
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.assembly import Assemblies, Assembly, GroupAssemblies, listed
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import DEAD
-from tmm_cli.mechanics.plans.record import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Pair
-from tmm_cli.reports.quality_tables import place
+from tmm_cli.mechanics.numerics import DEAD
+from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
+from tmm_cli.mechanics.structure import Pair, Structure
+from tmm_cli.reports import place
 
 A_SHEET = 12  # assemblies on one
 PAD, GAP = 10.0, 4.0  # mm: room about a group for its symbols and names, between two cells

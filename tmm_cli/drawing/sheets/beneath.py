@@ -9,15 +9,24 @@ from functools import cached_property
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Room
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.picture import excess, fits, longest_for, on_large_sheet
-from tmm_cli.drawing.paper.record import POINT
-from tmm_cli.drawing.paper.script import Words, script_width, wrapped
-from tmm_cli.drawing.paper.sheet import GREY_TEXT, THIN, Sheet
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import (
+    DARK,
+    GREY_TEXT,
+    POINT,
+    THIN,
+    Ground,
+    Room,
+    Sheet,
+    Words,
+    excess,
+    fits,
+    longest_for,
+    on_large_sheet,
+    script_width,
+    wrapped,
+)
 from tmm_cli.drawing.sheets.mechanism import Position
-from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
 
 TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it

@@ -6,17 +6,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gather_labels
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, Sheet, border, scale_words
+from tmm_cli.drawing.paper import INERTIA, LOAD, Drawing, Sheet, border, gather_labels, scale_words
 from tmm_cli.drawing.sheets.mechanism import Position, measured
-from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.drawing.symbols import Scene, fixed_pivots, to_scale
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.kinematics.centres import Centre, Line, Links
-from tmm_cli.mechanics.numerics.vectors import dot
-from tmm_cli.reports.cycle_tables import name
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.kinematics import Centre, Line, Links
+from tmm_cli.mechanics.numerics import dot
+from tmm_cli.reports import name
 
 ROOM = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
 SPOT = 0.9  # mm: radius of a centre

@@ -8,20 +8,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.dimensions import angle_mark, dimension
-from tmm_cli.drawing.paper.labels import Label
-from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, THIN, Sheet, border, scale_words
-from tmm_cli.drawing.paper.writing import DARK
-from tmm_cli.drawing.symbols.forms import Line
-from tmm_cli.drawing.symbols.parts import MEASURED, box, guide, support, support_side
-from tmm_cli.drawing.symbols.scene import BEYOND
+from tmm_cli.drawing.paper import (
+    DARK,
+    INERTIA,
+    LOAD,
+    NAMES,
+    THIN,
+    Label,
+    Sheet,
+    Style,
+    angle_mark,
+    border,
+    dimension,
+    scale_words,
+)
+from tmm_cli.drawing.symbols import BEYOND, MEASURED, Line, box, guide, support, support_side
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import KINDS
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis.construction import LETTERS, Arc, Centre, Chain, Construction, Size, Spot
+from tmm_cli.problem import UnitSystem
+from tmm_cli.synthesis import LETTERS, Arc, Centre, Chain, Construction, Size, Spot
 
 FREE = "MNKQSTUVWXYZ"  # letters of centres of circles
 BARS = {"l1": "AB", "l2": "BC", "l3": "DC", "l4": "AD"}

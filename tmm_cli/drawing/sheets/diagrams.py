@@ -8,21 +8,40 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, Axis, Curve, Jump, Plot, across, axis_room, count_fitting, draw_chart
-from tmm_cli.drawing.paper.record import Drawing, Style
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, REACTION, THIN, Sheet, safe, scale_words, with_unit
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import (
+    DARK,
+    INERTIA,
+    LOAD,
+    NAMES,
+    REACTION,
+    THIN,
+    Across,
+    Axis,
+    Curve,
+    Drawing,
+    Jump,
+    Plot,
+    Sheet,
+    Style,
+    Words,
+    across,
+    axis_room,
+    count_fitting,
+    draw_chart,
+    safe,
+    scale_words,
+    with_unit,
+)
 from tmm_cli.drawing.sheets import over_cycle
 from tmm_cli.drawing.sheets.over_cycle import Quantities
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics import quantities
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
-from tmm_cli.mechanics.forces.jumps import table_jumps
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.plans.record import LANDSCAPE, PORTRAIT
-from tmm_cli.mechanics.structure.cycle import DENSE
-from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.forces import table_jumps
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
+from tmm_cli.mechanics.structure import DENSE
+from tmm_cli.problem import UnitSystem, on_paper
 
 MOST_POINTS = 1440  # of a curve over a cycle
 MARKS = 90  # computed positions that are marked on a curve; more of them would hide it

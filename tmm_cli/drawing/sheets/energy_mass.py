@@ -8,35 +8,40 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import (
+from tmm_cli.drawing.paper import (
+    DARK,
+    INERTIA,
+    LOAD,
+    NAMES,
     PLAIN,
     ROW,
+    THIN,
     TICKS,
     Across,
     Curve,
+    Drawing,
+    Ground,
     Panel,
     Plot,
+    Sheet,
+    Words,
     across,
     axis_room,
     draw_chart,
     round_up,
+    scale_words,
+    with_unit,
 )
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, NAMES, THIN, Sheet, scale_words, with_unit
-from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.language import _, numeral, spelt, symbol
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Lettered, Symbol
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import INERTIA as MOMENT_OF_INERTIA
-from tmm_cli.problem.units import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, on_paper
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.flywheel import Tangent
-    from tmm_cli.mechanics.dynamics.steady import Running, Steady
+    from tmm_cli.mechanics.dynamics import Running, Steady, Tangent
 
 
 FAR = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet

@@ -6,20 +6,30 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import NOTE, Block, Figure, Row, choose_scale
-from tmm_cli.drawing.paper.labels import gather_labels
-from tmm_cli.drawing.paper.picture import written_here
-from tmm_cli.drawing.paper.record import POINT, Drawing
-from tmm_cli.drawing.paper.script import Words, wrapped
-from tmm_cli.drawing.paper.sheet import COLOURS, THIN, Sheet, safe, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import (
+    COLOURS,
+    DARK,
+    NOTE,
+    POINT,
+    THIN,
+    Block,
+    Drawing,
+    Figure,
+    Row,
+    Sheet,
+    Words,
+    choose_scale,
+    gather_labels,
+    safe,
+    scale_words,
+    wrapped,
+    written_here,
+)
 from tmm_cli.drawing.sheets.group_loads import figure
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
-from tmm_cli.mechanics.numerics.vectors import cross, dot
-from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
-from tmm_cli.mechanics.plans.record import NamedVector, extent
+from tmm_cli.mechanics.numerics import NO_FORCE, cross, dot
+from tmm_cli.mechanics.plans import ForcePlan, NamedVector, extent, force_plans
 
 ABOUT, LANE = 9.0, 5.0  # mm about the lines of a plan, for letters; between vectors that would lie on one another
 SEEN = 4.0  # mm: a shorter vector has no name beside it, only in the table

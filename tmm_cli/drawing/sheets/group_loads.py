@@ -7,21 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.picture import written_here
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import REACTION, Sheet, safe, scale_words
+from tmm_cli.drawing.paper import REACTION, Drawing, Sheet, Words, safe, scale_words, written_here
 from tmm_cli.drawing.sheets.acting import Forces, arms, extent
 from tmm_cli.drawing.sheets.beneath import Beneath, Table, above
 from tmm_cli.drawing.sheets.mechanism import Position, measured
-from tmm_cli.drawing.symbols.scene import Scene
+from tmm_cli.drawing.symbols import Scene
 from tmm_cli.language import _, filled, half_up, numeral, spelt
-from tmm_cli.mechanics.forces.equilibrium import ForceSum, LoadedPart, MomentEquation, Part, Term, loaded_parts
-from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_MOMENT, SAME_PLACES
-from tmm_cli.mechanics.plans.record import extent as extent_of
+from tmm_cli.mechanics.forces import Acting, ForceSum, LoadedPart, MomentEquation, Part, Symbol, Term, loaded_parts
+from tmm_cli.mechanics.numerics import NO_MOMENT, SAME_PLACES
+from tmm_cli.mechanics.plans import extent as extent_of
 from tmm_cli.mechanics.quantities import LENGTH
-from tmm_cli.problem.units import UnitSystem
+from tmm_cli.problem import UnitSystem
 
 INDENT = "    "
 PLAIN = 1e-6  # a smaller number is written with a power of ten

@@ -10,13 +10,11 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import GREY_TEXT, Sheet, cells
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, GREY_TEXT, Drawing, Sheet, cells
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import unit
-from tmm_cli.mechanics.plans.record import LANDSCAPE
-from tmm_cli.mechanics.structure.group import ROMAN
+from tmm_cli.mechanics.numerics import unit
+from tmm_cli.mechanics.plans import LANDSCAPE
+from tmm_cli.mechanics.structure import ROMAN
 
 COLUMNS, ROWS, GAP = 4, 3, 4.0  # cells of the sheet; mm between them
 CAPTION, LEAD, RADIUS, STONE = 11.0, 6.5, 1.1, (5.6, 3.0)  # mm: height of words below, lead, hinge, stone

@@ -7,19 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper.record import Drawing, Style
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import LOAD, REACTION, THIN, Sheet, safe, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, LOAD, REACTION, THIN, Drawing, Sheet, Style, Words, safe, scale_words
 from tmm_cli.drawing.sheets.diagrams import closely, over_turn
 from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
-from tmm_cli.mechanics.forces.free_bodies import reaction_symbol
-from tmm_cli.mechanics.forces.plan import Reaction
+from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.forces import Reaction, reaction_symbol
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE, SAME_PLACE
-from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.numerics import NO_FORCE, SAME_PLACE, Vector
 from tmm_cli.mechanics.quantities import FORCE
 
 BEYOND = 8.0  # mm of the axes beyond the curves

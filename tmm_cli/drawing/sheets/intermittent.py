@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, across, axis_room, draw_chart
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import Sheet, safe, scale_words, with_unit
+from tmm_cli.drawing.paper import Across, Drawing, Sheet, across, axis_room, draw_chart, safe, scale_words, with_unit
 from tmm_cli.drawing.sheets.diagrams import plotted
 from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import Intermittent
+    from tmm_cli.mechanics.analysis import Intermittent
 
 
 def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:

@@ -11,19 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.paper import Drawing
 from tmm_cli.drawing.sheets.diagrams import BESIDE, over_turn
 from tmm_cli.drawing.sheets.energy_mass import energy_mass
 from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.energy import inertias, reduced_moment
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.forces import applied, inertias, reduced_moment
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, MOMENT, NUMBER
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.steady import Running
+    from tmm_cli.mechanics.dynamics import Running
 
 
 FINEST = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page

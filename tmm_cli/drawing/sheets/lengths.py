@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Row
-from tmm_cli.drawing.paper.script import Words
+from tmm_cli.drawing.paper import Row, Words
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.groups.pairs.lower import axis
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.groups import axis
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
-from tmm_cli.mechanics.numerics.vectors import cross, unit
+from tmm_cli.mechanics.numerics import SAME_PLACES, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, Dimension
 
 Size = tuple[Words, str, float, Dimension]

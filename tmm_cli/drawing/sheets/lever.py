@@ -7,21 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gather_labels
-from tmm_cli.drawing.paper.picture import written_here
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import THIN, Sheet, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, THIN, Drawing, Sheet, Words, gather_labels, scale_words, written_here
 from tmm_cli.drawing.sheets.acting import Forces, arms, extent
 from tmm_cli.drawing.sheets.beneath import Beneath, above
 from tmm_cli.drawing.sheets.group_loads import figure, table_of_arms, table_of_forces, written
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, filled, numeral, spelt
-from tmm_cli.mechanics.forces.free_bodies import Acting, Symbol, balance_symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE
-from tmm_cli.mechanics.plans.lever import LEVER_POLE, LeverPlan, Pair, lever_plan
-from tmm_cli.mechanics.plans.record import in_letters
+from tmm_cli.mechanics.forces import Acting, Symbol, balance_symbol
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE
+from tmm_cli.mechanics.plans import LEVER_POLE, LeverPlan, Pair, in_letters, lever_plan
 
 MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
 

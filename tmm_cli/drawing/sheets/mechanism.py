@@ -7,25 +7,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, Room, choose_scale
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import GREY, NAMES, THIN, Sheet, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import (
+    DARK,
+    GREY,
+    NAMES,
+    THIN,
+    Block,
+    Drawing,
+    Figure,
+    Room,
+    Sheet,
+    choose_scale,
+    scale_words,
+)
 from tmm_cli.drawing.sheets.acting import LOAD_MM, Forces
-from tmm_cli.drawing.symbols.forms import by_points
-from tmm_cli.drawing.symbols.parts import MEASURED, mass_centre
-from tmm_cli.drawing.symbols.render import Rendered, render_scene, slider
-from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
-from tmm_cli.drawing.symbols.wheel_symbols import draw as draw_wheels
+from tmm_cli.drawing.symbols import (
+    MEASURED,
+    Rendered,
+    Scene,
+    by_points,
+    draw as draw_wheels,
+    fixed_pivots,
+    mass_centre,
+    render_scene,
+    slider,
+    to_scale,
+)
 from tmm_cli.language import _, numeral, typeset
-from tmm_cli.mechanics.analysis.in_detail import detailed_positions
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.free_bodies import Loaded
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.vectors import Vector, dot
-from tmm_cli.mechanics.plans.motion import massive
+from tmm_cli.mechanics.analysis import Results, at_positions, detailed_positions
+from tmm_cli.mechanics.forces import Loaded
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Vector, dot
+from tmm_cli.mechanics.plans import massive
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.mechanics.structure.cycle import DENSE
+from tmm_cli.mechanics.structure import DENSE
 
 ABOUT = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 ONE_LINE = 0.1  # mm between lines that look like one

@@ -6,17 +6,22 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, Row, choose_scale
-from tmm_cli.drawing.paper.boxes import aside
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import COLOURS, THIN, scale_words
+from tmm_cli.drawing.paper import COLOURS, THIN, Block, Drawing, Figure, Row, aside, choose_scale, scale_words
 from tmm_cli.drawing.sheets.group_loads import figure
 from tmm_cli.drawing.sheets.lever import letter_points
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, numeral, spelt
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.plans.motion import ACCELERATION_POLE, acceleration_plan, readings, turns, velocity_plan
-from tmm_cli.mechanics.plans.record import NamedVector, Plan, in_letters
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.plans import (
+    ACCELERATION_POLE,
+    NamedVector,
+    Plan,
+    acceleration_plan,
+    in_letters,
+    readings,
+    turns,
+    velocity_plan,
+)
 
 ABOUT = 9.0  # mm about the lines of a plan, for letters
 APART = 1.5  # mm: a corner that is nearer to a lettered end is lettered with it

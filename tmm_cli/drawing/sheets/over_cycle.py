@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import _, translated
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.free_bodies import balance_symbol, reaction_symbol
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.pressure import angle, followers, named
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import balance_symbol, reaction_symbol
+from tmm_cli.mechanics.kinematics import Motion, angle, followers, named
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
+from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -26,7 +25,7 @@ from tmm_cli.mechanics.quantities import (
     NUMBER,
     Dimension,
 )
-from tmm_cli.reports.cycle_tables import output_motion
+from tmm_cli.reports import output_motion
 
 MOST = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
 

@@ -9,36 +9,38 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import Block, Figure, choose_scale
-from tmm_cli.drawing.paper.dimensions import (
+from tmm_cli.drawing.paper import (
+    DARK,
+    GREY_TEXT,
+    LOAD,
+    Block,
+    Drawing,
+    Figure,
     Number,
     Ruler,
+    Sheet,
     angle_mark,
+    choose_scale,
     dimension,
     draw_ruler,
+    gather_labels as in_place,
     gather_numbers,
     roomiest,
     ruler_of,
     ruler_reach,
+    scale_words,
 )
-from tmm_cli.drawing.paper.labels import gather_labels as in_place
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import GREY_TEXT, LOAD, Sheet, scale_words
-from tmm_cli.drawing.paper.writing import DARK
 from tmm_cli.drawing.sheets.lengths import lengths
 from tmm_cli.drawing.sheets.mechanism import detailed, measured, paths, skeleton, trace
-from tmm_cli.drawing.symbols.parts import MEASURED
-from tmm_cli.drawing.symbols.render import arrows
-from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.drawing.symbols import MEASURED, Scene, arrows, fixed_pivots, to_scale
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.free_bodies import subscript
-from tmm_cli.mechanics.groups.sequence import LinkStates
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.forces import subscript
+from tmm_cli.mechanics.groups import LinkStates
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
-from tmm_cli.mechanics.numerics.vectors import Vector, unit
-from tmm_cli.mechanics.plans.record import sheet_scale
+from tmm_cli.mechanics.numerics import SAME_PLACE, Vector, unit
+from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 
 

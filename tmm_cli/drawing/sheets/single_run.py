@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, across, axis_room, draw_chart
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import Sheet, scale_words, with_unit
+from tmm_cli.drawing.paper import Across, Drawing, Sheet, across, axis_room, draw_chart, scale_words, with_unit
 from tmm_cli.drawing.sheets.diagrams import plotted
 from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.plans.record import PORTRAIT
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import PORTRAIT
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
@@ -28,7 +26,7 @@ from tmm_cli.mechanics.quantities import (
 )
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics.single_run import SingleRun
+    from tmm_cli.mechanics.dynamics import SingleRun
 
 
 PLACES = 480  # of all pieces of a run together

@@ -10,28 +10,38 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper.blocks import snug
-from tmm_cli.drawing.paper.ground import Ground
-from tmm_cli.drawing.paper.labels import extent
-from tmm_cli.drawing.paper.picture import on_large_sheet
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import THIN, Sheet, cells, safe
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, THIN, Drawing, Ground, Sheet, cells, extent, on_large_sheet, safe, snug
 from tmm_cli.drawing.sheets.mechanism import place_of_driver
-from tmm_cli.drawing.symbols.forms import Form
-from tmm_cli.drawing.symbols.parts import FREE, PALETTE, STRUCTURAL, Look, box, numbers, quiet, rails, symbol_size
-from tmm_cli.drawing.symbols.render import arrows, names, render_scene, spot
-from tmm_cli.drawing.symbols.scene import BEYOND, Scene, fitted, scale_to
-from tmm_cli.drawing.symbols.wheel_symbols import draw
-from tmm_cli.drawing.symbols.wheels import outline, replacement
+from tmm_cli.drawing.symbols import (
+    BEYOND,
+    FREE,
+    PALETTE,
+    STRUCTURAL,
+    Form,
+    Look,
+    Scene,
+    arrows,
+    box,
+    draw,
+    fitted,
+    names,
+    numbers,
+    outline,
+    quiet,
+    rails,
+    render_scene,
+    replacement,
+    scale_to,
+    spot,
+    symbol_size,
+)
 from tmm_cli.language import _, printed, typeset
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real, dot
-from tmm_cli.mechanics.plans.record import LANDSCAPE, MARGIN, PORTRAIT, ground_of
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Group, Pair, RedundantLink
-from tmm_cli.reports.structure_tables import ROLES, counted_mobility, left_out
+from tmm_cli.mechanics.numerics import Real, dot
+from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, ground_of
+from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
+from tmm_cli.reports import ROLES, counted_mobility, left_out
 
 PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
 LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link

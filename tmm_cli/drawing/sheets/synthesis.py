@@ -8,24 +8,34 @@ from itertools import cycle
 
 import numpy as np
 
-from tmm_cli.drawing.paper.chart import Across, Curve, Plot, across, axis_room, draw_chart, filling, limits
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import INERTIA, LOAD, REACTION, THIN, Sheet, scale_words, with_unit
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import (
+    DARK,
+    INERTIA,
+    LOAD,
+    REACTION,
+    THIN,
+    Across,
+    Curve,
+    Drawing,
+    Plot,
+    Sheet,
+    across,
+    axis_room,
+    draw_chart,
+    filling,
+    limits,
+    scale_words,
+    with_unit,
+)
 from tmm_cli.drawing.sheets.construction import draw_construction
 from tmm_cli.drawing.sheets.mechanism import measured, paths, skeleton, trace
-from tmm_cli.drawing.symbols.actuators import cylinders
-from tmm_cli.drawing.symbols.forms import by_points
-from tmm_cli.drawing.symbols.parts import MEASURED
-from tmm_cli.drawing.symbols.render import slider
-from tmm_cli.drawing.symbols.scene import Scene, fixed_pivots, to_scale
+from tmm_cli.drawing.symbols import MEASURED, Scene, by_points, cylinders, fixed_pivots, slider, to_scale
 from tmm_cli.language import _, translated
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.plans.record import LANDSCAPE
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, Dimension
-from tmm_cli.problem.units import UnitSystem
-from tmm_cli.synthesis.construction import Diagram, Line
-from tmm_cli.synthesis.record import Outcome
+from tmm_cli.problem import UnitSystem
+from tmm_cli.synthesis import Diagram, Line, Outcome
 
 ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from tmm_cli.drawing.paper.record import Drawing
-from tmm_cli.drawing.paper.sheet import Sheet, scale_words
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, Drawing, Sheet, scale_words
 from tmm_cli.drawing.sheets.mechanism import measured
 from tmm_cli.drawing.sheets.structure import at_sketch
-from tmm_cli.drawing.symbols.parts import MEASURED
-from tmm_cli.drawing.symbols.render import arrows
-from tmm_cli.drawing.symbols.scene import fixed_pivots, to_scale
-from tmm_cli.mechanics.analysis.pipeline import Results
+from tmm_cli.drawing.symbols import MEASURED, arrows, fixed_pivots, to_scale
+from tmm_cli.mechanics.analysis import Results
 
 
 def task_picture(results: Results) -> Drawing | None:

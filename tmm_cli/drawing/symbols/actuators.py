@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper.sheet import Sheet, hatch
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, Sheet, hatch
 from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide, Spring
-from tmm_cli.mechanics.numerics.vectors import cross, dot, unit
+from tmm_cli.mechanics.numerics import cross, dot, unit
 
 BARREL, LEAST = 2.3, 8.0  # mm: half the width of a cylinder, its least length
 COIL, AMPLITUDE, STUB = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends

@@ -11,14 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper.boxes import convex_hull
-from tmm_cli.drawing.paper.sheet import Sheet, border
+from tmm_cli.drawing.paper import Sheet, border, convex_hull
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders
 from tmm_cli.drawing.symbols.scene import BEYOND, ON_LINE, Scene, apart
-from tmm_cli.drawing.symbols.wheels import bars as follower_bars
-from tmm_cli.drawing.symbols.wheels import outline as shape_of
+from tmm_cli.drawing.symbols.wheels import bars as follower_bars, outline as shape_of
 from tmm_cli.mechanics.linkage import Slide
-from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.numerics import cross, dot
 
 Line = tuple[complex, complex]
 GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it

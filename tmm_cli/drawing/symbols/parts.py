@@ -7,13 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.script import Words
-from tmm_cli.drawing.paper.sheet import Sheet, hatch
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, Sheet, Style, Words, hatch
 from tmm_cli.drawing.symbols.forms import Form, Line
 from tmm_cli.drawing.symbols.scene import ON_LINE, Scene, apart
-from tmm_cli.mechanics.numerics.vectors import Vector, cross, dot, unit
+from tmm_cli.mechanics.numerics import Vector, cross, dot, unit
 
 WELD = 3.2  # mm: leg of a rigid corner's mark
 CLEAR = 3.2  # mm about the number on a plate

@@ -10,9 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.drawing.paper.labels import gather_labels
-from tmm_cli.drawing.paper.sheet import THIN, Sheet, border
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, THIN, Sheet, border, gather_labels
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders, driver_name, springs
 from tmm_cli.drawing.symbols.forms import Form, Line, by_pairs, by_points
 from tmm_cli.drawing.symbols.parts import (
@@ -29,12 +27,11 @@ from tmm_cli.drawing.symbols.parts import (
 )
 from tmm_cli.drawing.symbols.rigid import rigid
 from tmm_cli.drawing.symbols.scene import BEYOND, ON_LINE, Scene, spread
-from tmm_cli.drawing.symbols.wheel_symbols import CHAIN
-from tmm_cli.drawing.symbols.wheel_symbols import draw as draw_wheels
+from tmm_cli.drawing.symbols.wheel_symbols import CHAIN, draw as draw_wheels
 from tmm_cli.drawing.symbols.wheels import CamShape, contact
 from tmm_cli.language import _, printed
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.structure import Pair
 
 BOX = "{}|box"  # the body that the box of a sliding pair is
 OVER = 10.0  # mm: how far the axis of a guide goes on beyond the way of its stone

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_cli.drawing.paper.sheet import Sheet
+from tmm_cli.drawing.paper import Sheet
 from tmm_cli.drawing.symbols.forms import Form
 from tmm_cli.drawing.symbols.parts import WELD, weld
 from tmm_cli.drawing.symbols.scene import ON_LINE
 from tmm_cli.drawing.symbols.wheels import CamShape, Disc, Outline
-from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.numerics import cross, dot
 
 SAME, STEEP = 0.02, 0.7  # rad: of one direction; from a straight line, there is hardly a corner to fill
 SPOKE, THROUGH = 1.2, 2.0  # points wide

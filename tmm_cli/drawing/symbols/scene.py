@@ -7,15 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.sheet import Sheet
-from tmm_cli.drawing.symbols.wheels import Outline, contact, outline
-from tmm_cli.drawing.symbols.wheels import extent as wheels_extent
-from tmm_cli.mechanics.groups.state import Pose
+from tmm_cli.drawing.paper import Sheet
+from tmm_cli.drawing.symbols.wheels import Outline, contact, extent as wheels_extent, outline
+from tmm_cli.mechanics.groups import Pose
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
-from tmm_cli.mechanics.numerics.vectors import cross, dot, unit
-from tmm_cli.mechanics.plans.record import extent
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.numerics import cross, dot, unit
+from tmm_cli.mechanics.plans import extent
+from tmm_cli.mechanics.structure import Pair, Structure
 
 ON_LINE = 0.3  # mm: what still lies on a line
 BEYOND = 6.0  # mm: how far a guide goes on beyond its stone

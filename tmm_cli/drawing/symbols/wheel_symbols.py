@@ -7,14 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper.boxes import aside
-from tmm_cli.drawing.paper.record import Style
-from tmm_cli.drawing.paper.sheet import THIN, Sheet, hatch
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper import DARK, THIN, Sheet, Style, aside, hatch
 from tmm_cli.drawing.symbols.forms import Line
 from tmm_cli.drawing.symbols.wheels import CamShape, Disc, Outline, Teeth
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Vector, dot, unit
+from tmm_cli.mechanics.numerics import Vector, dot, unit
 
 CHAIN: Style = "-."  # dash and dot
 DASHED: Style = "--"

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.pairs.lower import axis
+from tmm_cli.mechanics.groups import axis
 from tmm_cli.mechanics.linkage import Mesh
-from tmm_cli.mechanics.numerics.vectors import Vector, dot, unit
+from tmm_cli.mechanics.numerics import Vector, dot, unit
 
 if TYPE_CHECKING:
     from tmm_cli.drawing.symbols.scene import Scene

@@ -10,8 +10,8 @@ from typing import Final
 
 from tmm_cli.grading.exports import feedback, gradescope, junit, moodle, tables_csv, xlsx
 from tmm_cli.grading.exports.book import Export, Gradebook
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.reports.files import Staged, write_whole
+from tmm_cli.problem import ProblemError
+from tmm_cli.reports import Staged, write_whole
 
 EXPORTS: Final[Mapping[str, Export]] = {
     "csv": tables_csv.files,

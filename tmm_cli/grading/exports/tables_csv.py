@@ -14,7 +14,7 @@ from tmm_cli.grading.exports.book import (
     points_text,
 )
 from tmm_cli.grading.record import Mark
-from tmm_cli.reports.table import csv_cell
+from tmm_cli.reports import csv_cell
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:

@@ -15,8 +15,7 @@ from tmm_cli.grading.exports.student_sheet import written
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.statistics import statistics_tables
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.reports.spreadsheets import WRITTEN, empty_workbook
-from tmm_cli.reports.table import Column
+from tmm_cli.reports import WRITTEN, Column, empty_workbook
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}

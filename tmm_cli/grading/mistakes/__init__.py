@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.data import Degrees, Millimetres, Neighbour, OtherZero, Rpm, ScaleInverted, Sense
 from tmm_cli.grading.mistakes.forces import (

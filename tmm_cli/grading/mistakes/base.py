@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.solution import Solution
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.named_quantities import Quantity
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.forces import Applied
+from tmm_cli.mechanics.groups import Kernel
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Real
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,15 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.solution import Solution
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis.named_quantities import Quantity
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.forces import Applied
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 
 @dataclass(frozen=True)

@@ -6,16 +6,27 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Self
 
-from tmm_cli.batch.family import Family
+from tmm_cli.batch import Family
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.language import N_
-from tmm_cli.mechanics.groups.base import Closed, Kernel, Wrapped
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.pairs.lower import Constraint, Guided, Sliding
-from tmm_cli.mechanics.groups.state import Accel, Accels, Drives, Placement, Poses, Rates
-from tmm_cli.mechanics.kinematics.motion import Motion, Point
+from tmm_cli.mechanics.groups import (
+    Accel,
+    Accels,
+    Closed,
+    Constraint,
+    Drives,
+    Guided,
+    Kernel,
+    Newton,
+    Placement,
+    Poses,
+    Rates,
+    Sliding,
+    Wrapped,
+)
+from tmm_cli.mechanics.kinematics import Motion, Point
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.vectors import Real, cross
+from tmm_cli.mechanics.numerics import Real, cross
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tmm_cli.batch.task import Task
+from tmm_cli.batch import Task
 from tmm_cli.grading.record import Given, Key, Submission
 from tmm_cli.grading.submissions.numbers import (
     Heading,
@@ -21,10 +21,9 @@ from tmm_cli.grading.submissions.numbers import (
     read_position,
 )
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.units import parse_unit
+from tmm_cli.problem import ProblemError, nearest, parse_unit, quote
 
 MOST_TOLD = 20  # problems of one submission
 MOST_CELLS = 10_000  # of one submission

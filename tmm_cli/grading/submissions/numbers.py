@@ -15,9 +15,7 @@ from typing import Literal, cast, get_args
 from tmm_cli.grading.record import Given
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.errors import ProblemError, clean, latin, quote
-from tmm_cli.problem.scalars import finite_float
-from tmm_cli.problem.units import dotted_unit, parse_unit, plain_text
+from tmm_cli.problem import ProblemError, clean, dotted_unit, finite_float, latin, parse_unit, plain_text, quote
 
 LONGEST = 200
 CLASSES = {name: float(n) for n, name in enumerate(("I", "II", "III", "IV", "V", "VI"), start=1)}

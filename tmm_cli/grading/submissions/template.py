@@ -10,12 +10,11 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from tmm_cli.batch.task import Asked, Task
+from tmm_cli.batch import Asked, Task
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.reports.files import write_whole
-from tmm_cli.reports.spreadsheets import empty_workbook
+from tmm_cli.problem import ProblemError, quote
+from tmm_cli.reports import empty_workbook, write_whole
 
 COLUMNS = ("quantity", "position", "unit", "value", "x", "y", "size")  # and the angle, in the file's unit
 SCALAR, VECTOR = COLUMNS[3:4], (*COLUMNS[4:], "angle")  # where an answer is written

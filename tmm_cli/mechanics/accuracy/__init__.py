@@ -1,1 +1,5 @@
 """How many digits are to be trusted."""
+
+from tmm_cli.interfaces import lazy
+
+__getattr__, __all__ = lazy(__name__, __file__)

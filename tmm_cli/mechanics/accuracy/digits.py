@@ -18,20 +18,21 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.mechanics.accuracy.lengths import all_changed, largest_beside, list_lengths, widened
-from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.analysis.on_request import driver_motion
-from tmm_cli.mechanics.analysis.pipeline import Results, near_dead, refined, with_forces
-from tmm_cli.mechanics.analysis.selection import mass_centres
-from tmm_cli.mechanics.analysis.selection import values as leading_values
-from tmm_cli.mechanics.groups.base import Kernel, spread
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.driver_range import DriverRange
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.analysis import (
+    Inputs,
+    Mechanism,
+    Results,
+    driver_motion,
+    mass_centres,
+    near_dead,
+    refined,
+    values as leading_values,
+    with_forces,
+)
+from tmm_cli.mechanics.groups import DriverMotion, Kernel, spread
+from tmm_cli.mechanics.kinematics import DriverRange, Strokes, move, output_place
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.double_double import EPS, array, exactly, rounded
-from tmm_cli.mechanics.numerics.tolerances import KNOWN_LAW, LIMIT_AGREES, ROUNDOFF
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import EPS, KNOWN_LAW, LIMIT_AGREES, ROUNDOFF, Real, array, exactly, rounded
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -45,7 +46,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.structure import Structure
 
 SHARE = 1e-3  # of each length: the change that sensitivities are told for
 PAPER = 0.5  # mm of paper, likewise

@@ -9,15 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
-from tmm_cli.mechanics.kinematics.driver_range import DriverRange
-from tmm_cli.mechanics.kinematics.pressure import Pressure, pressure_at
-from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.groups import LinkStates, link_states
+from tmm_cli.mechanics.kinematics import DriverRange, Pressure, Strokes, output_place, pressure_at
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.double_double import exactly
-from tmm_cli.mechanics.numerics.tolerances import NO_COORDINATE, ROUNDOFF
-from tmm_cli.mechanics.numerics.vectors import Real, Record, mapped
+from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, exactly, mapped
 
 
 @dataclass(frozen=True)

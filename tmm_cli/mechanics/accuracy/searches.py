@@ -13,15 +13,10 @@ import numpy as np
 
 from tmm_cli.mechanics.accuracy.digits import PAPER, SHARE, Digits, exact, growth, slenderness
 from tmm_cli.mechanics.accuracy.lengths import ends, list_lengths, outputs, responses
-from tmm_cli.mechanics.analysis.pipeline import CYCLE, Results, cycle_losses
-from tmm_cli.mechanics.groups.base import Closed
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
-from tmm_cli.mechanics.kinematics.driver_range import DriverRange
-from tmm_cli.mechanics.kinematics.pressure import pressure_at
-from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel, output_place, output_slope
-from tmm_cli.mechanics.numerics.double_double import EPS, DoubleDouble, rounded
-from tmm_cli.mechanics.numerics.tolerances import NO_PRESSURE, ROUNDOFF
-from tmm_cli.mechanics.numerics.vectors import Real, mapped
+from tmm_cli.mechanics.analysis import CYCLE, Results, cycle_losses
+from tmm_cli.mechanics.groups import Closed, LinkStates, link_states, towards
+from tmm_cli.mechanics.kinematics import DriverRange, Strokes, Travel, output_place, output_slope, pressure_at
+from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble, Real, mapped, rounded
 
 FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
 AROUND = 65  # places over the driver's way that tell how large a function is

@@ -13,15 +13,11 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.loads import given_loads
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
-from tmm_cli.mechanics.kinematics.driver_range import SCAN
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import given_loads
+from tmm_cli.mechanics.groups import Kernel, LinkStates, link_states, towards
+from tmm_cli.mechanics.kinematics import SCAN, Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.roots import least
-from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES
-from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES, Real, dot, least
 
 Kind = Literal["slot", "pressure", "load", "near dead", "lever"]
 

@@ -9,11 +9,10 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis.pipeline import Results, at_places
 from tmm_cli.mechanics.analysis.selection import mass_centres, named_points
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real, rounded
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, LENGTH, MOMENT, Dimension
 
 STEPS = 720  # in a turn, or over the driver's way

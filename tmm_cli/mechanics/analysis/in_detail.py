@@ -10,12 +10,11 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Inputs
 from tmm_cli.mechanics.analysis.pipeline import Results, solve
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.enumerate import find_assemblies
+from tmm_cli.mechanics.assembly import assemble, find_assemblies
 from tmm_cli.mechanics.errors import AmbiguousSketchError, UnknownPositionError
-from tmm_cli.mechanics.kinematics.centres import find_centres
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.kinematics import find_centres
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.structure import Group
 
 
 def detailed_positions(results: Results) -> tuple[int, ...]:

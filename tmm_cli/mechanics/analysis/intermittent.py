@@ -12,17 +12,12 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.errors import LinkageError, MissingStrokesError, NoCycleError, SettingError
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import DriverMotion, LawOfMotion, towards
-from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
-from tmm_cli.mechanics.kinematics.motion import Turning, move
-from tmm_cli.mechanics.kinematics.strokes import OutputCurve, Strokes, find_strokes, runs_of
+from tmm_cli.mechanics.groups import DriverMotion, Kernel, LawOfMotion, towards
+from tmm_cli.mechanics.kinematics import SCAN, DriverRange, OutputCurve, Strokes, Turning, find_strokes, move, runs_of
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.roots import find_roots, least
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SHOCKLESS, WHOLE_TURNS
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import SAME_PLACE, SHOCKLESS, WHOLE_TURNS, Real, find_roots, least
 
 When = Literal["forward", "backward", "working stroke", "idle stroke"]
 

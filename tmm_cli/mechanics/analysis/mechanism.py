@@ -13,30 +13,33 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.choose import assemble
+from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.errors import LinkageError, NotOnFrameError
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import DriverMotion, link_states, towards
-from tmm_cli.mechanics.kinematics.driver_range import (
+from tmm_cli.mechanics.groups import DriverMotion, Kernel, link_states, towards
+from tmm_cli.mechanics.kinematics import (
     DeadPosition,
     DriverRange,
     Excess,
+    Pressure,
+    Strokes,
+    Travel,
     find_dead,
+    find_pressure,
     find_range,
     find_slots,
+    find_strokes,
+    find_travel,
+    move,
+    places,
+    resisted,
 )
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.kinematics.pressure import Pressure, find_pressure
-from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel, find_strokes, find_travel, places, resisted
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Request, Sketch
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.assur import Structure, analyse
-from tmm_cli.mechanics.structure.naming import output_link, roles
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.structure import Structure, analyse, output_link, roles
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import WheelTask
-    from tmm_cli.mechanics.dynamics.balancing import BalancingTask
-    from tmm_cli.mechanics.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.mechanics.dynamics import BalancingTask, RunTask, SteadyTask
 
 
 PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")

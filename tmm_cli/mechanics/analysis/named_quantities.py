@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 
 from tmm_cli.mechanics.analysis.selection import mass_centres, named_points
-from tmm_cli.mechanics.kinematics.strokes import output_run
+from tmm_cli.mechanics.kinematics import output_run
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
@@ -26,8 +26,7 @@ from tmm_cli.mechanics.quantities import (
     Dimension,
     place_dimension,
 )
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.mechanics.structure import Structure, output_link
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import Intermittent, WheelTask

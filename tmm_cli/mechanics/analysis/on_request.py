@@ -7,23 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Mechanism
-from tmm_cli.mechanics.groups.sequence import DriverMotion, LawOfMotion
+from tmm_cli.mechanics.groups import DriverMotion, LawOfMotion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import Intermittent
-    from tmm_cli.mechanics.dynamics.balancing import Balancing, BalancingTask
-    from tmm_cli.mechanics.dynamics.single_run import SingleRun
-    from tmm_cli.mechanics.dynamics.steady import Running
-    from tmm_cli.mechanics.dynamics.task import RunTask, SteadyTask
+    from tmm_cli.mechanics.dynamics import Balancing, BalancingTask, Running, RunTask, SingleRun, SteadyTask
 
 
 def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
     """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
     driver = linkage.driver
     if driver.law is not None:
-        from tmm_cli.mechanics.dynamics.laws import LawByTable
+        from tmm_cli.mechanics.dynamics import LawByTable
 
         return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
     at = linkage.sketch.at if linkage.others else start
@@ -33,18 +30,18 @@ def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
 def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> Running | SingleRun:
     """From position 0 on. Raises what `running` and `single_run` raise."""
     if task.cyclic:
-        from tmm_cli.mechanics.dynamics.steady import running
+        from tmm_cli.mechanics.dynamics import running
 
         return running(mechanism, float(mechanism.asked[0]), task)
 
-    from tmm_cli.mechanics.dynamics.single_run import compute_single_run
+    from tmm_cli.mechanics.dynamics import compute_single_run
 
     return compute_single_run(mechanism, mechanism.asked, task)
 
 
 def balancing(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balancing:
     """Over the cycle from position 0 on, and at places of the driver. Raises what `analysis.balancing` raises."""
-    from tmm_cli.mechanics.dynamics.balancing import balance_machine as found
+    from tmm_cli.mechanics.dynamics import balance_machine as found
 
     return found(mechanism, float(mechanism.asked[0]), q, task)
 

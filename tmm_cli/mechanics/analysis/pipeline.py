@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.mechanics.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
 from tmm_cli.mechanics.analysis.selection import carriers, check
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.errors import (
     MissingStrokesError,
     NoTurnError,
@@ -25,31 +25,46 @@ from tmm_cli.mechanics.errors import (
     TableBeyondCycleError,
     UnknownPositionError,
 )
-from tmm_cli.mechanics.forces.energy import Energy, compute_energy
-from tmm_cli.mechanics.forces.friction import FrictionSolution, Losses, find_locked_ranges, losses, solve_friction
-from tmm_cli.mechanics.forces.lever import Lever, compute_lever
-from tmm_cli.mechanics.forces.loads import Applied, applied
-from tmm_cli.mechanics.forces.plan import Reactions, power, react
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import LawOfMotion, towards
-from tmm_cli.mechanics.kinematics.driver_range import DeadPosition, DriverRange, Excess
-from tmm_cli.mechanics.kinematics.motion import Motion, move, spliced, with_limits
-from tmm_cli.mechanics.kinematics.pressure import Pressure, pressure_at
-from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel
+from tmm_cli.mechanics.forces import (
+    Applied,
+    Energy,
+    FrictionSolution,
+    Lever,
+    Losses,
+    Reactions,
+    applied,
+    compute_energy,
+    compute_lever,
+    find_locked_ranges,
+    losses,
+    power,
+    react,
+    solve_friction,
+)
+from tmm_cli.mechanics.groups import Kernel, LawOfMotion, towards
+from tmm_cli.mechanics.kinematics import (
+    DeadPosition,
+    DriverRange,
+    Excess,
+    Motion,
+    Pressure,
+    Strokes,
+    Travel,
+    move,
+    pressure_at,
+    spliced,
+    with_limits,
+)
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.double_double import exactly, rounded
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.numerics import SAME_PLACE, Real, exactly, rounded
+from tmm_cli.mechanics.structure import Structure
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.extremes import Extreme
     from tmm_cli.mechanics.analysis.intermittent import Intermittent
-    from tmm_cli.mechanics.assembly.enumerate import Assemblies
-    from tmm_cli.mechanics.dynamics.balancing import Balancing
-    from tmm_cli.mechanics.dynamics.single_run import SingleRun
-    from tmm_cli.mechanics.dynamics.steady import Running
-    from tmm_cli.mechanics.kinematics.centres import Centre
+    from tmm_cli.mechanics.assembly import Assemblies
+    from tmm_cli.mechanics.dynamics import Balancing, Running, SingleRun
+    from tmm_cli.mechanics.kinematics import Centre
 
 
 def near_dead(motion: Motion) -> Real:

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.mechanics.errors import UnknownNameError
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import towards
-from tmm_cli.mechanics.kinematics.motion import Motion, Point
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.groups import Kernel, towards
+from tmm_cli.mechanics.kinematics import Motion, Point
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import BALANCING, LINK, POINT, REACTION, Quantity
 

@@ -14,17 +14,26 @@ import numpy as np
 
 from tmm_cli.mechanics.assembly.search import assembled, check_fit, nearest_to_sketch, refuse_large_group
 from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, ChangePointSearchError
-from tmm_cli.mechanics.groups.base import Closed, HingeEnd, Kernel, reach
-from tmm_cli.mechanics.groups.branch import SmoothWay, Winding
-from tmm_cli.mechanics.groups.closed_forms import CLOSED
-from tmm_cli.mechanics.groups.sequence import driven_state, drives_at, frame_state, link_states, towards
-from tmm_cli.mechanics.groups.state import Drives, Placement, Pose
+from tmm_cli.mechanics.groups import (
+    CLOSED,
+    Closed,
+    Drives,
+    HingeEnd,
+    Kernel,
+    Placement,
+    Pose,
+    SmoothWay,
+    Winding,
+    driven_state,
+    drives_at,
+    frame_state,
+    link_states,
+    reach,
+    towards,
+)
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.roots import find_roots, least
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.cycle import turns_of_cycle
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.numerics import Real, find_roots, least
+from tmm_cli.mechanics.structure import Group, Structure, turns_of_cycle
 
 SCAN = 360  # places a turn
 MOST_TURNS = 5_000  # groups times turns of the driver that one search covers: a second and a tenth of a gigabyte each

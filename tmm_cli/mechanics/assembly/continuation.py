@@ -14,13 +14,8 @@ import numpy as np
 
 from tmm_cli.mechanics.assembly.corrector import CORRECTION, PATIENCE, Corrector, Node, Source, joined, places_ahead
 from tmm_cli.mechanics.assembly.crossing import EDGE, Crossings, alive
-from tmm_cli.mechanics.groups.branch import BranchTrace
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates
-from tmm_cli.mechanics.groups.state import Pose, State
-from tmm_cli.mechanics.numerics.linear import solve
-from tmm_cli.mechanics.numerics.tolerances import LAST_STEP
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.groups import BranchTrace, LinkStates, Newton, Pose, State
+from tmm_cli.mechanics.numerics import LAST_STEP, Real, solve
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
 LEAST_STEP = 1e-9

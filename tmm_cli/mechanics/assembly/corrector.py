@@ -7,12 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.branch import BranchTrace
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates
-from tmm_cli.mechanics.groups.state import State
-from tmm_cli.mechanics.numerics.tolerances import CONVERGED, SAME_STATE
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.groups import BranchTrace, LinkStates, Newton, State
+from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
 Source = Callable[[Real, int], LinkStates]  # links placed before a group: at places, with derivatives of an order
 

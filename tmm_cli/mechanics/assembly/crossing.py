@@ -14,10 +14,8 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from tmm_cli.mechanics.assembly.corrector import Node, Source, joined, parts_of, predicted, stated
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.state import State
-from tmm_cli.mechanics.numerics.double_double import exactly, rounded
-from tmm_cli.mechanics.numerics.tolerances import (
+from tmm_cli.mechanics.groups import Newton, State
+from tmm_cli.mechanics.numerics import (
     CROSSING_AGREES,
     CROSSING_FITTED,
     CROSSING_KNOWN,
@@ -25,8 +23,10 @@ from tmm_cli.mechanics.numerics.tolerances import (
     LAST_STEP,
     NO_DETERMINANT,
     SAMPLES_ROUNDED,
+    Real,
+    exactly,
+    rounded,
 )
-from tmm_cli.mechanics.numerics.vectors import Real
 
 RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # of the samples about the place, in scales of the driver
 SAMPLES = 28  # of Chebyshev; those in the middle are left out

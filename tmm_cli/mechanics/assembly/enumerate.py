@@ -18,15 +18,10 @@ import numpy as np
 from tmm_cli.mechanics.assembly.choose import closed_form
 from tmm_cli.mechanics.assembly.search import all_assemblies, close_from_afar
 from tmm_cli.mechanics.assembly.triad import Triad, starts
-from tmm_cli.mechanics.groups.base import Closed, Kernel
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states
-from tmm_cli.mechanics.groups.state import Drives, Pose, State
+from tmm_cli.mechanics.groups import Closed, Drives, Kernel, LinkStates, Newton, Pose, State, link_states
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.linear import least_over_largest
-from tmm_cli.mechanics.numerics.tolerances import CLOSED, DEAD, MEET, SAME_ASSEMBLY
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.numerics import CLOSED, DEAD, MEET, SAME_ASSEMBLY, least_over_largest
+from tmm_cli.mechanics.structure import Group, Structure
 
 Method = Literal["closed form", "polynomial", "angles", "many starts"]
 

@@ -17,15 +17,22 @@ import numpy as np
 
 from tmm_cli.mechanics.assembly.search import close_from_afar, placed_by_angles, sketched_angles
 from tmm_cli.mechanics.errors import MobilityError
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import drives_at, frame_state
-from tmm_cli.mechanics.groups.state import Pose, State
+from tmm_cli.mechanics.groups import Newton, Pose, State, drives_at, frame_state
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import CONVERGED, REDUNDANT, SHARED
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
-from tmm_cli.mechanics.structure.assur import Structure, analyse, pairs_within, reduced, ties_of
-from tmm_cli.mechanics.structure.graph import Tie
-from tmm_cli.mechanics.structure.group import Group, Passive, Reduction, RedundantLink, RigidSet
+from tmm_cli.mechanics.numerics import CONVERGED, REDUNDANT, SHARED, Real, Vector
+from tmm_cli.mechanics.structure import (
+    Group,
+    Passive,
+    Reduction,
+    RedundantLink,
+    RigidSet,
+    Structure,
+    Tie,
+    analyse,
+    pairs_within,
+    reduced,
+    ties_of,
+)
 
 MOST_TRIES = 3000
 

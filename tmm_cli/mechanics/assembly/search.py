@@ -11,17 +11,32 @@ import numpy as np
 from tmm_cli.mechanics.assembly.continuation import Walker
 from tmm_cli.mechanics.assembly.corrector import corrected
 from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError, SketchMismatchError
-from tmm_cli.mechanics.groups.base import Kernel, reach
-from tmm_cli.mechanics.groups.branch import BranchTrace
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
-from tmm_cli.mechanics.groups.state import Drives, Placement, Pose, State
+from tmm_cli.mechanics.groups import (
+    BranchTrace,
+    Drives,
+    Kernel,
+    LinkStates,
+    Newton,
+    Placement,
+    Pose,
+    State,
+    link_states,
+    reach,
+    towards,
+)
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.linear import least_over_largest, solve
-from tmm_cli.mechanics.numerics.tolerances import CONVERGED, DEAD_SKETCH, LAST_STEP_AFAR, SAME_ASSEMBLY, SAME_IN_SKETCH
-from tmm_cli.mechanics.numerics.vectors import Real, unit
-from tmm_cli.mechanics.structure.cycle import turns_of_cycle
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.numerics import (
+    CONVERGED,
+    DEAD_SKETCH,
+    LAST_STEP_AFAR,
+    SAME_ASSEMBLY,
+    SAME_IN_SKETCH,
+    Real,
+    least_over_largest,
+    solve,
+    unit,
+)
+from tmm_cli.mechanics.structure import Group, turns_of_cycle
 
 TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
 FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle

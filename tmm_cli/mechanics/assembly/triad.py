@@ -24,12 +24,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import SliderEnd, line, meet, slider_end
-from tmm_cli.mechanics.groups.state import Pose, State
+from tmm_cli.mechanics.groups import Pose, SliderEnd, State, line, meet, slider_end
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.tolerances import PARALLEL, VANISHED
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import PARALLEL, VANISHED, Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure import Group, Pair
 
 DEGREE = 3  # of the trigonometric polynomial
 SAMPLES = 16  # places on the unit circle, more than 2 * DEGREE

@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.mechanics.errors import NoCycleError, UnsettledError
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import Motion, move
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import Motion, move
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import AT_REST
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross
+from tmm_cli.mechanics.numerics import AT_REST, Real, Vector, cross
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+    from tmm_cli.mechanics.analysis import Mechanism
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,7 @@ from tmm_cli.mechanics.dynamics.motors import Motor
 from tmm_cli.mechanics.dynamics.reduced import FIT, NODES, SUMS, Curve, Reduced, fitted, nodes
 from tmm_cli.mechanics.errors import LinkageError, LostDigitsError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.linkage import SpeedTable
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.tolerances import LAST_STEP, SEAM
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, rounded
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 NODES = 16  # of a panel
 WIDEST = np.pi / 6  # rad, and of a slider's way this share of pi: a panel at the beginning

@@ -21,13 +21,10 @@ from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
 from tmm_cli.mechanics.dynamics.steady import reduced_between
 from tmm_cli.mechanics.dynamics.task import RunTask
 from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.mechanics.numerics.tolerances import ROUNDOFF, SAME_PLACE, SEAM
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import ROUNDOFF, SAME_PLACE, SEAM, Real, find_roots, rounded
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+    from tmm_cli.mechanics.analysis import Mechanism
 
 
 TOLERANCE = 1e-12  # of a step, relative

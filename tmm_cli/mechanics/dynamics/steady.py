@@ -31,18 +31,13 @@ from tmm_cli.mechanics.errors import (
     RunawayError,
     StandstillError,
 )
-from tmm_cli.mechanics.forces.energy import compute_energy, inertias
-from tmm_cli.mechanics.forces.jumps import find_load_jumps
-from tmm_cli.mechanics.forces.loads import applied
-from tmm_cli.mechanics.groups.sequence import DriverMotion
-from tmm_cli.mechanics.kinematics.motion import move
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.roots import find_roots, least
-from tmm_cli.mechanics.numerics.tolerances import CONSTANT_INERTIA, ROUNDOFF, SAME_PLACE, SEAM
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.forces import applied, compute_energy, find_load_jumps, inertias
+from tmm_cli.mechanics.groups import DriverMotion
+from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.numerics import CONSTANT_INERTIA, ROUNDOFF, SAME_PLACE, SEAM, Real, find_roots, least, rounded
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+    from tmm_cli.mechanics.analysis import Mechanism
 
 
 STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible

@@ -15,7 +15,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 
 
 @dataclass(frozen=True)

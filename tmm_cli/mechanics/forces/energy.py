@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.vectors import Real, dot, square
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Real, dot, square
 
 
 @dataclass(frozen=True)

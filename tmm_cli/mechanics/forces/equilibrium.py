@@ -22,11 +22,10 @@ from tmm_cli.mechanics.forces.free_bodies import (
     reaction_symbol,
 )
 from tmm_cli.mechanics.forces.plan import GroupForces, Reaction, Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_COORDINATE, NO_FORCE, SAME_PLACES
-from tmm_cli.mechanics.numerics.vectors import dot
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import NO_COORDINATE, NO_FORCE, SAME_PLACES, dot
+from tmm_cli.mechanics.structure import Group, Pair
 
 
 def other_than(taken: Collection[str], letter: str) -> str:

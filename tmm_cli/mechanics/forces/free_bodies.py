@@ -9,11 +9,10 @@ from typing import Literal
 from tmm_cli.language import printed, symbol
 from tmm_cli.mechanics.forces.loads import Applied
 from tmm_cli.mechanics.forces.plan import Balance, Reaction, Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
-from tmm_cli.mechanics.numerics.vectors import cross, dot, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import NO_FORCE, cross, dot, unit
+from tmm_cli.mechanics.structure import Group, Pair
 
 Kind = Literal[
     "absolute", "relative", "normal", "tangential", "coriolis", "sliding", "load", "inertia", "reaction", "inner"

@@ -14,13 +14,20 @@ import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
 from tmm_cli.mechanics.forces.plan import Reaction, Reactions, power, react
-from tmm_cli.mechanics.kinematics.motion import Motion, moving_parts
+from tmm_cli.mechanics.kinematics import Motion, moving_parts
 from tmm_cli.mechanics.linkage import FRAME, Friction
-from tmm_cli.mechanics.numerics.double_double import array
-from tmm_cli.mechanics.numerics.linear import solve
-from tmm_cli.mechanics.numerics.tolerances import FRICTION_AGREES, FRICTION_LOCKS, FRICTION_ROUNDED
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, unit, without_rounding
-from tmm_cli.mechanics.structure.assur import Structure
+from tmm_cli.mechanics.numerics import (
+    FRICTION_AGREES,
+    FRICTION_LOCKS,
+    FRICTION_ROUNDED,
+    Real,
+    Vector,
+    array,
+    solve,
+    unit,
+    without_rounding,
+)
+from tmm_cli.mechanics.structure import Structure
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
 ROUNDS = 40  # of Newton's method in each

@@ -8,17 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import motion_on_base, setting_off
-from tmm_cli.mechanics.groups.sequence import DriverMotion, towards
-from tmm_cli.mechanics.kinematics.driver_range import SCAN
-from tmm_cli.mechanics.kinematics.motion import Motion, move
-from tmm_cli.mechanics.kinematics.strokes import OutputCurve
+from tmm_cli.mechanics.groups import DriverMotion, towards
+from tmm_cli.mechanics.kinematics import SCAN, Motion, OutputCurve, move
 from tmm_cli.mechanics.linkage import Load, LoadTable
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE
-from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.numerics import SAME_PLACE, Real, dot, find_roots
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.mechanism import Mechanism
+    from tmm_cli.mechanics.analysis import Mechanism
 
 
 def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:

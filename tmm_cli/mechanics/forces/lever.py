@@ -13,9 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.tolerances import NO_MOMENT
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import NO_MOMENT, Real, Vector, dot
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.kinematics.motion import Motion, moving_parts
-from tmm_cli.mechanics.kinematics.strokes import Strokes, output_place
+from tmm_cli.mechanics.kinematics import Motion, Strokes, moving_parts, output_place
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable, Spring
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SEAM
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, pi, unit
+from tmm_cli.mechanics.numerics import SAME_PLACE, SEAM, Real, Vector, cross, dot, pi, unit
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,11 @@ from functools import cached_property, reduce
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.groups.state import PairReaction, Wrench
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.pressure import Lead, followers
+from tmm_cli.mechanics.groups import PairReaction, Wrench
+from tmm_cli.mechanics.kinematics import Lead, Motion, followers
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage
-from tmm_cli.mechanics.numerics.tolerances import INFINITELY_FAR, NO_FORCE
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import INFINITELY_FAR, NO_FORCE, Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure import Group, Pair, Structure
 
 
 @dataclass(frozen=True)

@@ -30,9 +30,8 @@ from tmm_cli.mechanics.groups.state import (
     Wrench,
 )
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.tolerances import NEAR_DEAD, ROUNDINGS
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, roundoff, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import NEAR_DEAD, ROUNDINGS, Real, Vector, cross, dot, roundoff, unit
+from tmm_cli.mechanics.structure import Group, Pair
 
 __all__ = ["Accels", "Closed", "Dyad", "Kernel", "Poses", "Rates"]
 

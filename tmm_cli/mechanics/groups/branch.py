@@ -9,8 +9,7 @@ from functools import cached_property, reduce
 import numpy as np
 
 from tmm_cli.mechanics.groups.state import Pose, State
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, pi
+from tmm_cli.mechanics.numerics import Real, Vector, pi, rounded
 
 
 @dataclass(frozen=True)

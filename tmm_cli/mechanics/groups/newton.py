@@ -33,9 +33,7 @@ from tmm_cli.mechanics.groups.state import (
     Wrench,
 )
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.double_double import DoubleDouble, exactly, rounded
-from tmm_cli.mechanics.numerics.linear import least_over_largest, signed_determinant, solve
-from tmm_cli.mechanics.numerics.tolerances import (
+from tmm_cli.mechanics.numerics import (
     BLURRED_PASSIVE,
     CONVERGED,
     LAST_STEP,
@@ -44,9 +42,19 @@ from tmm_cli.mechanics.numerics.tolerances import (
     ROUNDINGS,
     SINGULAR,
     TRUNCATED,
+    DoubleDouble,
+    Real,
+    Vector,
+    cross,
+    exactly,
+    least_over_largest,
+    rounded,
+    roundoff,
+    signed_determinant,
+    solve,
+    unit,
 )
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, roundoff, unit
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.structure import Group
 
 ROUNDS = 12  # of Newton's method at most
 

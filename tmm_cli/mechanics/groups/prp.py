@@ -34,7 +34,7 @@ from tmm_cli.mechanics.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, unit
+from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,7 @@ from tmm_cli.mechanics.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.mechanics.numerics.tolerances import ROUNDINGS
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, roundoff, unit
+from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roundoff, unit
 
 
 @dataclass(frozen=True)

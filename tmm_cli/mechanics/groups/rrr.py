@@ -23,8 +23,7 @@ from tmm_cli.mechanics.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.mechanics.numerics.tolerances import ROUNDINGS
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, roundoff, square
+from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, square
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 from tmm_cli.mechanics.groups.base import Kernel
 from tmm_cli.mechanics.groups.state import Accel, Drive, Drives, Placement, Pose, Rate
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, unit
+from tmm_cli.mechanics.numerics import Real, Vector, dot, unit
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross
+from tmm_cli.mechanics.numerics import Real, Vector, cross
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,8 @@ from tmm_cli.mechanics.groups.state import (
     Wrench,
 )
 from tmm_cli.mechanics.linkage import Driver, Linkage, Slide
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.numerics import Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure import Group, Pair
 
 UNDER = "\0under m"  # the link that m hangs on, as n sees it: no link of a file is called so
 

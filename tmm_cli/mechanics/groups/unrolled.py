@@ -13,9 +13,7 @@ from tmm_cli.mechanics.groups.newton import Newton
 from tmm_cli.mechanics.groups.pairs.lower import Constraint, JacobianRow, Turning
 from tmm_cli.mechanics.groups.state import Accel, Accels, Drives, Placement, Pose, Poses, Rate, Rates, Wrench
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.linear import Eliminated, Order, Row, margin_of
-from tmm_cli.mechanics.numerics.tolerances import LAST_STEP, NEAR_SINGULAR
-from tmm_cli.mechanics.numerics.vectors import Real, dot, unit
+from tmm_cli.mechanics.numerics import LAST_STEP, NEAR_SINGULAR, Eliminated, Order, Real, Row, dot, margin_of, unit
 
 GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may give an angle from others
 

@@ -12,11 +12,10 @@ from itertools import combinations
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.sequence import LinkStates
+from tmm_cli.mechanics.groups import LinkStates
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics.vectors import cross, unit
-from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.numerics import cross, unit
+from tmm_cli.mechanics.structure import Pair, Structure
 
 FAR = 1e6  # sizes of the mechanism: what is farther is at infinity
 STILL = 1e-10  # of the largest velocities: links that move so little beside one another stand still

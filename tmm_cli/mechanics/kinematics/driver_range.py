@@ -9,15 +9,11 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.choose import pinned, slack
-from tmm_cli.mechanics.groups.base import Closed, Kernel, reach
-from tmm_cli.mechanics.groups.branch import Winding
-from tmm_cli.mechanics.groups.sequence import DriverMotion, LinkStates, link_states, towards
+from tmm_cli.mechanics.assembly import pinned, slack
+from tmm_cli.mechanics.groups import Closed, DriverMotion, Kernel, LinkStates, Winding, link_states, reach, towards
 from tmm_cli.mechanics.linkage import Linkage, Slide
-from tmm_cli.mechanics.numerics.roots import find_roots, least
-from tmm_cli.mechanics.numerics.tolerances import CAME_BACK, DEAD, END_OF_SLOT
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.cycle import MOST, turns_of_cycle
+from tmm_cli.mechanics.numerics import CAME_BACK, DEAD, END_OF_SLOT, Real, find_roots, least
+from tmm_cli.mechanics.structure import MOST, turns_of_cycle
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
 PARTS = 64  # into which an interval is cut at once

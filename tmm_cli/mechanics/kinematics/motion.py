@@ -12,13 +12,20 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import LawOfMotion, LinkStates, link_states
-from tmm_cli.mechanics.groups.state import Drives
+from tmm_cli.mechanics.groups import Drives, Kernel, LawOfMotion, LinkStates, link_states
 from tmm_cli.mechanics.linkage import Linkage, Slide
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.tolerances import AT_REST, LIMIT_AGREES, LIMIT_ROUNDED
-from tmm_cli.mechanics.numerics.vectors import Real, Record, Vector, dot, mapped, unit
+from tmm_cli.mechanics.numerics import (
+    AT_REST,
+    LIMIT_AGREES,
+    LIMIT_ROUNDED,
+    Real,
+    Record,
+    Vector,
+    dot,
+    mapped,
+    rounded,
+    unit,
+)
 
 FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"})
 """Names of fields of a motion, and of what follows from it, that hold no array over positions."""

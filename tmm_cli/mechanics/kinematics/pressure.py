@@ -19,13 +19,10 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
-from tmm_cli.mechanics.groups.state import Placement, Wrench
+from tmm_cli.mechanics.groups import Kernel, LinkStates, Placement, Wrench, link_states, towards
 from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.roots import least, top
-from tmm_cli.mechanics.numerics.tolerances import (
+from tmm_cli.mechanics.numerics import (
     ALIKE_ANGLES,
     DEAD,
     LOST_IN_ROUNDING,
@@ -33,9 +30,14 @@ from tmm_cli.mechanics.numerics.tolerances import (
     RIGHT_ANGLE,
     ROUNDINGS,
     ROUNDOFF,
+    Real,
+    cross,
+    dot,
+    least,
+    top,
+    unit,
 )
-from tmm_cli.mechanics.numerics.vectors import Real, cross, dot, unit
-from tmm_cli.mechanics.structure.group import Group, Pair
+from tmm_cli.mechanics.structure import Group, Pair
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,23 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.sequence import LinkStates, link_states, towards
+from tmm_cli.mechanics.groups import Kernel, LinkStates, link_states, towards
 from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.mechanics.kinematics.motion import LargestRates, Motion, moving_parts
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, Request
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.mechanics.numerics.tolerances import AT_EDGE_OF_CAM, BESIDE_END, NO_DWELL, NO_JUMP, RESTS, SAME_PLACE, SEAM
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.mechanics.numerics import (
+    AT_EDGE_OF_CAM,
+    BESIDE_END,
+    NO_DWELL,
+    NO_JUMP,
+    RESTS,
+    SAME_PLACE,
+    SEAM,
+    Real,
+    Vector,
+    find_roots,
+)
+from tmm_cli.mechanics.structure import output_link
 
 PARTS = 64  # of a stroke, through which an angle is followed
 

@@ -1,1 +1,5 @@
 """Velocity, acceleration and force plans and the lever, as named vectors with scale factors; nothing is drawn here."""
+
+from tmm_cli.interfaces import lazy
+
+__getattr__, __all__ = lazy(__name__, __file__)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from tmm_cli.mechanics.forces.free_bodies import (
+from tmm_cli.mechanics.forces import (
+    GroupForces,
     Kind,
     Loaded,
+    Reaction,
+    Reactions,
     Symbol,
     balance_symbol,
     kind_of,
@@ -16,8 +19,7 @@ from tmm_cli.mechanics.forces.free_bodies import (
     part_across,
     reaction_symbol,
 )
-from tmm_cli.mechanics.forces.plan import GroupForces, Reaction, Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.plans.record import NamedVector, Plan
 
 Part = tuple[Symbol, complex, Kind]

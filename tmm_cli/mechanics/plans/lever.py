@@ -8,21 +8,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.equilibrium import (
+from tmm_cli.mechanics.forces import (
+    DRIVE,
+    Acting,
+    Applied,
+    Balance,
+    Lever,
     LoadedPart,
     MomentEquation,
+    Reactions,
     Sought,
+    Symbol,
     Term,
+    balance_symbol,
+    kind_of,
+    load_symbols,
     loaded_parts,
     numbered,
     other_than,
     terms,
+    there,
 )
-from tmm_cli.mechanics.forces.free_bodies import DRIVE, Acting, Symbol, balance_symbol, kind_of, load_symbols, there
-from tmm_cli.mechanics.forces.lever import Lever
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.forces.plan import Balance, Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
 from tmm_cli.mechanics.plans.motion import absolute, ends_of, massive, relative

@@ -8,16 +8,14 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.equilibrium import other_than
-from tmm_cli.mechanics.forces.free_bodies import Symbol, subscript
-from tmm_cli.mechanics.groups.pairs.higher import Gear, Rack
-from tmm_cli.mechanics.groups.pairs.lower import axis
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import Symbol, other_than, subscript
+from tmm_cli.mechanics.groups import Gear, Rack, axis
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.mechanics.plans.record import NamedVector, Plan
 from tmm_cli.mechanics.plans.vector_equations import About, Along, found_first, hinge_points, steps
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.structure import Group
 
 
 def letters(linkage: Linkage) -> dict[str, str]:

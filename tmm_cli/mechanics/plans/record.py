@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from tmm_cli.mechanics.forces.free_bodies import BELOW, Kind, Symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.forces import BELOW, Kind, Symbol
+from tmm_cli.mechanics.numerics import NO_VECTOR
 
 ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Mesh, Slide
-from tmm_cli.mechanics.structure.group import Group
+from tmm_cli.mechanics.structure import Group
 
 ON_PAPER = 2  # unknown magnitudes on known lines that a polygon gives
 

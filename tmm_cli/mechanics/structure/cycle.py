@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Mesh
-from tmm_cli.mechanics.numerics.tolerances import SAME_RATIO
+from tmm_cli.mechanics.numerics import SAME_RATIO
 
 DENSE = 361  # places of a curve that is drawn, a turn
 MOST = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it

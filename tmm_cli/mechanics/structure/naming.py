@@ -12,7 +12,7 @@ from itertools import combinations, product
 import numpy as np
 
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
+from tmm_cli.mechanics.numerics import SAME_PLACES
 from tmm_cli.mechanics.structure.assur import Structure
 from tmm_cli.mechanics.structure.graph import Contour, contours
 from tmm_cli.mechanics.structure.group import Group, Pair

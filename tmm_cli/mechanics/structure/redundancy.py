@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.tolerances import DEPENDENT
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import DEPENDENT, Real
 from tmm_cli.mechanics.structure.assur import Structure
 from tmm_cli.mechanics.structure.group import Pair
 from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair

@@ -7,15 +7,15 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.balancing import Balancing, steadily
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.dynamics import Balancing, steadily
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.balancing import counterweights, shaft
 from tmm_cli.note.blocks import Block, Heading, Inline, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
 from tmm_cli.note.tables import rows_of
-from tmm_cli.reports.register import walk
+from tmm_cli.reports import walk
 
 FORCE, MOMENT = Symbol("F"), Symbol("M")
 X, Y = Symbol("F", "x"), Symbol("F", "y")

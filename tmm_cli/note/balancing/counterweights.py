@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.balancing import Balanced, BalancingTask, Counterweight, Place
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.dynamics import Balanced, BalancingTask, Counterweight, Place
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.vectors import cross, dot
+from tmm_cli.mechanics.numerics import cross, dot
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import EXACT, Expression, Found, Leaf, added, evaluate, signed

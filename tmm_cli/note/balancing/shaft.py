@@ -7,9 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.balancing import Rotor
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.numerics.vectors import Vector
+from tmm_cli.mechanics.dynamics import Rotor
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, added

@@ -7,19 +7,16 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, said, tabled
 from tmm_cli.note.context import Subject
-from tmm_cli.note.dynamics import flywheel
-from tmm_cli.note.dynamics import parts as driving
-from tmm_cli.note.dynamics import parts as reduced
+from tmm_cli.note.dynamics import flywheel, parts as driving, parts as reduced
 from tmm_cli.note.dynamics.flywheel import OFFSETS, speed_of
 from tmm_cli.note.dynamics.parts import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
 from tmm_cli.note.expression import Found, Function, Leaf
 from tmm_cli.note.math import Fraction, Letter, Sign, row
 from tmm_cli.note.tables import rows_of
-from tmm_cli.reports.cycle_tables import signs
-from tmm_cli.reports.register import walk
+from tmm_cli.reports import signs, walk
 
 TABLES = ("dynamics", "law-of-motion")
 

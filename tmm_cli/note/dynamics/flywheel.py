@@ -8,8 +8,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _, symbol
-from tmm_cli.mechanics.dynamics.flywheel import Tangent
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol
+from tmm_cli.mechanics.dynamics import Tangent
+from tmm_cli.mechanics.forces import Lettered, Symbol
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.parts import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
 from tmm_cli.note.expression import Constant, Found, Leaf, Raised, letters

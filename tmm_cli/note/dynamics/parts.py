@@ -10,14 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.flywheel import Tangent
-from tmm_cli.mechanics.dynamics.motors import Kloss, Linear
-from tmm_cli.mechanics.dynamics.reduced import Curve
-from tmm_cli.mechanics.dynamics.steady import Running, Steady
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol, load_symbols
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.dynamics import Curve, Kloss, Linear, Running, Steady, Tangent
+from tmm_cli.mechanics.forces import Applied, Lettered, Symbol, load_symbols
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import EXACT, Constant, Expression, Found, Function, Leaf, Sum, added, evaluate, signed

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.single_run import SingleRun
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol
+from tmm_cli.mechanics.dynamics import SingleRun
+from tmm_cli.mechanics.forces import Lettered, Symbol
 from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.dynamics.chapter import tables

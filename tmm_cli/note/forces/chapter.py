@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _, filled
-from tmm_cli.mechanics.forces.free_bodies import Lettered, Symbol, balance_symbol, reaction_symbol
-from tmm_cli.mechanics.forces.plan import find_transmitted_forces
-from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE, NO_FORCE
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, largest, without_rounding
+from tmm_cli.mechanics.forces import Lettered, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest, without_rounding
 from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.forces import lever, loads, sections
@@ -18,8 +16,7 @@ from tmm_cli.note.forces.equations import MU
 from tmm_cli.note.forces.sections import parts_of
 from tmm_cli.note.math import Letter, row
 from tmm_cli.note.tables import NONE, over_positions
-from tmm_cli.reports.cycle_tables import has_flywheel
-from tmm_cli.reports.structure_tables import indeterminate
+from tmm_cli.reports import has_flywheel, indeterminate
 
 
 def blocks(subject: Subject) -> Iterable[Block]:

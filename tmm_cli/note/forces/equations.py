@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.equilibrium import ForceSum, MomentEquation, Part, Term
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import ForceSum, MomentEquation, Part, Symbol, Term
 from tmm_cli.note.breaking import chain
 from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
 from tmm_cli.note.math import Letter, Node, Number, row

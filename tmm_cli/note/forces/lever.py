@@ -6,12 +6,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.drawing.paper.sheet import safe
+from tmm_cli.drawing.paper import safe
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol, balance_symbol, load_symbols
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.numerics.tolerances import NO_DIFFERENCE
-from tmm_cli.mechanics.plans.lever import LeverPlan, Scales, drawn_check, lever_plan, sheets
+from tmm_cli.mechanics.forces import Applied, Symbol, balance_symbol, load_symbols
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE
+from tmm_cli.mechanics.plans import LeverPlan, Scales, drawn_check, lever_plan, sheets
 from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added

@@ -8,17 +8,23 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol, balance_symbol, lettered, load_symbols, reaction_symbol
-from tmm_cli.mechanics.forces.loads import Applied, twisted
-from tmm_cli.mechanics.forces.plan import react
+from tmm_cli.mechanics.forces import (
+    Applied,
+    Symbol,
+    balance_symbol,
+    lettered,
+    load_symbols,
+    react,
+    reaction_symbol,
+    twisted,
+)
 from tmm_cli.mechanics.linkage import Friction, Spring
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
-from tmm_cli.mechanics.numerics.vectors import dot
+from tmm_cli.mechanics.numerics import NO_FORCE, dot
 from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
 from tmm_cli.note.kinematics.equations import equal, sense
-from tmm_cli.reports.force_tables import locked_ranges
+from tmm_cli.reports import locked_ranges
 
 
 def weights(subject: Subject) -> Iterable[Block]:

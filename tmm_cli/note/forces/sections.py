@@ -6,15 +6,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from tmm_cli.drawing.paper.sheet import safe
-from tmm_cli.drawing.sheets.group_loads import sheetfuls
+from tmm_cli.drawing.paper import safe
+from tmm_cli.drawing.sheets import sheetfuls
 from tmm_cli.language import _, filled
-from tmm_cli.mechanics.forces.equilibrium import ForceSum, LoadedPart, MomentEquation, loaded_parts
-from tmm_cli.mechanics.forces.free_bodies import DRIVE, Acting, Lead, Loaded, Symbol, leads_of, reaction_symbol
-from tmm_cli.mechanics.forces.plan import GroupForces, Reaction
-from tmm_cli.mechanics.numerics.tolerances import NO_FORCE
-from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
-from tmm_cli.mechanics.plans.record import NamedVector
+from tmm_cli.mechanics.forces import (
+    DRIVE,
+    Acting,
+    ForceSum,
+    GroupForces,
+    Lead,
+    Loaded,
+    LoadedPart,
+    MomentEquation,
+    Reaction,
+    Symbol,
+    leads_of,
+    loaded_parts,
+    reaction_symbol,
+)
+from tmm_cli.mechanics.numerics import NO_FORCE
+from tmm_cli.mechanics.plans import ForcePlan, NamedVector, force_plans
 from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found, Function, Leaf, read

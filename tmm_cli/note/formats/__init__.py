@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.formats.html import html
-from tmm_cli.problem.errors import ProblemError, chosen_names
+from tmm_cli.problem import ProblemError, chosen_names
 
 
 def _docx(note: Note) -> bytes:

@@ -19,10 +19,10 @@ from docx.oxml import OxmlElement, parse_xml
 from docx.oxml.ns import nsdecls, qn
 from docx.shared import Length, Mm, Pt, RGBColor
 
-from tmm_cli.drawing.formats.emf import write_emf
-from tmm_cli.drawing.paper.record import Drawing
+from tmm_cli.drawing.formats import write_emf
+from tmm_cli.drawing.paper import Drawing
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note, Title
 from tmm_cli.note.breaking import formula, width

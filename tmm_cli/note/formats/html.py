@@ -9,9 +9,9 @@ from functools import partial
 from html import escape
 from importlib.resources import files
 
-from tmm_cli.drawing.formats.svg import NOT_XML, write_svg
+from tmm_cli.drawing.formats import NOT_XML, write_svg
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note
 from tmm_cli.note.breaking import formula

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
-from tmm_cli.mechanics.numerics.vectors import Real, largest, without_rounding
-from tmm_cli.mechanics.plans.vector_equations import Along, Step, steps
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.numerics import NO_VECTOR, Real, largest, without_rounding
+from tmm_cli.mechanics.plans import Along, Step, steps
 from tmm_cli.note.blocks import Block, Figure, Heading, Line, Ref, Rows, listed, said, tabled
 from tmm_cli.note.context import Subject
 from tmm_cli.note.kinematics.driver import drivers, output, place_here, positions, speed_here
@@ -18,7 +17,7 @@ from tmm_cli.note.kinematics.equations import name_of
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.plans import accelerations, velocities
 from tmm_cli.note.tables import over_positions
-from tmm_cli.reports.cycle_tables import output_motion, states
+from tmm_cli.reports import output_motion, states
 
 BESIDE = 6  # columns of what links turn with in one table
 

@@ -6,19 +6,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.drawing.paper.picture import Picture
+from tmm_cli.drawing.paper import Picture
 from tmm_cli.language import _, symbol
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.kinematics.strokes import Strokes, Travel
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.kinematics import Strokes, Travel
 from tmm_cli.mechanics.linkage import FRAME, Driver
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
+from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.kinematics.equations import sense
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.math import Letter, Number, Words, row
-from tmm_cli.reports.understood import between_rows
+from tmm_cli.reports import between_rows
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
 

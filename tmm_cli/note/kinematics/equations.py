@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
+from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Slide
-from tmm_cli.mechanics.plans.motion import massive
-from tmm_cli.mechanics.plans.vector_equations import About, Along, OnGuide, Spot, Step, VectorEquation
+from tmm_cli.mechanics.plans import About, Along, OnGuide, Spot, Step, VectorEquation, massive
 from tmm_cli.note.blocks import Block, Equation, listed, said
 from tmm_cli.note.breaking import LINE, width
 from tmm_cli.note.expression import Found, Leaf

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from tmm_cli.drawing.paper.picture import Picture
-from tmm_cli.drawing.sheets.motion_plans import Sort, sorts
+from tmm_cli.drawing.paper import Picture
+from tmm_cli.drawing.sheets import Sort, sorts
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.numerics.tolerances import NO_VECTOR
-from tmm_cli.mechanics.plans.motion import turns
-from tmm_cli.mechanics.plans.record import NamedVector, Plan, extent, in_letters, round_scale
-from tmm_cli.mechanics.plans.vector_equations import Spot
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import NO_VECTOR
+from tmm_cli.mechanics.plans import NamedVector, Plan, Spot, extent, in_letters, round_scale, turns
 from tmm_cli.note.blocks import Block, Equation
 from tmm_cli.note.context import OF_POSITION, Subject
 from tmm_cli.note.expression import Expression, Found, Leaf

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.plans.vector_equations import About, Along, OnGuide, Step, VectorEquation
+from tmm_cli.mechanics.plans import About, Along, OnGuide, Step, VectorEquation
 from tmm_cli.note.blocks import Block, listed, said
 from tmm_cli.note.kinematics import equations as words
 from tmm_cli.note.kinematics.equations import equations, of_known_link

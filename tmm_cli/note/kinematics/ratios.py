@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces.free_bodies import Symbol
-from tmm_cli.mechanics.groups.pairs.lower import axis
+from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.groups import axis
 from tmm_cli.mechanics.linkage import FRAME, Mesh
-from tmm_cli.mechanics.plans.vector_equations import Along, OnGuide, Ratio, Step
+from tmm_cli.mechanics.plans import Along, OnGuide, Ratio, Step
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
 from tmm_cli.note.kinematics.equations import sense

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.balancing import BalancingTask, Place, Plane, Rotor
+from tmm_cli.mechanics.dynamics import BalancingTask, Place, Plane, Rotor
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, MASS
 from tmm_cli.problem import schema

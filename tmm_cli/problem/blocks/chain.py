@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.graph import reached
-from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair
+from tmm_cli.mechanics.structure import KINDS, SpatialChain, SpatialPair, reached
 from tmm_cli.problem import schema as schema_chain
 from tmm_cli.problem.build import validated
 from tmm_cli.problem.errors import Path, ProblemError, Tree, placed_in

@@ -12,9 +12,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME, Driver, Link, Request, Sketch, SpeedTable
-from tmm_cli.mechanics.numerics.double_double import rounded
-from tmm_cli.mechanics.numerics.interpolation import Table
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.numerics import SAME_PLACE, SAME_RATIO, Table, rounded
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -24,7 +22,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.mechanics.structure.cycle import MOST
+from tmm_cli.mechanics.structure import MOST
 from tmm_cli.problem import schema
 from tmm_cli.problem.blocks.links import Members
 from tmm_cli.problem.errors import Path, ProblemError, no_position, quote

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics.motors import Kloss, Linear, Motor
-from tmm_cli.mechanics.dynamics.task import Disk, Profile, Rim, RunTask, SteadyTask
+from tmm_cli.mechanics.dynamics import Disk, Kloss, Linear, Motor, Profile, Rim, RunTask, SteadyTask
 from tmm_cli.mechanics.linkage import Driver, Linkage
 from tmm_cli.mechanics.quantities import (
     ANGLE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis.intermittent import Setting, WheelTask
+from tmm_cli.mechanics.analysis import Setting, WheelTask
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.problem import schema
 from tmm_cli.problem.blocks import keys_on_request as shapes

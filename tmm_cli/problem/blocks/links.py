@@ -10,7 +10,7 @@ from typing import Any
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Link, Linkage, Slide, hinged
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure import analyse
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, latin, nearest, quote, unknown_name
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar

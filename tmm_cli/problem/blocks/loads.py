@@ -13,10 +13,8 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticKnownError
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.linkage import Link, Linkage, LoadTable
-from tmm_cli.mechanics.linkage import Load as LoadRecord
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACE, SAME_RATIO
-from tmm_cli.mechanics.numerics.vectors import pi, square
+from tmm_cli.mechanics.linkage import Link, Linkage, Load as LoadRecord, LoadTable
+from tmm_cli.mechanics.numerics import SAME_PLACE, SAME_RATIO, pi, square
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -30,8 +28,7 @@ from tmm_cli.mechanics.quantities import (
     PRESSURE,
     Dimension,
 )
-from tmm_cli.mechanics.structure.assur import analyse
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.mechanics.structure import analyse, output_link
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.schema_parts import Name, Place, Strict, Value, Vector, checked_value, checked_vector
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar

@@ -11,10 +11,9 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.groups.pairs.higher import CamLaw, Piece
+from tmm_cli.mechanics.groups import CamLaw, Piece
 from tmm_cli.mechanics.linkage import FRAME, Mesh
-from tmm_cli.mechanics.numerics.tolerances import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH
-from tmm_cli.mechanics.numerics.vectors import cross, unit
+from tmm_cli.mechanics.numerics import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.schema_parts import Name, Strict, Value

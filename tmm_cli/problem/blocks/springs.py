@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.linkage import Friction as FrictionRecord
-from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.linkage import Spring as SpringRecord
+from tmm_cli.mechanics.linkage import Friction as FrictionRecord, Linkage, Spring as SpringRecord
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     DAMPING,
@@ -23,7 +21,7 @@ from tmm_cli.mechanics.quantities import (
     TORSION,
     TORSION_DAMPING,
 )
-from tmm_cli.mechanics.structure.assur import analyse
+from tmm_cli.mechanics.structure import analyse
 from tmm_cli.problem.schema_parts import Name, Place, Strict, Value
 from tmm_cli.problem.values import Part, ValueReader, check_name
 

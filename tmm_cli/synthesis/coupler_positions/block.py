@@ -9,11 +9,9 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.numerics.tolerances import SAME_POSITION
+from tmm_cli.mechanics.numerics import SAME_POSITION
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import Value, Vector
-from tmm_cli.problem.values import ValueReader, planar
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, planar
 from tmm_cli.synthesis.blocks import Block, one_of
 from tmm_cli.synthesis.coupler_positions.burmester import CouplerPositionsTask, Side
 

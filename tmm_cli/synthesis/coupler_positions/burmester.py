@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.tolerances import DEAD_COSINE, NO_TURN
+from tmm_cli.mechanics.numerics import DEAD_COSINE, NO_TURN
 from tmm_cli.synthesis.four_bar import sharpest
 
 EXACT: Final = np.longdouble

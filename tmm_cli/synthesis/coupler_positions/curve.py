@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.roots import bisect
+from tmm_cli.mechanics.numerics import bisect
 from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, centre, equal_angles, unit
 
 APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between

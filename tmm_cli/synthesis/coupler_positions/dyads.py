@@ -17,8 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.roots import least
-from tmm_cli.mechanics.numerics.tolerances import SAME_PLACES
+from tmm_cli.mechanics.numerics import SAME_PLACES, least
 from tmm_cli.synthesis.coupler_positions.burmester import (
     SIDES,
     CouplerPositionsTask,

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, Phrase
-from tmm_cli.mechanics.numerics.vectors import settled
+from tmm_cli.mechanics.numerics import settled
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style, swept
 from tmm_cli.synthesis.coupler_positions.burmester import CouplerPositionsTask, Dyads, Marks, Poses, Side, by_turn

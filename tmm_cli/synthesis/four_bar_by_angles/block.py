@@ -10,9 +10,7 @@ from pydantic import Field
 
 from tmm_cli.language import _, translated
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER
-from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.schema_parts import Value, Vector
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Block, Range, numbers
 from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, AnglePairsTask, Function
 from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS

@@ -15,8 +15,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.double_double import PI, DoubleDouble
-from tmm_cli.mechanics.numerics.vectors import unit
+from tmm_cli.mechanics.numerics import PI, DoubleDouble, unit
 
 EXACT: Final = np.longdouble
 POLISHES: Final = 4

@@ -8,12 +8,9 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.double_double import PI
-from tmm_cli.mechanics.numerics.roots import least
-from tmm_cli.mechanics.numerics.tolerances import DEAD_COSINE_DOUBLE
+from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, least
 from tmm_cli.synthesis.four_bar import FourBar, sharpest, turning
-from tmm_cli.synthesis.four_bar_by_angles import freudenstein
-from tmm_cli.synthesis.four_bar_by_angles import freudenstein as least_squares
+from tmm_cli.synthesis.four_bar_by_angles import freudenstein, freudenstein as least_squares
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, Bars, parallelogram
 
 FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {

@@ -9,8 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _
-from tmm_cli.mechanics.numerics.roots import least
-from tmm_cli.mechanics.numerics.vectors import settled
+from tmm_cli.mechanics.numerics import least, settled
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.construction import Arc, Construction, Diagram, Line, Segment, Spot, swept
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs, parallelogram

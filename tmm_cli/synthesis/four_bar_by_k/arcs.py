@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.vectors import settled, unit
+from tmm_cli.mechanics.numerics import settled, unit
 from tmm_cli.synthesis.four_bar import cosine as cosine_of
 from tmm_cli.synthesis.measures import theta_of
 

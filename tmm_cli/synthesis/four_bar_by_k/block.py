@@ -8,9 +8,7 @@ from pydantic import Field
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import LENGTH
-from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.schema_parts import Value, Vector
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector
 from tmm_cli.synthesis.blocks import Block, numbers
 from tmm_cli.synthesis.four_bar_by_k.arcs import FourBarByKTask
 from tmm_cli.synthesis.four_bar_by_k.solver import QUANTITIES

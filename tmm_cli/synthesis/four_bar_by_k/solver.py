@@ -10,8 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.roots import find_roots
-from tmm_cli.mechanics.numerics.vectors import settled, unit
+from tmm_cli.mechanics.numerics import find_roots, settled, unit
 from tmm_cli.synthesis.construction import Angle, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box, circle
 from tmm_cli.synthesis.four_bar_by_k.arcs import (
     ARC,

@@ -11,19 +11,26 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from tmm_cli.batch.tape.traced import TracedNumber
-from tmm_cli.batch.task import Range, Two, two
-from tmm_cli.batch.variant import Variant
+from tmm_cli.batch import Range, TracedNumber, Two, Variant, two
 from tmm_cli.language import _
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.errors import MobilityError
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH
-from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.refusals import mobility
-from tmm_cli.problem.schema_parts import Name, Strict, Value, Vector
-from tmm_cli.problem.units import PhysicalValue, UnitSystem, VariedUnits
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    Name,
+    Path,
+    PhysicalValue,
+    Problem,
+    ProblemError,
+    Strict,
+    UnitSystem,
+    Value,
+    ValueReader,
+    VariedUnits,
+    Vector,
+    mobility,
+    quote,
+)
 from tmm_cli.synthesis.blocks import Block, OfTheFile
 from tmm_cli.synthesis.optimal import task
 from tmm_cli.synthesis.optimal.block_ranges import FileWith, asked_over, driven, place_of, read_ranges

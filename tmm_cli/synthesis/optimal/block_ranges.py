@@ -8,16 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.task import MOST, SAME, Chosen, Range, two
-from tmm_cli.batch.variant import Variant
+from tmm_cli.batch import MOST, SAME, Chosen, Range, Variant, two
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import Driver
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH, Dimension
-from tmm_cli.problem.arithmetic import evaluate_quantity
-from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.record import Problem
-from tmm_cli.problem.units import PhysicalValue, UnitError, UnitSystem
-from tmm_cli.problem.values import ValueReader
+from tmm_cli.problem import (
+    Path,
+    PhysicalValue,
+    Problem,
+    ProblemError,
+    UnitError,
+    UnitSystem,
+    ValueReader,
+    evaluate_quantity,
+    quote,
+)
 from tmm_cli.synthesis.blocks import OfTheFile
 from tmm_cli.synthesis.optimal.task import Parameter
 

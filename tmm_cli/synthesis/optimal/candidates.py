@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.taped import OneByOne, Taped, variants_of
-from tmm_cli.batch.variant import WANTED, Places, alike, sketch_of
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.batch import WANTED, OneByOne, Places, Taped, alike, sketch_of, variants_of
+from tmm_cli.mechanics.assembly import assemble, mobile
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Sketch
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over, Read
 from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
 from tmm_cli.synthesis.optimal.task import Constraint, Task, check, first_of, near, one_sense

@@ -14,7 +14,7 @@ from math import prod
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.candidates import Candidates
 
 Evaluate = Callable[[Real], tuple[Real, Real]]  # (variants, n) in 0..1 -> objective, violation (0: none)

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.linear import solve
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real, solve
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
 from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, corners
 

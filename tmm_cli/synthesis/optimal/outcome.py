@@ -10,11 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.variant import Places
+from tmm_cli.batch import Places
 from tmm_cli.language import N_, Phrase
-from tmm_cli.mechanics.numerics.roots import least
-from tmm_cli.mechanics.numerics.tolerances import NO_VIOLATION
-from tmm_cli.mechanics.numerics.vectors import Real, Vector
+from tmm_cli.mechanics.numerics import NO_VIOLATION, Real, Vector, least
 from tmm_cli.synthesis.construction import Diagram, Line
 from tmm_cli.synthesis.measures import crank_turns
 from tmm_cli.synthesis.optimal import many_starts

@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.batch.variant import Places
-from tmm_cli.mechanics.numerics.roots import WINDOW
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.batch import Places
+from tmm_cli.mechanics.numerics import WINDOW, Real
 from tmm_cli.synthesis.optimal.candidates import Candidates, reader
 from tmm_cli.synthesis.optimal.evolution import Evolved
 from tmm_cli.synthesis.optimal.many_starts import Ends

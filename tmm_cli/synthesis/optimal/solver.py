@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
 from tmm_cli.synthesis.optimal.evolution import Choices, Evolved, evolve

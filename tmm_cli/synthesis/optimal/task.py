@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.variant import Make
-from tmm_cli.batch.variant import numbers as numbers_of
+from tmm_cli.batch import Make, numbers as numbers_of
 from tmm_cli.language import _
-from tmm_cli.mechanics.assembly.choose import assemble
-from tmm_cli.mechanics.assembly.rank import mobile
+from tmm_cli.mechanics.assembly import assemble, mobile
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.kinematics.driver_range import cycle_of
+from tmm_cli.mechanics.kinematics import cycle_of
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.quantities.base import Goal
 from tmm_cli.synthesis.record import Infeasible
 

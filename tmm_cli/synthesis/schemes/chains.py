@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise, permutations
 
-from tmm_cli.mechanics.structure.graph import reach
+from tmm_cli.mechanics.structure import reach
 
 Form = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 """Colours of the vertices in canonical order, and the edges (i, j, kind), i < j, in that numbering."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from random import Random
 
-from tmm_cli.mechanics.numerics.vectors import cross
+from tmm_cli.mechanics.numerics import cross
 from tmm_cli.synthesis.schemes.schemes import Placed, Scheme
 
 CRANK, CRANK_AT = 60, (60, 120, 30)  # mm; deg, of the first, second and third crank

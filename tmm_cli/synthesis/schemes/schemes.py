@@ -23,8 +23,7 @@ from itertools import product
 from typing import Literal
 
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.assur import structural_formula
-from tmm_cli.mechanics.structure.group import ROMAN
+from tmm_cli.mechanics.structure import ROMAN, structural_formula
 from tmm_cli.synthesis.schemes.chains import Form, canonical
 
 Kind = Literal["R", "P"]

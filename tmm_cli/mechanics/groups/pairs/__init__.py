@@ -5,7 +5,7 @@ from collections.abc import Callable
 from tmm_cli.mechanics.groups.pairs.higher import Cam, Gear, Rack
 from tmm_cli.mechanics.groups.pairs.lower import Constraint, Sliding, Turning
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.structure import Pair
 
 PAIRS: dict[str, Callable[[Pair, Linkage], Constraint]] = {
     "R": Turning.of,

@@ -12,9 +12,8 @@ import numpy as np
 from tmm_cli.mechanics.groups.pairs.lower import Guided, HigherPair, JacobianRow, Teeth, axis
 from tmm_cli.mechanics.groups.state import Drives, PairReaction, Poses, Rates
 from tmm_cli.mechanics.linkage import Linkage, Slide
-from tmm_cli.mechanics.numerics.tolerances import AT_EDGE_OF_CAM, NO_JUMP_OF_CAM
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, dot, pi, unit
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.numerics import AT_EDGE_OF_CAM, NO_JUMP_OF_CAM, Real, Vector, dot, pi, unit
+from tmm_cli.mechanics.structure import Pair
 
 
 @dataclass(frozen=True)

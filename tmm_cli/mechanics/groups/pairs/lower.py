@@ -18,8 +18,8 @@ import numpy as np
 
 from tmm_cli.mechanics.groups.state import Drives, PairReaction, Poses, Rates
 from tmm_cli.mechanics.linkage import Driver, Linkage, Mesh, Slide
-from tmm_cli.mechanics.numerics.vectors import Real, Vector, cross, dot, unit
-from tmm_cli.mechanics.structure.group import Pair
+from tmm_cli.mechanics.numerics import Real, Vector, cross, dot, unit
+from tmm_cli.mechanics.structure import Pair
 
 JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
 

@@ -14,14 +14,13 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.batch.prepare import reactions_of
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.batch import reactions_of
+from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.roots import highest, least, peak, peaks_of, top
-from tmm_cli.mechanics.numerics.vectors import Real
-from tmm_cli.mechanics.structure.naming import output_link
+from tmm_cli.mechanics.numerics import Real, highest, least, peak, peaks_of, top
+from tmm_cli.mechanics.structure import output_link
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends
 

@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.variant import WANTED
+from tmm_cli.batch import WANTED
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.strokes import output_place
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion, output_place
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.roots import FIT, SIDE, peak, value
-from tmm_cli.mechanics.numerics.vectors import Real, dot
+from tmm_cli.mechanics.numerics import FIT, SIDE, Real, dot, peak, value
 from tmm_cli.synthesis.measures import Ends
 from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
 

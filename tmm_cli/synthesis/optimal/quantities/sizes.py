@@ -10,11 +10,10 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics.roots import peak, peaks_of
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real, peak, peaks_of
 from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Constant, Over, Peak, Read, Windows
 
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # right, left, top, bottom

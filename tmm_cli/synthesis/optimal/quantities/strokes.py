@@ -9,13 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.strokes import output_place, output_slope
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion, output_place, output_slope
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics.roots import highest, peak, zero
-from tmm_cli.mechanics.numerics.vectors import Real
+from tmm_cli.mechanics.numerics import Real, highest, peak, zero
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import Ends, ratio_of_curve
 from tmm_cli.synthesis.optimal.quantities.base import Curve, Goal, Over, Read, Windows

@@ -9,10 +9,9 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis.pipeline import Results
-from tmm_cli.mechanics.forces.plan import Reactions
-from tmm_cli.mechanics.kinematics.motion import Motion
-from tmm_cli.mechanics.kinematics.pressure import followers, sides
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.mechanics.forces import Reactions
+from tmm_cli.mechanics.kinematics import Motion, followers, sides
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import BALANCING, REACTION_SIZE
 from tmm_cli.synthesis import measures
