@@ -8,24 +8,21 @@ from .arithmetic import (
     evaluate_quantity as evaluate_quantity,
     resolve_parameters as resolve_parameters,
 )
-from .blocks.chain import build_chain as build_chain
 from .blocks.loads import stroke_dimension as stroke_dimension
 from .build import (
-    BUDGET as BUDGET,
+    build_chain as build_chain,
     build_problem as build_problem,
     build_shape as build_shape,
     checked_shape as checked_shape,
     early_parameters as early_parameters,
     is_chain as is_chain,
     parameters as parameters,
-    parts as parts,
     problem_of as problem_of,
     refuse_law as refuse_law,
-    refuse_options as refuse_options,
-    refuse_work as refuse_work,
     unit_system as unit_system,
     validated as validated,
 )
+from .error_messages import in_words_of as in_words_of, mobility as mobility, refusal as refusal
 from .errors import (
     Mark as Mark,
     Path as Path,
@@ -45,8 +42,14 @@ from .errors import (
     visible as visible,
 )
 from .formats import foreign_of as foreign_of
-from .formats.foreign import written as written
+from .formats.imported_mechanism import written as written
 from .formats.pmks_link import DIGITS as DIGITS
+from .problems import (
+    ChainProblem as ChainProblem,
+    Problem as Problem,
+    Synthesised as Synthesised,
+    TaskProblem as TaskProblem,
+)
 from .reader import (
     MAX_BYTES as MAX_BYTES,
     Composer as Composer,
@@ -60,13 +63,6 @@ from .reader import (
     unused as unused,
     with_settings as with_settings,
 )
-from .record import (
-    ChainProblem as ChainProblem,
-    Problem as Problem,
-    Synthesised as Synthesised,
-    TaskProblem as TaskProblem,
-)
-from .refusals import in_words_of as in_words_of, mobility as mobility, refusal as refusal
 from .scalars import finite_float as finite_float, plain_value as plain_value
 from .schema import (
     File as File,
@@ -75,7 +71,8 @@ from .schema import (
     SpatialFile as SpatialFile,
     file_schema as file_schema,
 )
-from .schema_parts import (
+from .schema_errors import FOREIGN as FOREIGN, shape_error as shape_error
+from .schema_types import (
     VALUE as VALUE,
     FileHead as FileHead,
     Name as Name,
@@ -84,7 +81,6 @@ from .schema_parts import (
     Vector as Vector,
     checked_value as checked_value,
 )
-from .shape_errors import FOREIGN as FOREIGN, shape_error as shape_error
 from .templates import list_templates as list_templates, template_text as template_text, translations as translations
 from .units import (
     SYMBOLS as SYMBOLS,
@@ -100,3 +96,9 @@ from .units import (
     plain_text as plain_text,
 )
 from .values import ValueReader as ValueReader, planar as planar
+from .work_limits import (
+    BUDGET as BUDGET,
+    parts as parts,
+    refuse_options as refuse_options,
+    refuse_work as refuse_work,
+)

@@ -1,4 +1,4 @@
-"""How much work a problem may ask for: so much that any command ends within a minute and a gigabyte on one core."""
+"""Build problems from files that have been read: names are looked up, numbers get their units."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from pydantic import BaseModel, ValidationError
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.linkage import FRAME, Link, Linkage, Mesh, Output, Request
+from tmm_cli.mechanics.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.mechanics.quantities import ANGLE
+from tmm_cli.mechanics.structure import KINDS, SpatialChain, SpatialPair, reached
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import resolve_parameters
 from tmm_cli.problem.blocks.drivers import build_cycle, build_drivers, build_request, build_sketch
@@ -22,143 +23,18 @@ from tmm_cli.problem.blocks.loads import build_loads, with_masses
 from tmm_cli.problem.blocks.meshes import build_meshes
 from tmm_cli.problem.blocks.springs import with_springs
 from tmm_cli.problem.errors import Path, ProblemError, Tree, placed_in, under
-from tmm_cli.problem.record import Problem, TaskProblem
-from tmm_cli.problem.shape_errors import shape_error
+from tmm_cli.problem.problems import ChainProblem, Problem, TaskProblem
+from tmm_cli.problem.schema_errors import shape_error
+from tmm_cli.problem.schema_types import MAX_LINKS
 from tmm_cli.problem.units import ExtendedUnits, PhysicalValue, UnitSystem
-from tmm_cli.problem.values import Part, ValueReader
+from tmm_cli.problem.values import Part, ValueReader, check_name
+from tmm_cli.problem.work_limits import refuse_work
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import WheelTask
 
 
 TASK_READER = "tmm_cli.synthesis.reading"  # reads the block synthesis, which stands above the problem
-BUDGET = 3_000_000  # parts at positions, each up to 20 us and 160 B: 40 parts at 74 280 took 44 s and 536 MB
-SEARCHED = 720  # positions more: the range, the strokes and the trajectories are found on a grid of their own
-EACH = 8  # positions more for each link: what is searched for in each group computes all links before it
-LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their measured times and tables
-SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
-SHEETS = 6  # that are drawn beside those in detail
-LAID_OUT = 6  # positions in detail from which laying large sheets out takes longer than drawing: as their square
-PLANS = 0.25  # sheets that the plans of motion of a position count for on large sheets
-CENTRES = 0.1  # positions that a sheet of centres counts for besides, times the square of the number of links
-JUDGED = 0.4  # positions that a part counts for in each that is judged: against all data, so it grows with the square
-FIRST, LONG = 20, 720  # positions more that are judged for what was searched for; the most that are
-
-
-def parts(linkage: Linkage) -> int:
-    """The size of a linkage: links with their pairs, points on them, loads and springs."""
-    links, points, loads = _counted(linkage)
-    return LINK * links + POINT * points + LOAD * loads
-
-
-def refuse_work(linkage: Linkage, request: Request) -> None:
-    """Refuse what no stage could do within the budget. Raises ProblemError, not yet located."""
-    size, count = parts(linkage), len(request.places) or request.count
-    most = BUDGET // size - _searched(linkage)
-    if most < 1:
-        whole = BUDGET // (_searched(linkage) + 1)
-        raise ProblemError(
-            _("this linkage is too large"),
-            path=("links",),
-            found=_told(linkage),
-            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole),
-            key=True,
-        )
-    if count > most:
-        raise ProblemError(
-            _("too many positions for so many links, points and loads"),
-            path=("positions", "count"),
-            found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
-            allowed=_("at most {most}").format(most=most),
-        )
-
-
-def refuse_options(
-    linkage: Linkage,
-    count: int,
-    *,
-    digits: bool,
-    detail: int | None,
-    large: bool = False,
-    plans: int = 0,
-    centres: int = 0,
-) -> None:
-    """Refuse what the options of a command add to the work at so many positions, before it starts.
-
-    detail: positions that are drawn in detail; None where nothing is drawn. large: on large sheets, which are drawn
-    again and again until they are full; plans: positions whose plans of motion alone are on them. centres: positions
-    whose instantaneous centres are found and drawn.
-    Raises ProblemError, not yet located.
-    """
-    size = parts(linkage)
-    left = BUDGET / size - _searched(linkage) - count
-    if digits:
-        each = JUDGED * size
-        left -= each * (FIRST + min(count, LONG))
-        if left < 0:
-            few = (left + count + each * min(count, LONG)) / (1 + each)
-            most = int(few if few < LONG else left + count)
-            raise ProblemError(
-                _("too many positions and too large a linkage for all digits to be judged"),
-                path=("--digits",),
-                found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
-                allowed=_("without --digits")
-                if most < 1
-                else _("at most {most} positions, or without --digits").format(most=most),
-            )
-    each = SHEET + CENTRES * len(linkage.moving) ** 2
-    if each * centres > left:
-        most = int(left // each)
-        raise ProblemError(
-            _("these are too many instantaneous centres for so many links and positions"),
-            path=("--centres",),
-            found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_told(linkage)),
-            allowed=_("without centres")
-            if most < 1
-            else _("at most {most} in detail, or without centres").format(most=most),
-        )
-    if detail is not None and SHEET * (_sheets(detail, large) + PLANS * plans) > left >= SHEET * _sheets(detail, large):
-        raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"),
-            path=("--positions",),
-            found=_("{count} positions; {linkage}").format(count=plans, linkage=_told(linkage)),
-            allowed=_("plans of at most {most}, or --positions detail").format(
-                most=int((left / SHEET - _sheets(detail, large)) / PLANS)
-            ),
-        )
-    if detail is not None and SHEET * _sheets(detail, large) > left:
-        most = max((few for few in range(detail) if SHEET * _sheets(few, large) <= left), default=-1)
-        raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"),
-            path=("positions", "detail"),
-            found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_told(linkage)),
-            allowed=_("without drawings")
-            if most < 0
-            else _("at most {most} in detail, or without drawings").format(most=most),
-        )
-
-
-def _sheets(detail: int, large: bool) -> float:
-    """Sheets of positions that drawings count for."""
-    return SHEETS + detail * (1 + large * detail / LAID_OUT)
-
-
-def _searched(linkage: Linkage) -> int:
-    return SEARCHED + EACH * len(linkage.moving)
-
-
-def _told(linkage: Linkage) -> str:
-    links, points, loads = _counted(linkage)
-    return _("{links} links, {points} points, {loads} loads").format(links=links, points=points, loads=loads)
-
-
-def _counted(linkage: Linkage) -> tuple[int, int, int]:
-    """Moving links, points on them, loads and springs."""
-    points = sum(len(linkage.links[name].points) for name in linkage.moving)
-    return len(linkage.moving), points, len(linkage.acting)
-
-
-# From the shape of a problem file to a linkage: names are looked up, numbers get their units.
 
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -329,7 +205,7 @@ def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader)
     """What a block asks for that few files have: its module in `blocks`, which reads it, is imported for them alone."""
     if getattr(shape, block) is None:
         return None
-    module = import_module(f"tmm_cli.problem.blocks.{block}")
+    module = import_module("tmm_cli.problem.blocks.optional_blocks")
     return getattr(module, f"build_{block}")(shape, linkage, values)
 
 
@@ -345,7 +221,7 @@ def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReade
         alone = shape.model_copy(update={"intermittent": {}})
         return build_shape(alone, tree, ValueReader(own, values.units)).linkage
 
-    module = import_module("tmm_cli.problem.blocks.intermittent")  # few files have the block
+    module = import_module("tmm_cli.problem.blocks.optional_blocks")  # few files have the block
     wheels: tuple[WheelTask, ...] = module.build_wheels(shape, linkage, values, other)
     return wheels
 
@@ -377,3 +253,78 @@ def early_parameters(tree: Tree) -> dict[str, PhysicalValue]:
     """The parameters of a file with a task that do not rest on what the task is to find. Raises ProblemError."""
     early: dict[str, PhysicalValue] = import_module(TASK_READER).TaskFile(tree).early
     return early
+
+
+SPATIAL: Path = ("structure", "spatial")
+WITHOUT_PARAMETERS = ValueReader({}, UnitSystem())
+
+
+def build_chain(tree: Tree) -> ChainProblem:
+    """A chain from a file that has been read. Raises ProblemError, located in the file."""
+    shape = validated(schema.SpatialFile, tree)
+    name = tree.name
+    spatial = shape.structure.spatial
+    with placed_in(tree):
+        chain = _chain(spatial)
+        if spatial.output is not None:
+            WITHOUT_PARAMETERS.known(spatial.output, chain.links, (*SPATIAL, "output"), "moving link")
+        return ChainProblem(
+            name,
+            shape.title or name,
+            chain,
+            spatial.output,
+            _local(spatial, chain),
+            spatial.wanted,
+            WITHOUT_PARAMETERS.units,
+            shape.description,
+            shape.reference,
+            shape.shows,
+            tree,
+        )
+
+
+def _chain(spatial: schema.Spatial) -> SpatialChain:
+    links = _links(spatial)
+    pairs = []
+    for name, pair in spatial.pairs.items():
+        part = Part(pair, (*SPATIAL, "pairs", name), WITHOUT_PARAMETERS)
+        check_name(name, part.path, "pair")
+        i, j = part.two_links((FRAME, *links))
+        part.one_of("kind", "freedoms")
+        pairs.append(SpatialPair(name, i, j, KINDS[pair.kind] if pair.kind else pair.freedoms or 0, pair.kind or ""))
+    chain = SpatialChain(links, tuple(pairs))
+    there = reached(chain.pairs)
+    if apart := [link for link in links if link not in there]:  # W would count a chain of its own
+        message = _("no pairs join link {link} to the frame").format(link=apart[0])
+        raise ProblemError(message, path=(*SPATIAL, "pairs"), key=True)
+    return chain
+
+
+def _links(spatial: schema.Spatial) -> tuple[str, ...]:
+    given = spatial.links
+    if isinstance(given, int):
+        return tuple(str(number) for number in range(1, given + 1))
+    if given is None:
+        named = dict.fromkeys(link for pair in spatial.pairs.values() for link in pair.between if link != FRAME)
+        for name, pair in spatial.pairs.items():
+            for number, link in enumerate(pair.between):
+                check_name(link, (*SPATIAL, "pairs", name, "between", number), "link")
+        if len(named) > MAX_LINKS:
+            raise ProblemError(
+                _("there are too many links"),
+                path=(*SPATIAL, "pairs"),
+                found=str(len(named)),
+                allowed=_("at most {max_links}").format(max_links=MAX_LINKS),
+            )
+        return tuple(named)
+    for number, link in enumerate(given):
+        check_name(link, (*SPATIAL, "links", number), "link", (FRAME, *given[:number]))
+    return tuple(given)
+
+
+def _local(spatial: schema.Spatial, chain: SpatialChain) -> int | None:
+    if not isinstance(spatial.local, dict):
+        return spatial.local
+    for link in spatial.local:
+        WITHOUT_PARAMETERS.known(link, chain.links, (*SPATIAL, "local", link), "moving link", key=True)
+    return sum(spatial.local.values())

@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from tmm_cli.problem.blocks.keys_on_request import Balancing, Dynamics, Wheels
 from tmm_cli.problem.blocks.loads import Load, Mass
 from tmm_cli.problem.blocks.meshes import Cam, Gear, Rack
+from tmm_cli.problem.blocks.optional_keys import Balancing, Dynamics, Wheels
 from tmm_cli.problem.blocks.springs import Friction, Spring
-from tmm_cli.problem.schema_parts import (
+from tmm_cli.problem.schema_types import (
     MAX_LINKS,
     MAX_POSITIONS,
     NAMES,

@@ -15,7 +15,7 @@ from tmm_cli.mechanics.numerics import NO_COSINE
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension
 from tmm_cli.problem.arithmetic import MOST_ANGLE, evaluate, evaluate_quantity
 from tmm_cli.problem.errors import Path, ProblemError, nearest, quote, under, unknown_name
-from tmm_cli.problem.schema_parts import OnLine
+from tmm_cli.problem.schema_types import OnLine
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 
 LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits

@@ -30,7 +30,7 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.mechanics.structure import analyse, output_link
 from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.schema_parts import Name, Place, Strict, Value, Vector, checked_value, checked_vector
+from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value, checked_vector
 from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from tmm_cli.mechanics.linkage import FRAME, Mesh
 from tmm_cli.mechanics.numerics import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.problem.errors import Path, ProblemError, quote
-from tmm_cli.problem.schema_parts import Name, Strict, Value
+from tmm_cli.problem.schema_types import Name, Strict, Value
 from tmm_cli.problem.values import Part, ValueReader, check_name
 
 if TYPE_CHECKING:

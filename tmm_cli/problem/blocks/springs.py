@@ -22,7 +22,7 @@ from tmm_cli.mechanics.quantities import (
     TORSION_DAMPING,
 )
 from tmm_cli.mechanics.structure import analyse
-from tmm_cli.problem.schema_parts import Name, Place, Strict, Value
+from tmm_cli.problem.schema_types import Name, Place, Strict, Value
 from tmm_cli.problem.values import Part, ValueReader, check_name
 
 if TYPE_CHECKING:

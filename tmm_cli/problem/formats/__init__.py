@@ -7,7 +7,7 @@ from typing import Final, Protocol
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.formats import linkage_v2, pmks_link, pylinkage
-from tmm_cli.problem.formats.foreign import Foreign
+from tmm_cli.problem.formats.imported_mechanism import Foreign
 
 
 class Format(Protocol):

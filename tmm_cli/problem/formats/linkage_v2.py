@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Node, Push, Slide
+from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Node, Push, Slide
 from tmm_cli.problem.reader import read_text
 
 

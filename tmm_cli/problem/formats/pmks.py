@@ -13,7 +13,7 @@ from typing import Final
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Length, Push, Slide
+from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Length, Push, Slide
 
 MOST = 500  # joints, links
 METRE: Final[dict[Length, float]] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}

@@ -23,7 +23,7 @@ from urllib.parse import unquote
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.formats.foreign import Foreign, Length
+from tmm_cli.problem.formats.imported_mechanism import Foreign, Length
 from tmm_cli.problem.formats.pmks import Force, Joint, Link, Saved, foreign
 from tmm_cli.problem.values import LARGEST
 

@@ -7,7 +7,7 @@ import math
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.formats.foreign import FRAME, Body, Drive, Foreign, Node, Slide
+from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Node, Slide
 from tmm_cli.problem.reader import read_text
 
 JOINTS = ("ground", "revolute", "prismatic", "tracker")

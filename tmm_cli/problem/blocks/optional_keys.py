@@ -1,4 +1,4 @@
-"""The shape of the block `dynamics`: what drives the machine, and the flywheel that keeps its speed."""
+"""Keys of the blocks that few files have: dynamics, balancing, intermittent."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from tmm_cli.problem.schema_parts import Name, Place, Strict, Value, Vector, checked_value
+from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value
 
 
 def _profile(found: Any) -> Any:

@@ -40,7 +40,7 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.mechanics.structure import Structure
 from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
-from tmm_cli.problem.record import Problem
+from tmm_cli.problem.problems import Problem
 from tmm_cli.problem.units import UnitSystem
 
 
