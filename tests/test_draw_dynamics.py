@@ -25,7 +25,7 @@ from tmm_cli.mechanics.dynamics import Linear, Rim, SteadyTask
 from tmm_cli.mechanics.linkage import Load
 from tmm_cli.note import html, note
 from tmm_cli.note.dynamics import parts as words
-from tmm_cli.reports import input_tables
+from tmm_cli.reports import input_data_tables
 
 THIN = 0.05  # mm: less than half of a line
 TASKS = {  # of another way each: found for a constant moment, far from zero inertia, given, none at all, by a motor
@@ -166,7 +166,7 @@ def test_letters_of_the_law_of_motion_are_those_of_the_course():
 
 
 def test_the_data_of_the_motor_are_told():
-    (table,) = (one for one in input_tables(problem("shaper-motor")) if one.name == "machine")
+    (table,) = (one for one in input_data_tables(problem("shaper-motor")) if one.name == "machine")
     rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
     assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
     assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4

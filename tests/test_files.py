@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
-from tmm_cli.reports import Staged, files, folder_name, folder_of, held, listed, write_whole
+from tmm_cli.reports import Staged, folder_name, folder_of, held, listed, result_files as files, write_whole
 
 SHAPER = ROOT / "problems" / "shaper.yaml"
 SINE = ROOT / "problems" / "sine.yaml"
@@ -214,7 +214,7 @@ def test_a_run_that_is_killed_while_it_writes_leaves_the_old_results_and_the_nex
     before = content(tmp_path / "sine")
     code = (
         "import os, sys\n"
-        "from tmm_cli.reports.files import Staged\n"
+        "from tmm_cli.reports.result_files import Staged\n"
         "with Staged(sys.argv[1]) as staged:\n"
         "    staged.write('cycle.csv', ('half',))\n"
         "    print('now', flush=True)\n"

@@ -18,7 +18,7 @@ from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.mechanics.dynamics import reduced_machine
 from tmm_cli.mechanics.numerics import DoubleDouble, Table, rounded
 from tmm_cli.problem import problem_of, read_text, template_text
-from tmm_cli.reports import collect_warnings, input_tables
+from tmm_cli.reports import collect_warnings, input_data_tables
 from tmm_cli.sweep import Mechanisms, read_axes, swept
 
 CRANK_SLIDER = """tmm: 1
@@ -176,7 +176,7 @@ def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
 
 
 def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
-    *_, told = input_tables(load(str(ROOT / "problems/toggle-press.yaml")))
+    *_, told = input_data_tables(load(str(ROOT / "problems/toggle-press.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
     assert told.title == "press against the stroke" and told.notes == ("Its direction is 90 deg.",)
@@ -302,7 +302,7 @@ def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
 
 def test_shares_are_told_as_they_are_written():
     text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [5 %, 5 kN], [1, 2 kN]]")
-    *_, told = input_tables(problem_of(read_text(text, "x.yaml")))
+    *_, told = input_data_tables(problem_of(read_text(text, "x.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
     assert told.title == "gas against the share of the stroke"

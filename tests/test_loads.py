@@ -12,7 +12,7 @@ from tmm_cli.mechanics.analysis import at_positions
 from tmm_cli.mechanics.dynamics import reduced_machine
 from tmm_cli.mechanics.numerics import Table
 from tmm_cli.problem import ProblemError, problem_of, read_text
-from tmm_cli.reports import collect_warnings, doubts, input_tables
+from tmm_cli.reports import collect_warnings, doubts, input_data_tables
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}
@@ -227,7 +227,7 @@ def test_point_masses_make_one_body():
 
 def test_what_was_understood_of_loads_is_told():
     results = solved("loads: {f: {on: 2, from: 3, moment: {resists: 2}, when: [0, 90]}}")
-    table = next(table for table in input_tables(results.problem) if table.name == "loads")
+    table = next(table for table in input_data_tables(results.problem) if table.name == "loads")
     assert [column.values[0] for column in table.columns] == [
         "f",
         "2 from 3",

@@ -12,7 +12,7 @@ from tmm_cli.batch import Task, read_task
 from tmm_cli.grading import Given, Submission, VariantTable, grade
 from tmm_cli.mechanics.accuracy import judged
 from tmm_cli.problem import ProblemError, build_problem, problem_of, read_text
-from tmm_cli.reports import input_tables
+from tmm_cli.reports import input_data_tables
 from tmm_cli.sweep import Mechanisms, read_axes, swept
 
 V_ENGINE = Path("tests/data/v-compressor.yaml").read_text(encoding="utf-8")
@@ -160,7 +160,7 @@ def test_grading_gives_each_student_the_strokes_of_his_own_pistons():
 
 
 def test_tables_of_the_file_name_the_link_whose_stroke_it_is():
-    tables = {table.name: table for table in input_tables(build_problem(read_text(TWO_PISTONS, "pistons.yaml")))}
+    tables = {table.name: table for table in input_data_tables(build_problem(read_text(TWO_PISTONS, "pistons.yaml")))}
     assert "stroke of link 5" in str([column.values for column in tables["loads"].columns])
 
 

@@ -8,7 +8,7 @@ from test_loads import MACHINE
 from tmm_cli import prepare, solve
 from tmm_cli.mechanics.accuracy import bounds
 from tmm_cli.problem import ProblemError, problem_of, read_text
-from tmm_cli.reports import input_tables
+from tmm_cli.reports import input_data_tables
 
 BODIES = """masses: {2: {mass: 3 kg, inertia: 0.01, centre: {on: AB}}, 3: {mass: 2 kg}}
 loads: {f: {on: 3, force: {resists: 100 N}}}
@@ -140,7 +140,7 @@ def test_accelerations_may_jump_but_speeds_may_not():
 
 def test_what_was_understood_of_it_is_told():
     driver = "speed: {against: crank angle, between: linear, table: [[0, 4], [180, 8], [360, 4]]}"
-    told = next(one for one in input_tables(solved(driver).problem) if one.name == "speeds")
+    told = next(one for one in input_data_tables(solved(driver).problem) if one.name == "speeds")
     assert told.notes == ("Between rows: constant acceleration from row to row.",)
     assert [column.values[0] for column in told.columns] == ["0 deg", "4 rad/s", "7.63944 rad/s^2"]
 

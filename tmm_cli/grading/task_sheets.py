@@ -20,7 +20,7 @@ from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import KINDS, LENGTH, NUMBER, Dimension
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.reports import Table, folder_name, input_tables, table_of_words
+from tmm_cli.reports import Table, folder_name, input_data_tables, table_of_words
 from tmm_cli.synthesis import structure_of
 
 FOR_TEACHERS = ("variants", "grading")
@@ -101,7 +101,7 @@ class TaskSheets:
             yield f"{name}.png", picture
         tables = [
             _dimensions(self.task, values, self.measures),
-            *map(_told, input_tables(results.problem)),
+            *map(_told, input_data_tables(results.problem)),
             *_asked(self.task),
         ]
         yield f"{name}.md", _markdown(title, who, f"{name}.png" if picture else "", tables).encode()

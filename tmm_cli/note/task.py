@@ -14,7 +14,7 @@ from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MO
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
 from tmm_cli.note.context import Subject, with_degrees
 from tmm_cli.note.tables import NONE, rows_of, unbroken
-from tmm_cli.reports import ROLES, called, heavy, input_tables, link_name, motion
+from tmm_cli.reports import ROLES, called, heavy, input_data_tables, link_name, motion
 
 # tables of `tmm explain` that the note has in words of its own; the others it has as they are
 IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")
@@ -59,7 +59,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
         yield from tabled(_("The loads are given in table {table}."), _loads(subject))
     further = [
         table
-        for table in input_tables(problem)
+        for table in input_data_tables(problem)
         if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
     ]
     if further:

@@ -22,9 +22,25 @@ from .digits import (
     computed_tables as computed_tables,
     keys_of as keys_of,
 )
-from .explain import explain_tables as explain_tables, in_words as in_words
+from .explain import describe_stages as describe_stages, explain_tables as explain_tables, in_words as in_words
 from .exports import EXPORTS as EXPORTS
-from .files import (
+from .file_summary import (
+    bare_speeds as bare_speeds,
+    bare_units as bare_units,
+    between_rows as between_rows,
+    doubts as doubts,
+    motion as motion,
+    summarise_file as summarise_file,
+    without_effect as without_effect,
+)
+from .force_tables import energy_tables as energy_tables, locked_ranges as locked_ranges
+from .force_warnings import tables_of_many as tables_of_many
+from .input_load_tables import heavy as heavy
+from .input_tables import input_data_tables as input_data_tables
+from .properties import MET as MET, properties_shown as properties_shown
+from .quality_tables import place as place
+from .register import tables as tables, tables_of as tables_of, walk as walk
+from .result_files import (
     RECORD as RECORD,
     Staged as Staged,
     WrittenFolder as WrittenFolder,
@@ -36,11 +52,6 @@ from .files import (
     write_results as write_results,
     write_whole as write_whole,
 )
-from .force_tables import energy_tables as energy_tables, locked_ranges as locked_ranges
-from .given import input_tables as input_tables
-from .properties import MET as MET, properties_shown as properties_shown
-from .quality_tables import place as place
-from .register import tables as tables, tables_of as tables_of, walk as walk
 from .result_json import schema as schema, sections as sections, to_json as to_json
 from .space_tables import (
     WrittenSchemes as WrittenSchemes,
@@ -57,7 +68,6 @@ from .spreadsheets import (
     spreadsheet_cells as spreadsheet_cells,
     workbook as workbook,
 )
-from .stages import describe_stages as describe_stages, heavy as heavy, link_name as link_name
 from .structure_tables import (
     PAIRS as PAIRS,
     ROLES as ROLES,
@@ -87,6 +97,7 @@ from .table import (
     csv_text as csv_text,
     json_bytes as json_bytes,
     json_text as json_text,
+    link_name as link_name,
     plain as plain,
     table_of_words as table_of_words,
     true_digits as true_digits,
@@ -100,14 +111,4 @@ from .terminal import (
     show as show,
     terminal_cells as terminal_cells,
 )
-from .understood import (
-    bare_speeds as bare_speeds,
-    bare_units as bare_units,
-    between_rows as between_rows,
-    doubts as doubts,
-    motion as motion,
-    summarise_file as summarise_file,
-    without_effect as without_effect,
-)
 from .warnings import collect_warnings as collect_warnings
-from .warnings_of_forces import tables_of_many as tables_of_many

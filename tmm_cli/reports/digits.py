@@ -35,7 +35,7 @@ from tmm_cli.reports.table import Column, Table
 
 MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
 APART = ("synthesis", "checks", "drawn")  # a search has its own digits, checks count by their words, drawings by 0.5 mm
-COMPUTED = tuple(name for name, __, part, ___ in REPORTS if part in MOVING and name not in APART)
+COMPUTED = tuple(r.name for r in REPORTS if r.requires in MOVING and r.name not in APART)
 SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]
 
@@ -68,7 +68,7 @@ def all_numbers(
 
 def cells_with_digits(results: Results, shown: Collection[str] = ()) -> Cells:
     """The numbers at positions; shown: in reports with these tables alone."""
-    reports = {name for name, __, ___, given in REPORTS if not shown or set(given) & set(shown)}
+    reports = {r.name for r in REPORTS if not shown or set(r.tables) & set(shown)}
     return all_numbers(results, reports & set(COMPUTED) - SEARCHED, None if shown else LARGE)[0]
 
 

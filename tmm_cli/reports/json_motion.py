@@ -13,7 +13,7 @@ from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.quantities import BALANCE, ENERGY, LEVER_MOMENT, LINK, LOAD, POINT, REACTION, SLIDE
 from tmm_cli.reports.cycle_tables import states
-from tmm_cli.reports.shapes import (
+from tmm_cli.reports.json_fields import (
     FLAG,
     FLAGS,
     INTEGER,

@@ -1,56 +1,77 @@
-"""What is reported, in the order in which it is shown. A new report is a function and a line in REPORTS.
+"""Register of the tables that are shown and written, in their order.
 
-The function `<report>_tables(results)` gives its tables; it gives none when its stage was not asked for.
+To add tables, write a function `<report>_tables(results)` that yields them, and add a line to REPORTS.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from importlib import import_module
+from typing import NamedTuple
 
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports.table import Table
 
-# report, its module here without _tables, the part of Results that it needs, the tables it gives (of other names
-# where there are none): a report of a stage that did not run, or of which no table is wanted, is not even imported
-REPORTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
-    ("synthesis", "synthesis", "motion", ("synthesis-asked", "synthesis-found", "synthesis-measured")),
-    ("structure", "structure", "structure", ("structure", "links", "pairs", "groups")),
-    ("space", "space", "structure", ("contours", "space", "replacements")),
-    ("chain", "space", "chain", ()),
-    ("quality", "quality", "motion", ("quality",)),
-    ("properties", "quality", "problem", ("properties",)),
-    ("intermittent", "dynamics", "wheels", ("intermittent", "intermittent-cycle", "intermittent-course")),
-    ("pressure", "quality", "motion", ("pressure",)),
-    ("cycle", "cycle", "motion", ("cycle",)),
-    ("kinematics", "cycle", "motion", ("points", "link-motion", "slides")),
-    ("forces", "force", "reactions", ("reactions", "pins", "loads", "transmission", "balance")),
-    ("lever", "force", "lever", ("lever",)),
-    ("drawn", "force", "lever", ("lever-drawn",)),
-    ("energy", "force", "energy", ("energy", "friction")),
-    ("dynamics", "dynamics", "running", ("dynamics", "law-of-motion")),
-    ("balancing", "dynamics", "balancing", ("balancing", "shaking")),
-    ("centres", "cycle", "centres", ("centres", "advantage")),
-    ("extremes", "cycle", "extremes", ("extremes",)),
-    ("assemblies", "quality", "assemblies", ()),
-    ("checks", "quality", "lever", ("checks",)),
+
+class Report(NamedTuple):
+    """Tables made by one function, `<name>_tables` of the module `tmm_cli.reports.<module>`.
+
+    Attributes:
+        name: name of the report.
+        module: module of the function; it is imported when the tables are made.
+        requires: attribute of Results that the tables are made from; without it there are none.
+        tables: names of the tables; empty if they depend on the problem.
+    """
+
+    name: str
+    module: str
+    requires: str
+    tables: tuple[str, ...]
+
+    def make_tables(self, results: Results | ChainResults) -> Iterator[Table]:
+        """Yield the tables of this report; none if the stage that it requires has not run."""
+        if getattr(results, self.requires, None) is not None:
+            yield from getattr(import_module(f"tmm_cli.reports.{self.module}"), f"{self.name}_tables")(results)
+
+
+REPORTS = (
+    Report("synthesis", "synthesis_tables", "motion", ("synthesis-asked", "synthesis-found", "synthesis-measured")),
+    Report("structure", "structure_tables", "structure", ("structure", "links", "pairs", "groups")),
+    Report("space", "space_tables", "structure", ("contours", "space", "replacements")),
+    Report("chain", "space_tables", "chain", ()),
+    Report("quality", "quality_tables", "motion", ("quality",)),
+    Report("properties", "quality_tables", "problem", ("properties",)),
+    Report("intermittent", "dynamics_tables", "wheels", ("intermittent", "intermittent-cycle", "intermittent-course")),
+    Report("pressure", "quality_tables", "motion", ("pressure",)),
+    Report("cycle", "cycle_tables", "motion", ("cycle",)),
+    Report("kinematics", "cycle_tables", "motion", ("points", "link-motion", "slides")),
+    Report("forces", "force_tables", "reactions", ("reactions", "pins", "loads", "transmission", "balance")),
+    Report("lever", "force_tables", "lever", ("lever",)),
+    Report("drawn", "force_tables", "lever", ("lever-drawn",)),
+    Report("energy", "force_tables", "energy", ("energy", "friction")),
+    Report("dynamics", "dynamics_tables", "running", ("dynamics", "law-of-motion")),
+    Report("balancing", "dynamics_tables", "balancing", ("balancing", "shaking")),
+    Report("centres", "cycle_tables", "centres", ("centres", "advantage")),
+    Report("extremes", "cycle_tables", "extremes", ("extremes",)),
+    Report("assemblies", "quality_tables", "assemblies", ()),
+    Report("checks", "quality_tables", "lever", ("checks",)),
 )
 
 
 def tables(results: Results | ChainResults) -> tuple[Table, ...]:
-    """Every table of the results."""
+    """Return every table of the results."""
     return tuple(walk(results))
 
 
-def walk(results: Results | ChainResults, wanted: Collection[str] = ()) -> Iterator[Table]:
-    """Every table of the results, or those wanted by name, made one after the other."""
-    chosen = [name for name, __, ___, given in REPORTS if not (wanted and given) or set(given) & set(wanted)]
-    return (table for table in tables_of(results, chosen) if not wanted or table.name in wanted)
+def walk(results: Results | ChainResults, names: Collection[str] = ()) -> Iterator[Table]:
+    """Yield the tables of the results one after the other: all of them, or those with the given names."""
+    reports = [r.name for r in REPORTS if not (names and r.tables) or set(r.tables) & set(names)]
+    return (table for table in tables_of(results, reports) if not names or table.name in names)
 
 
 def tables_of(results: Results | ChainResults, reports: Collection[str]) -> Iterator[Table]:
-    """The tables of these reports, as far as the stages that they need have run."""
-    for name, module, part, __ in REPORTS:
-        if name in reports and getattr(results, part, None) is not None:
-            yield from getattr(import_module(f"tmm_cli.reports.{module}_tables"), f"{name}_tables")(results)
+    """Yield the tables of the named reports, as far as the stages that they require have run."""
+    for report in REPORTS:
+        if report.name in reports:
+            yield from report.make_tables(results)

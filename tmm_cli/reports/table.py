@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.language import numeral, spelt, translated, typeset
+from tmm_cli.language import _, numeral, spelt, translated, typeset
+from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import array
-from tmm_cli.mechanics.quantities import NUMBER, Dimension
-from tmm_cli.problem import Unit, UnitSystem, parse_unit
+from tmm_cli.mechanics.quantities import LENGTH, NUMBER, Dimension
+from tmm_cli.problem import Problem, Unit, UnitSystem, parse_unit
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,22 @@ def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int
     """A value (SI) in the unit of the file, to so many digits: `110 mm`."""
     number = numeral(units.from_si(value, dimension) + 0.0, f".{digits}g")
     return typeset(f"{number} {units.spelt(dimension)}".rstrip())
+
+
+def show(problem: Problem, value: float, dimension: Dimension) -> str:
+    """A value with its unit, of the file where it has one for this dimension."""
+    return with_unit(problem.units, float(np.ravel(value)[0]), dimension)
+
+
+def show_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH) -> str:
+    """Both components in the unit of the file: `[120, 0]`."""
+    value = complex(np.ravel(value)[0])
+    return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
+
+
+def link_name(link: str) -> str:
+    """The frame has no number."""
+    return _("frame") if link == FRAME else link
 
 
 def true_digits(values: Any, bound: Any) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.structure import ChainResults
-from tmm_cli.reports import warnings_of_forces as forces, warnings_of_motion as motion, warnings_of_motion as pairs
+from tmm_cli.reports import force_warnings as forces, motion_warnings as motion
 
 WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
     motion.limited,
@@ -17,14 +17,14 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     motion.opposite_run,
     motion.short_drive,
     motion.near_dead,
-    pairs.passive_pairs,
+    motion.passive_pairs,
     motion.endless,
-    pairs.left_slots,
-    pairs.pressure_angles,
+    motion.left_slots,
+    motion.pressure_angles,
     forces.locked_positions,
     forces.wound_springs,
     forces.springs_of_no_length,
-    pairs.impacts,
+    motion.impacts,
     forces.driving_loads,
     forces.short_tables,
     forces.long_tables,
@@ -34,8 +34,8 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     forces.lever_apart,
 )
 IN_CHECKS = (
-    pairs.left_slots,
-    pairs.pressure_angles,
+    motion.left_slots,
+    motion.pressure_angles,
     forces.lever_apart,
 )  # the table of checks has them with numbers
 

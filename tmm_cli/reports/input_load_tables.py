@@ -1,18 +1,43 @@
-"""Masses and loads of a file, as tables of words."""
+"""Tables of the masses and loads that a file gives."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tmm_cli.language import _
+from tmm_cli.language import N_, _
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable
-from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, MASS, MOMENT, NUMBER, Dimension
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    FORCE,
+    INERTIA,
+    MASS,
+    MOMENT,
+    NUMBER,
+    Dimension,
+)
 from tmm_cli.problem import Problem, stroke_dimension
-from tmm_cli.reports.given_parts import FILE_WORDS, show, show_vector
-from tmm_cli.reports.stages import heavy
-from tmm_cli.reports.table import Table, table_of_words
+from tmm_cli.reports.table import Table, show, show_vector, table_of_words
+
+if TYPE_CHECKING:
+    pass
+
+FILE_WORDS: Final = {  # that a file may say, where they are shown
+    "always": N_("always"),
+    "working stroke": N_("working stroke"),
+    "stroke": N_("stroke"),
+    "share of stroke": N_("share of the stroke"),
+    "crank angle": N_("crank angle"),
+    "crank turn": N_("crank turn"),
+}
+
+
+def heavy(linkage: Linkage) -> list[str]:
+    """Links that carry inertia."""
+    links = linkage.links
+    return [n for n in linkage.moving if np.any(links[n].mass != 0) or np.any(links[n].inertia != 0)]
 
 
 def masses(problem: Problem) -> Table:

@@ -24,10 +24,10 @@ from tmm_cli.mechanics.numerics import NO_WORK, SAME_PLACE, SAME_RATIO, Real, do
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.force_tables import locked_ranges
-from tmm_cli.reports.given_loads import argument_dimension
+from tmm_cli.reports.input_load_tables import argument_dimension
+from tmm_cli.reports.motion_warnings import driver_place
 from tmm_cli.reports.synthesis_tables import missed
 from tmm_cli.reports.table import with_unit
-from tmm_cli.reports.warnings_of_motion import driver_place
 from tmm_cli.synthesis import measured_on
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
