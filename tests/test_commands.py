@@ -227,8 +227,8 @@ def test_structure_imports_neither_matplotlib_nor_scipy_and_version_nothing_heav
 
 
 def test_a_command_makes_no_other_one_and_no_masked_arrays():
-    names = {"numpy.ma", *(f"tmm_cli.cli.{name}" for name in ("check", "new", "schemes", "structure"))}
-    assert names & imported("structure", str(SHAPER)) == {"tmm_cli.cli.structure"}
+    names = {"numpy.ma", *(f"tmm_cli.cli.{name}" for name in ("check", "new", "schemes", "stages"))}
+    assert names & imported("structure", str(SHAPER)) == {"tmm_cli.cli.stages"}
     slip = tmm("structre", SHAPER)
     assert slip.returncode == 2 and "Did you mean 'structure'?" in slip.stderr
 

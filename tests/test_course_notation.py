@@ -11,7 +11,7 @@ import pytest
 from bank import solved
 from test_commands import tmm
 
-import tmm_cli.mechanics.plans.lever as drawn_plans
+import tmm_cli.mechanics.plans.lever_drawing as drawn_plans
 from tmm_cli.mechanics.forces import loaded_parts
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.plans import drawn_check, sheets

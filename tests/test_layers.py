@@ -50,7 +50,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "__main__": "the commands: stopping while they load ends without a traceback",
     "language": "gettext, for other languages than English",
     "synthesis.solving": "centres and batches, for those who ask for them",
-    "mechanics.analysis.on_request": "the law of motion, balancing and intermittent motion, for files that ask for it",
+    "mechanics.analysis.optional_stages": "law of motion, balancing, intermittent motion: for files that ask for it",
     "synthesis.optimal.*": "scipy.optimize and rich.progress, for searches",
     "cli.opening": "grading, for variants of a table",
     "note.formats": "an extra: python-docx",
@@ -215,7 +215,7 @@ def test_what_computes_knows_nothing_of_files_and_screens():
     assert not [
         f"{name} imports {other}"
         for name in MODULES
-        if entry(name) == "mechanics" or name.startswith("batch.tape")
+        if entry(name) == "mechanics" or name.startswith(("batch.trace_", "batch.traced_arrays"))
         for other in imported(name)
         if other.partition(".")[0] in FILES_AND_SCREENS
     ]

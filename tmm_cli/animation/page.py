@@ -1,7 +1,4 @@
-"""The page: one HTML file with the mechanism as inline SVG, the numbers as JSON, and the script that moves it.
-
-It asks nothing of any network: its policy allows its own style and its own script alone. What comes from files is data.
-"""
+"""Web page of a moving mechanism: frames, plans of motion and diagrams as data, and the HTML file that shows them."""
 
 from __future__ import annotations
 
@@ -14,10 +11,205 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from tmm_cli.animation.content import FRAMES, content, frames, paths, picture_of, view
+import numpy as np
+
+from tmm_cli.animation.bodies import Body, Picture, labels, pair
 from tmm_cli.drawing.formats import element
-from tmm_cli.language import _, language
-from tmm_cli.mechanics.analysis import Results
+from tmm_cli.drawing.paper import COLOURS, THIN, Sheet, mark_corners, with_unit
+from tmm_cli.drawing.sheets import Quantities, Sort, balances, output, sorts
+from tmm_cli.drawing.symbols import Scene, fit, fixed_pivots, to_scale
+from tmm_cli.language import ENGLISH, _, language, spelt
+from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.forces import subscript
+from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.numerics import Real, Vector, largest, without_rounding
+from tmm_cli.mechanics.plans import in_letters
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+from tmm_cli.problem import ProblemError
+
+PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
+USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
+MOST_LETTERS = 4  # at one point of a plan
+LEAST = 1e-6  # of a plan: nearer points are one
+
+
+def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
+    """A plan in all frames: its points (SI, y up), vectors between them, letters at them; units a SI unit, its view."""
+    plans = [sort.plan(motion, k) for k in range(len(motion.q))]
+    first = plans[0]
+    size = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
+    points: list[Vector] = []
+
+    def index(places: Iterable[complex]) -> int:
+        course = np.array(list(places))
+        for number, other in enumerate(points):
+            if np.max(np.abs(other - course)) < LEAST * size:
+                return number
+        points.append(course)
+        return len(points) - 1
+
+    letters: dict[int, list[str]] = {}
+    for letter in first.ends:
+        letters.setdefault(index(plan.ends[letter] for plan in plans), []).append(letter)
+    vectors: dict[tuple[int, int], dict[str, Any]] = {}
+    for n, vector in enumerate(first.vectors):
+        ends = index(plan.vectors[n].start for plan in plans), index(plan.vectors[n].end for plan in plans)
+        mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
+        if ends[0] != ends[1] and (ends not in vectors or not mass):
+            vectors[ends] = {
+                "from": ends[0],
+                "to": ends[1],
+                "colour": THIN if mass else COLOURS[vector.kind],
+                "width": 0.45 if mass or vector.kind != "absolute" else 0.7,
+            }
+    below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN)
+    every = np.concatenate(points)
+    every = every[np.abs(every) <= USUAL * size]
+    scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
+    return {
+        "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
+            unit=spelt(sort.unit)
+        ),
+        "points": [[rounded(z.real, 4), rounded(z.imag, 4)] for z in points],
+        "vectors": below,
+        "letters": [{"point": n, "text": _together(text)} for n, text in letters.items()],
+        "scale": float(f"{scale:.5g}"),
+        "view": [round(side, 1) for side in sides(every * scale, ROOM)],
+    }
+
+
+def sides(places: Vector, room: float) -> tuple[float, float, float, float]:
+    """Of a field with room about places, as a page has it: left, top (y down), width and height."""
+    x, y = places.real, -places.imag
+    return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
+
+
+def _together(letters: list[str]) -> str:
+    """Letters of one point, not more than have room."""
+    few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
+    return ", ".join(map(in_letters, few))
+
+
+def charts(results: Results, whole: Results) -> Iterable[Quantities]:
+    """Motion of the first outputs, and what balances the drivers."""
+    assert whole.motion is not None
+    for link in results.mechanism.outputs[:2]:
+        yield from output(results, whole.motion, link)
+    yield from balances(whole, results)
+
+
+def chart_data(results: Results, quantities: Quantities) -> dict[str, Any]:
+    """A diagram in the units of the file."""
+
+    def values(si: Real) -> list[float | None]:
+        clean = without_rounding(si, largest(si))
+        return rounded(results.problem.units.from_si(clean, quantities.dimension), 5)
+
+    return {
+        "title": with_unit(quantities.words, quantities.dimension, results.problem.units),
+        "courses": [{"name": course.name, "values": values(course.values)} for course in quantities.courses],
+    }
+
+
+def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
+    """Where the numbered positions are among the frames."""
+    found = []
+    for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
+        k = int(np.argmin(np.abs(motion.q - q)))
+        step = abs(motion.q[-1] - motion.q[0]) / (len(motion.q) - 1)
+        ahead = float((q - motion.q[k]) / (motion.q[-1] - motion.q[0]) * (len(motion.q) - 1))
+        if abs(q - motion.q[k]) <= 1.01 * step:
+            found.append([round(k + ahead, 3), str(number)])
+    return found
+
+
+def rounded(values: Any, digits: int) -> list[float | None]:
+    """To so many significant figures; none where there is no value."""
+    array = np.asarray(values, float)
+    return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in array.tolist()]
+
+
+# What the page shows, as plain data: bodies, paths, names, plans of motion, diagrams, all in the same frames.
+
+
+PAPER, LARGEST, EDGE = (400.0, 400.0), 120.0, 9.0  # mm: sheet, longest side of what moves, room about it for names
+FRAMES = 180  # a turn
+SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
+
+
+def frames(results: Results, count: int) -> Results:
+    """The same results at about so many places a turn at which the mechanism moves. Raises ProblemError."""
+    q = results.closely(count * (results.turns or 1) + 1)
+    moved = at_places(results, q)
+    assert moved.motion is not None
+    moves = moved.motion.moving
+    if np.count_nonzero(moves) < 2 or np.ptp(q) == 0:
+        raise ProblemError(_("nothing moves in what is asked for"), path=("positions",))
+    return moved if moves.all() else at_places(results, q[moves])
+
+
+def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any]:
+    """Everything that the script needs; places in mm of a sheet with y down, angles in rad, plans in SI."""
+    motion = picture.motion
+    names = list(picture.bodies)
+    driver, turns = results.linkage.driver, results.turns
+    units, measure = results.problem.units, ANGLE if driver.kind == "turn" else LENGTH
+    return {
+        "comma": language() != ENGLISH,
+        "loops": turns > 0,
+        "seconds": SECONDS * (turns or 1),
+        "driver": {
+            "name": ("φ" if driver.kind == "turn" else "s") + subscript(driver.link),
+            "unit": units.spelt(measure),
+            "values": rounded(units.from_si(motion.q, measure), 5),
+            "turn": units.from_si(2 * np.pi, ANGLE) if driver.kind == "turn" else 0,
+        },
+        "bodies": [body_data(picture.bodies[name]) for name in names],
+        "labels": labels(picture, names),
+        "plans": [plan_data(motion, sort) for sort in sorts()],
+        "charts": [chart_data(results, one) for one in charts(results, whole)],
+        "marks": position_marks(results, motion),
+    }
+
+
+def picture_of(whole: Results, motion: Motion) -> Picture:
+    """The mechanism in the first frame on a sheet that has room for all of its ways."""
+    linkage = whole.linkage
+    scene = Scene(linkage, whole.structure, motion.poses, 0)
+    places = [*fixed_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
+    sheet = Sheet("", "", paper=PAPER)
+    fit(sheet, to_scale(scene, places), 0.0, LARGEST)
+    return Picture.of(sheet, motion, scene)
+
+
+def view(picture: Picture) -> tuple[float, float, float, float]:
+    """What of the sheet is ever drawn on: left, top (y down), width and height, mm."""
+    local = [(own, np.array([z for mark in own.marks for z in mark_corners(mark)])) for own in picture.bodies.values()]
+    times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
+    return sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
+
+
+def body_data(own: Body) -> dict[str, Any]:
+    """Where a body is in each frame; one number of what does not change."""
+    return {
+        "x": steady(own.place.real, 2),
+        "y": steady(-own.place.imag, 2),
+        "turn": steady(-own.angle, 4),
+        "stretch": steady(own.stretch, 4),
+    }
+
+
+def steady(values: Real, digits: int) -> Any:
+    """Rounded; one number where all are the same."""
+    found = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
+    return found[0] if min(found) == max(found) else found
+
+
+def paths(picture: Picture) -> Iterable[list[list[float]]]:
+    """Ways of all moving points."""
+    for name in picture.scene.linkage.moving_points:
+        yield [pair(z) for z in (picture.sheet.origin + picture.motion.spot(name) / picture.sheet.mu).tolist()]
+
 
 MOST = 300_000  # bytes of a page
 FEWEST = 36  # frames a turn

@@ -1,11 +1,5 @@
 """Many linkages of one kind at once: a batch at places of the driver, or variants whose numbers come later."""
 
-from .choices import (
-    NUMBER as NUMBER,
-    choice_values as choice_values,
-    read_choices as read_choices,
-    with_vary as with_vary,
-)
 from .family import Family as Family, families as families, named_strokes as named_strokes, together as together
 from .prepare import (
     CHECKS as CHECKS,
@@ -16,12 +10,9 @@ from .prepare import (
     reactions_of as reactions_of,
     solved as solved,
 )
-from .tape import record as record
-from .tape.program import CHUNK as CHUNK, Program as Program
-from .tape.traced import DependsOnData as DependsOnData, TracedNumber as TracedNumber
-from .taped import OneByOne as OneByOne, Taped as Taped, variants_of as variants_of
 from .task import (
     MOST as MOST,
+    NUMBER_WITH_UNIT as NUMBER_WITH_UNIT,
     SAME as SAME,
     Asked as Asked,
     Blocks as Blocks,
@@ -29,9 +20,15 @@ from .task import (
     Range as Range,
     Task as Task,
     Two as Two,
+    choice_values as choice_values,
+    read_choices as read_choices,
     read_task as read_task,
     two as two,
+    with_vary as with_vary,
 )
+from .trace_program import CHUNK as CHUNK, Program as Program
+from .traced_arrays import DependsOnData as DependsOnData, TracedNumber as TracedNumber, record as record
+from .traced_variants import OneByOne as OneByOne, Taped as Taped, variants_of as variants_of
 from .variant import (
     WANTED as WANTED,
     Make as Make,

@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.program import Program
-from tmm_cli.batch.tape.traced import TracedArray
+from tmm_cli.batch.trace_program import Program
+from tmm_cli.batch.traced_arrays import TracedArray, record
 from tmm_cli.batch.variant import each
 from tmm_cli.mechanics.groups import BranchTrace, Closed, Kernel, LinkStates, Newton, Unrolled, link_states
 from tmm_cli.mechanics.linkage import Linkage

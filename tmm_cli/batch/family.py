@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.batch.continuation import CORRECTION, EACH_TURN, Marches, Varied, Ways
 from tmm_cli.batch.prepare import straight
-from tmm_cli.batch.tape.traced import DependsOnData, TracedNumber
+from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Make, NoTapeError, each, stands, stood_for
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
 from tmm_cli.mechanics.assembly import CLOSE, assemble, mobile, sketched_angles

@@ -27,10 +27,9 @@ from tmm_cli.batch.continuation import (
     wants,
     wound,
 )
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.program import Outputs, Program
-from tmm_cli.batch.tape.terms import Term
-from tmm_cli.batch.tape.traced import DependsOnData
+from tmm_cli.batch.trace_program import Outputs, Program
+from tmm_cli.batch.trace_terms import Term
+from tmm_cli.batch.traced_arrays import DependsOnData, record
 from tmm_cli.batch.variant import changed, parts, varying
 from tmm_cli.mechanics.analysis import values
 from tmm_cli.mechanics.assembly import assemble, mobile

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.tape.traced import TracedNumber
+from tmm_cli.batch.traced_arrays import TracedNumber
 from tmm_cli.mechanics.groups import DriverMotion, Kernel
 from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.linkage import Linkage, Request, Sketch

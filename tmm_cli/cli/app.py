@@ -1,4 +1,4 @@
-"""Commands are imported when they are called: a file each, whose imports stand at its top and cost no other command."""
+"""The command `tmm` and its list of commands. The module of a command is imported when it is called."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import gc
 import os
 import sys
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from keyword import iskeyword
 from typing import Annotated, Any
@@ -18,11 +18,15 @@ from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, speaking, tell_fault
 from tmm_cli.language import _
 
 
-def add_commands(app: typer.Typer, package: str, lines: Mapping[str, str], words: Sequence[str]) -> None:
-    """Of the commands of a package, each with its line of help, the one that the words of a command line ask for.
+def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str], home: Callable[[str], str]) -> None:
+    """Add the command that a command line requests, or the names and help lines of all.
 
-    It is the function, or the group made by `group` of the further words, in the module of its name. Where none is
-    asked for, all get their names and lines, as help lists them and a slip is compared with them.
+    Args:
+        lines: line of help of each command, by name. If no known command is requested all are listed, for help and
+            for comparison with a misspelt name.
+        words: the command line.
+        home: gives the module of a command in `tmm_cli.cli`. It has a function of the command's name, or a function
+            `group` that makes a group of commands from the further words.
     """
     asked = [word for word in words if not word.startswith("-")]
     if not asked or asked[0] not in lines:
@@ -30,19 +34,20 @@ def add_commands(app: typer.Typer, package: str, lines: Mapping[str, str], words
             app.command(name, help=line)(_listed)
         return
     name, *further = asked
-    own = f"{name}_" if iskeyword(name) else name
-    module = import_module(f"{package}.{own}")
-    if hasattr(module, "group"):
-        app.add_typer(module.group(further))
+    module = import_module(f"tmm_cli.cli.{home(name)}")
+    function = f"{name}_" if iskeyword(name) else name
+    if hasattr(module, function):
+        app.command(name)(speaking(getattr(module, function)))
     else:
-        app.command(name)(speaking(getattr(module, own)))
+        app.add_typer(module.group(further))
 
 
 def _listed() -> None:
     """What is listed only is not called."""
 
 
-# The command `tmm`. A new command is a file beside this one, with a function of the same name, and a line here.
+# The command `tmm`. A new command is a function of its name in the module of its name, or in one named in HOMES, and a
+# line here.
 
 
 COMMANDS = {
@@ -69,6 +74,12 @@ COMMANDS = {
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 
+HOMES = {  # modules of commands that share one
+    **dict.fromkeys(("structure", "kinematics", "forces", "dynamics"), "stages"),
+    **dict.fromkeys(("import", "export"), "other_programs"),
+    **dict.fromkeys(("animate", "gallery"), "web_pages"),
+}
+
 
 def application(words: Sequence[str]) -> typer.Typer:
     """The application with the command that the words of a command line ask for, or with the names of all."""
@@ -82,7 +93,7 @@ def application(words: Sequence[str]) -> typer.Typer:
         rich_markup_mode=None,
     )
     app.callback()(_options)
-    add_commands(app, "tmm_cli.cli", COMMANDS, words)
+    add_commands(app, COMMANDS, words, lambda name: HOMES.get(name, name))
     return app
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tmm_cli.batch import NUMBER, Task
+from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.language import _
@@ -93,7 +93,7 @@ def rows_of_table(table: VariantTable) -> list[list[str]]:
     columns = []
     for k, name in enumerate(table.names):
         texts = [row[k] for row in table.rows.values()]
-        parts = [NUMBER.fullmatch(text) for text in texts]
+        parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
         units = {part[2] if part else None for part in parts}
         unit = units.pop() if len(units) == 1 else None
         alone = [part[1] for part in parts if part] if unit else texts

@@ -321,7 +321,7 @@ class ExtendedUnits(UnitSystem):
 
 
 class VariedUnits(UnitSystem):
-    """Units whose functions of arithmetic take numbers that vary (see tmm_cli.batch.tape.varied)."""
+    """Units whose functions of arithmetic take numbers that vary (see tmm_cli.batch.traced_arrays)."""
 
     functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
 

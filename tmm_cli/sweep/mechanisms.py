@@ -18,12 +18,10 @@ from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import Problem, ProblemError, Tree, refusal
-from tmm_cli.sweep import looking
-from tmm_cli.sweep.grid import Axis
-from tmm_cli.sweep.looking import Looked, Wish, look, strokes_of
-from tmm_cli.sweep.quantities import PRESSURE, Shown, read_shown
-from tmm_cli.sweep.record import APART, LIMIT, REFUSED, STOPS, WORKS
-from tmm_cli.sweep.taped import CYCLE, Turning, beyond
+from tmm_cli.sweep.options import PRESSURE, Axis, Shown, read_shown
+from tmm_cli.sweep.results import APART, LIMIT, REFUSED, STOPS, WORKS
+from tmm_cli.sweep.scan import SCAN_APART, SCAN_STOPS, SCAN_WORKS, Looked, Wish, look, strokes_of
+from tmm_cli.sweep.traced_stages import CYCLE, Turning, beyond
 from tmm_cli.synthesis import inputs_of, measures
 
 DOUBTS = 200  # of a job by the tape that are looked at one by one
@@ -105,7 +103,7 @@ class Mechanisms:
             )
             with np.errstate(all="ignore"):
                 looked = look(turning, np.array([own]), Wish())
-            return turning if looked.does[0] == looking.WORKS and looked.sure[0] else None
+            return turning if looked.does[0] == SCAN_WORKS and looked.sure[0] else None
         except (NoTapeError, DependsOnData):
             return None
         except LinkageError as error:
@@ -163,8 +161,8 @@ class Mechanisms:
             except (ProblemError, DependsOnData):
                 return nothing, part
             looked = look(turning, columns, Wish(self._pressures() if values else (), self.limits, values))
-            works = looked.does == looking.WORKS
-            found.state[part] = np.select([looked.does == looking.STOPS, looked.does == looking.APART], [STOPS, APART])
+            works = looked.does == SCAN_WORKS
+            found.state[part] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
             for one in turning.limited:
                 over = part[works & (looked.peaks[one.name] > self.limits[one.name])]
                 for row in over[found.state[over] == WORKS]:

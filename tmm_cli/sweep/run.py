@@ -12,11 +12,11 @@ from tmm_cli.batch import Way, here
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real, bisect
 from tmm_cli.problem import BUDGET, Problem, ProblemError, parts, refuse_work
-from tmm_cli.sweep.grid import MOST, Axis, grid_points
-from tmm_cli.sweep.looking import SCAN
 from tmm_cli.sweep.mechanisms import Found, Mechanisms
-from tmm_cli.sweep.record import STATES, Mark, Swept
-from tmm_cli.sweep.taped import CYCLE
+from tmm_cli.sweep.options import MOST_VALUES, Axis, grid_points
+from tmm_cli.sweep.results import STATES, Mark, Swept
+from tmm_cli.sweep.scan import SCAN
+from tmm_cli.sweep.traced_stages import CYCLE
 
 CHUNK, FEW = 20_000, 20  # points of a job: by the tape, one by one
 TAPED, ALONE = 1 / 1_200, 1 / 4  # what a part at a position costs, against a run of one file (problem.budget)
@@ -60,7 +60,7 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     refuse_work(problem.linkage, problem.request)
     positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
     each = parts(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
-    most = MOST if cores is None else min(MOST, int(BUDGET * cores / each))
+    most = MOST_VALUES if cores is None else min(MOST_VALUES, int(BUDGET * cores / each))
     if points > most:
         raise ProblemError(
             _("these are too many mechanisms"),

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.animation.gallery.turning import Turning, scheme, turning
+from tmm_cli.animation.gallery.moving_picture import Turning, scheme, turning
 from tmm_cli.language import N_, _, signed, typeset
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.kinematics import Strokes, Travel, output_run

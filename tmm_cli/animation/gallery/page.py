@@ -12,7 +12,7 @@ from html import escape
 from typing import Any
 
 from tmm_cli.animation.gallery.card import PURPOSES, Card
-from tmm_cli.animation.gallery.turning import PLACE, TURN
+from tmm_cli.animation.gallery.moving_picture import PLACE, TURN
 from tmm_cli.animation.page import data_text, filled
 from tmm_cli.drawing.formats import NOT_XML
 from tmm_cli.language import LANGUAGES, _, translated

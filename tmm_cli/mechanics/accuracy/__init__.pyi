@@ -1,6 +1,7 @@
 """How many digits are to be trusted."""
 
-from .digits import (
+from .length_sensitivity import changed as changed, list_lengths as list_lengths, widened as widened
+from .rounding_bounds import (
     FEWEST as FEWEST,
     PAPER as PAPER,
     Digits as Digits,
@@ -14,5 +15,4 @@ from .digits import (
     relative as relative,
     sizes as sizes,
 )
-from .lengths import changed as changed, list_lengths as list_lengths, widened as widened
-from .searches import Wide as Wide, blur as blur, coarsely as coarsely, searched as searched
+from .search_bounds import Wide as Wide, blur as blur, coarsely as coarsely, searched as searched

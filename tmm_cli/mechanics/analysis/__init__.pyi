@@ -2,14 +2,14 @@
 
 from . import mechanism as mechanism, pipeline as pipeline
 from .checks import Check as Check, run_checks as run_checks
-from .extremes import with_extremes as with_extremes
-from .in_detail import (
+from .details_on_request import (
     balancing as balancing,
     chosen_here as chosen_here,
     detailed_positions as detailed_positions,
     with_assemblies as with_assemblies,
     with_centres as with_centres,
 )
+from .extremes import with_extremes as with_extremes
 from .intermittent import (
     MOST_CYCLES as MOST_CYCLES,
     Intermittent as Intermittent,
@@ -26,7 +26,7 @@ from .named_quantities import (
     quantities as quantities,
     relative_angles as relative_angles,
 )
-from .on_request import driver_motion as driver_motion
+from .optional_stages import driver_motion as driver_motion
 from .pipeline import (
     CYCLE as CYCLE,
     Results as Results,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.analysis.on_request import balancing, driver_motion, intermittent, law_of_motion
+from tmm_cli.mechanics.analysis.optional_stages import balancing, driver_motion, intermittent, law_of_motion
 from tmm_cli.mechanics.analysis.selection import carriers, check
 from tmm_cli.mechanics.assembly import mobile
 from tmm_cli.mechanics.errors import (

@@ -14,16 +14,16 @@ from .balancing import (
     steadily as steadily,
 )
 from .flywheel import Tangent as Tangent
-from .laws import Cycle as Cycle, LawByTable as LawByTable
+from .laws_of_motion import Cycle as Cycle, LawByTable as LawByTable
 from .motors import Kloss as Kloss, Linear as Linear, Motor as Motor
-from .reduced import Curve as Curve, fitted as fitted, reduce_machine as reduce_machine
+from .reduced_model import Curve as Curve, fitted as fitted, reduce_machine as reduce_machine
 from .single_run import (
     SingleRun as SingleRun,
     acceleration as acceleration,
     compute_single_run as compute_single_run,
     run as run,
 )
-from .steady import (
+from .steady_running import (
     Running as Running,
     Steady as Steady,
     find_steady_running as find_steady_running,
@@ -31,4 +31,4 @@ from .steady import (
     reduced_machine as reduced_machine,
     running as running,
 )
-from .task import Disk as Disk, Profile as Profile, Rim as Rim, RunTask as RunTask, SteadyTask as SteadyTask
+from .tasks import Disk as Disk, Profile as Profile, Rim as Rim, RunTask as RunTask, SteadyTask as SteadyTask

@@ -24,7 +24,7 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
+from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
 from tmm_cli.mechanics.numerics import Real, find_roots, least
 
 NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is

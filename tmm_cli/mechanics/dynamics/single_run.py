@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from scipy.integrate import OdeSolution, solve_ivp
 
-from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced
-from tmm_cli.mechanics.dynamics.steady import reduced_between
-from tmm_cli.mechanics.dynamics.task import RunTask
+from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
+from tmm_cli.mechanics.dynamics.steady_running import reduced_between
+from tmm_cli.mechanics.dynamics.tasks import RunTask
 from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
 from tmm_cli.mechanics.numerics import ROUNDOFF, SAME_PLACE, SEAM, Real, find_roots, rounded
 

@@ -47,8 +47,7 @@ from .friction import (
     losses as losses,
     solve_friction as solve_friction,
 )
-from .jumps import find_load_jumps as find_load_jumps, table_jumps as table_jumps
-from .lever import Item as Item, Lever as Lever, compute_lever as compute_lever
+from .load_discontinuities import find_load_jumps as find_load_jumps, table_jumps as table_jumps
 from .loads import (
     Applied as Applied,
     acts as acts,
@@ -60,7 +59,7 @@ from .loads import (
     table_argument as table_argument,
     twisted as twisted,
 )
-from .plan import (
+from .reactions import (
     Balance as Balance,
     GroupForces as GroupForces,
     Reaction as Reaction,
@@ -69,3 +68,4 @@ from .plan import (
     power as power,
     react as react,
 )
+from .zhukovsky_lever import Item as Item, Lever as Lever, compute_lever as compute_lever

@@ -21,7 +21,7 @@ from tmm_cli.mechanics.forces.free_bodies import (
     leads_of,
     reaction_symbol,
 )
-from tmm_cli.mechanics.forces.plan import GroupForces, Reaction, Reactions
+from tmm_cli.mechanics.forces.reactions import GroupForces, Reaction, Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_COORDINATE, NO_FORCE, SAME_PLACES, dot

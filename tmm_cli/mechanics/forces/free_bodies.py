@@ -8,7 +8,7 @@ from typing import Literal
 
 from tmm_cli.language import printed, symbol
 from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.forces.plan import Balance, Reaction, Reactions
+from tmm_cli.mechanics.forces.reactions import Balance, Reaction, Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_FORCE, cross, dot, unit

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.forces.plan import Reaction, Reactions, power, react
+from tmm_cli.mechanics.forces.reactions import Reaction, Reactions, power, react
 from tmm_cli.mechanics.kinematics import Motion, moving_parts
 from tmm_cli.mechanics.linkage import FRAME, Friction
 from tmm_cli.mechanics.numerics import (

@@ -1,7 +1,7 @@
 """Velocity, acceleration and force plans and the lever, as named vectors with scale factors; nothing is drawn here."""
 
-from .forces import ForcePlan as ForcePlan, force_plans as force_plans
-from .lever import (
+from .force_polygons import ForcePlan as ForcePlan, force_plans as force_plans
+from .lever_drawing import (
     LEVER_POLE as LEVER_POLE,
     LeverPlan as LeverPlan,
     Pair as Pair,
@@ -10,7 +10,7 @@ from .lever import (
     lever_plan as lever_plan,
     sheets as sheets,
 )
-from .motion import (
+from .motion_plans import (
     ACCELERATION_POLE as ACCELERATION_POLE,
     Reading as Reading,
     acceleration_plan as acceleration_plan,
@@ -20,7 +20,7 @@ from .motion import (
     turns as turns,
     velocity_plan as velocity_plan,
 )
-from .record import (
+from .named_vectors import (
     LANDSCAPE as LANDSCAPE,
     MARGIN as MARGIN,
     PAD as PAD,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.dynamics.reduced import FIT, NODES, SUMS, Curve, Reduced, fitted, nodes
+from tmm_cli.mechanics.dynamics.reduced_model import FIT, NODES, SUMS, Curve, Reduced, fitted, nodes
 from tmm_cli.mechanics.errors import LinkageError, LostDigitsError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.linkage import SpeedTable
 from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, rounded

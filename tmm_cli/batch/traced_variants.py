@@ -15,9 +15,8 @@ import numpy as np
 
 from tmm_cli.batch.continuation import EACH_TURN, LEAST_TURN, STEPS_OF_VARIANTS, Marches, Ways, started, wants
 from tmm_cli.batch.prepare import TOLD, WOUND, Wanted, solved, straight
-from tmm_cli.batch.tape import record
-from tmm_cli.batch.tape.program import Program
-from tmm_cli.batch.tape.traced import DependsOnData, TracedArray, TracedNumber
+from tmm_cli.batch.trace_program import Program
+from tmm_cli.batch.traced_arrays import DependsOnData, TracedArray, TracedNumber, record
 from tmm_cli.batch.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, each, sketch_of, stood_for
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
 from tmm_cli.mechanics.assembly import assemble, mobile

@@ -19,10 +19,10 @@ from tmm_cli.mechanics.dynamics.flywheel import (
     touching,
     wittenbauer,
 )
-from tmm_cli.mechanics.dynamics.laws import Cycle, Law, under_constant_moment
+from tmm_cli.mechanics.dynamics.laws_of_motion import Cycle, Law, under_constant_moment
 from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.dynamics.reduced import Curve, Reduced, fitted, reduce_machine
-from tmm_cli.mechanics.dynamics.task import SteadyTask
+from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced, fitted, reduce_machine
+from tmm_cli.mechanics.dynamics.tasks import SteadyTask
 from tmm_cli.mechanics.errors import (
     BySpeedError,
     NoCycleError,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture
-from tmm_cli.animation.content import SECONDS, picture_of, view
+from tmm_cli.animation.page import SECONDS, picture_of, view
 from tmm_cli.drawing.formats import element
 from tmm_cli.drawing.paper import DARK, GREY_TEXT, Area, Circle, Line, Mark, Text
 from tmm_cli.mechanics.analysis import Results, at_positions

@@ -13,7 +13,7 @@ from tmm_cli.mechanics.groups import Gear, Rack, axis
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.mechanics.numerics import NO_VECTOR
-from tmm_cli.mechanics.plans.record import NamedVector, Plan
+from tmm_cli.mechanics.plans.named_vectors import NamedVector, Plan
 from tmm_cli.mechanics.plans.vector_equations import About, Along, found_first, hinge_points, steps
 from tmm_cli.mechanics.structure import Group
 

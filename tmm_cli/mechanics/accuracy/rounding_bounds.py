@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.accuracy.lengths import all_changed, largest_beside, list_lengths, widened
+from tmm_cli.mechanics.accuracy.length_sensitivity import all_changed, largest_beside, list_lengths, widened
 from tmm_cli.mechanics.analysis import (
     Inputs,
     Mechanism,

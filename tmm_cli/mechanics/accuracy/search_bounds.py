@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.accuracy.digits import PAPER, SHARE, Digits, exact, growth, slenderness
-from tmm_cli.mechanics.accuracy.lengths import ends, list_lengths, outputs, responses
+from tmm_cli.mechanics.accuracy.length_sensitivity import ends, list_lengths, outputs, responses
+from tmm_cli.mechanics.accuracy.rounding_bounds import PAPER, SHARE, Digits, exact, growth, slenderness
 from tmm_cli.mechanics.analysis import CYCLE, Results, cycle_losses
 from tmm_cli.mechanics.groups import Closed, LinkStates, link_states, towards
 from tmm_cli.mechanics.kinematics import DriverRange, Strokes, Travel, output_place, output_slope, pressure_at

@@ -31,9 +31,9 @@ from tmm_cli.mechanics.forces import (
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.plans.forces import ForcePlan, force_plans
-from tmm_cli.mechanics.plans.motion import absolute, ends_of, massive, relative
-from tmm_cli.mechanics.plans.record import NamedVector, sheet_scale
+from tmm_cli.mechanics.plans.force_polygons import ForcePlan, force_plans
+from tmm_cli.mechanics.plans.motion_plans import absolute, ends_of, massive, relative
+from tmm_cli.mechanics.plans.named_vectors import NamedVector, sheet_scale
 
 LEVER_POLE = "p"
 TURNED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense

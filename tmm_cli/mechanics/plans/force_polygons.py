@@ -20,7 +20,7 @@ from tmm_cli.mechanics.forces import (
     reaction_symbol,
 )
 from tmm_cli.mechanics.kinematics import Motion
-from tmm_cli.mechanics.plans.record import NamedVector, Plan
+from tmm_cli.mechanics.plans.named_vectors import NamedVector, Plan
 
 Part = tuple[Symbol, complex, Kind]
 

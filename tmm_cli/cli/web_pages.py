@@ -1,4 +1,4 @@
-"""`tmm gallery`."""
+"""Pages for the browser: `tmm animate`, `tmm gallery`."""
 
 from __future__ import annotations
 
@@ -8,13 +8,40 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.animation import Card, card, gallery_page
-from tmm_cli.cli.common import problems_in, refusing
+from tmm_cli import solve
+from tmm_cli.animation import Card, animation_page, card, gallery_page
+from tmm_cli.cli.common import Settings, Variant, Variants, problems_in, refusing
 from tmm_cli.cli.drawing import by_all_cores
-from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say
+from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say, warn
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import refuse_place, write_whole
+from tmm_cli.reports import collect_warnings, folder_name, refuse_place, write_whole
+
+
+def animate(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A problem file (YAML).", show_default=False)],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="FILE.html", help="The page; else outputs/<problem>.html.", show_default=False
+        ),
+    ] = None,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+) -> None:
+    """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
+    with refusing():
+        if out is not None:
+            refuse_place(out, folder=False)
+        problem = opened(file, variant_settings(file, variants, variant, settings))
+        results = solve(problem)
+        target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
+        write_whole(target, animation_page(results).encode())
+        for warning in collect_warnings(results):
+            warn(warning)
+        say(_("written: {folder}").format(folder=printable(target)))
 
 
 def gallery(

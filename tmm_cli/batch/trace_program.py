@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.tape.terms import ONE_BY_ONE, Term, axes_of
+from tmm_cli.batch.trace_terms import ONE_BY_ONE, Term, axes_of
 
 Array = np.ndarray[Any, Any]
 

@@ -14,11 +14,11 @@ import numpy as np
 from tmm_cli.batch import Variant, each, named_strokes
 from tmm_cli.mechanics.kinematics import Strokes, resisted
 from tmm_cli.mechanics.numerics import Real, find_roots, least
-from tmm_cli.sweep.taped import FINELY, Closely, Turning, near_peaks, peaks_between, turned
+from tmm_cli.sweep.traced_stages import FINELY, Closely, Turning, near_peaks, peaks_between, turned
 
 SCAN = 72  # places in a turn of the driver
 BLOCK = 50  # variants that are looked at finely at once
-WORKS, STOPS, APART = range(3)  # what a variant does
+SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # what a variant does
 
 
 @dataclass(frozen=True)
@@ -82,24 +82,24 @@ class _View:
         """All that is looked for."""
         does, sure = self._assembled()
         ends = np.full((len(self.columns), len(self.turning.stroke_links), 2), np.nan)
-        if self.wish.strokes and np.any(does == WORKS):
+        if self.wish.strokes and np.any(does == SCAN_WORKS):
             for k in range(len(self.turning.stroke_links)):
                 slope = self.found[f"slope{k}"]
                 turns = turned(slope)
                 sure &= np.sum(turns, axis=1) == self.turning.strokes[k]
                 sure &= ~_nearly(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
-                rows = np.flatnonzero((does == WORKS) & sure)
+                rows = np.flatnonzero((does == SCAN_WORKS) & sure)
                 if self.turning.strokes[k] and rows.size:
                     low = np.nonzero(turns[rows])[1].reshape(-1, 2)
                     slope_of = _curve(self.turning, f"slope{k}", self.columns[rows])
                     ends[rows, k] = _ends(slope_of, self.at(low), self.at(low + 1))
-        works = does == WORKS
+        works = does == SCAN_WORKS
         peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
         return Looked(does, sure | ~works, peaks, ends)
 
     def _assembled(self) -> tuple[Real, Real]:
         """Whether they are assembled where the sketch is, and all round, in no dead position; whether surely so."""
-        does = np.full(len(self.columns), WORKS)
+        does = np.full(len(self.columns), SCAN_WORKS)
         apart, lost, doubtful = np.zeros((3, len(does)), dtype=bool)
         for k in range(len(self.turning.kernels)):
             gap, slack, det = (self.found[f"{name}{k}"] for name in ("gap", "slack", "det"))
@@ -108,16 +108,16 @@ class _View:
             lost |= np.any(missing | (gap >= -2 * slack) | (np.sign(det) != np.sign(det[:, :1])), axis=1)
             if k in self.turning.single:
                 doubtful |= _nearly(-np.abs(det), np.ones(det.shape, dtype=bool))
-        does[lost], does[apart] = STOPS, APART
+        does[lost], does[apart] = SCAN_STOPS, SCAN_APART
         for k in range(len(self.turning.kernels)):
             name = f"gap{k}"
             gap = self.found[name]
-            rows, at = near_peaks(gap, np.zeros(len(gap)), (does == WORKS)[:, None])
+            rows, at = near_peaks(gap, np.zeros(len(gap)), (does == SCAN_WORKS)[:, None])
             if rows.size:
                 close = Closely(self.turning.part(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
                 place, value = least(_negative(close, name), q - self.step, q + self.step)
-                does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = STOPS
+                does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = SCAN_STOPS
         return does, ~doubtful
 
     def _peak(self, name: str, works: Real) -> Real:

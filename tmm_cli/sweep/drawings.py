@@ -45,9 +45,8 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import UnitSystem, on_paper
-from tmm_cli.sweep.grid import Axis
-from tmm_cli.sweep.quantities import Shown
-from tmm_cli.sweep.record import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
+from tmm_cli.sweep.options import Axis, Shown
+from tmm_cli.sweep.results import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
 
 PANELS = 4  # of a sheet
 LEVELS = 12  # lines of equal value at most

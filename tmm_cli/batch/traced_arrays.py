@@ -6,14 +6,15 @@ it comes to for this linkage. A complex number is two real ones; what is known t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from tmm_cli.batch.tape.terms import ONE_BY_ONE, Tape, Term
+from tmm_cli.batch.trace_program import Program
+from tmm_cli.batch.trace_terms import ONE_BY_ONE, Tape, Term
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
@@ -193,6 +194,25 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.round: lambda stand, value: np.rint(value),
     np.any: lambda stand, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
 }
+
+
+def record(function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None) -> Program:
+    """Run a function on stand-ins for real arrays; what it gives by name are the outputs of the program.
+
+    axes: on what each argument depends: 1 on the variant, 2 on the position, 3 on both. data: of some arguments, by
+    their number, if the program is for these alone. Raises DependsOnData where the code takes a branch by numbers that
+    differ.
+    """
+    tape = Tape(dict(data or {}))
+    stands = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
+    outputs = {}
+    for name, value in function(*stands).items():
+        if isinstance(value, TracedArray):
+            outputs[name] = (value.re, value.im)
+        else:
+            one = np.ravel(value)[0]
+            outputs[name] = (one.real, one.imag) if np.iscomplexobj(one) else (one, None)
+    return Program(tuple(tape.terms), axes, outputs)
 
 
 # Numbers that vary from linkage to linkage, for code that builds one: they branch like numbers, and are written down.

@@ -1,7 +1,4 @@
-"""What can be shown over parameters: what students may be asked, as one number of a mechanism, and the pressure angle.
-
-Of what has a value a position the largest size over the cycle counts; of places and angles, their range over the cycle.
-"""
+"""Options of a sweep: parameters with their grids (--over) and the quantities to show (--show)."""
 
 from __future__ import annotations
 
@@ -12,16 +9,108 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Task
+from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity, Solved
 from tmm_cli.mechanics.numerics import Real, greatest
 from tmm_cli.mechanics.quantities import ANGLE, Dimension
-from tmm_cli.problem import ProblemError, unknown_name
+from tmm_cli.problem import ProblemError, quote, unknown_name
+
+OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
+COUNT = (41, 21)  # values where none is given: of one parameter, of each of two
+MOST_VALUES = 1_000_000  # values of a parameter
+EXAMPLE = "--over OA=80..120:41"
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A parameter that is swept. values: as they are written, in `unit` (none: bare numbers); dimension: of these.
+
+    factor: what a written value is multiplied by: to SI, by 1 where it is bare.
+    """
+
+    name: str
+    values: Real
+    unit: str
+    dimension: Dimension | None
+    factor: float
+
+    @property
+    def words(self) -> str:
+        """Its name with the unit."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
+
+    def text(self, value: float) -> str:
+        """A value as `--set` reads it."""
+        return f"{value!r} {self.unit}".strip()
+
+
+def read_axes(task: Task, over: Sequence[str]) -> tuple[Axis, ...]:
+    """What one or two options `--over` say. Raises ProblemError."""
+    if not 1 <= len(over) <= 2:
+        raise ProblemError(_("one or two parameters are swept"), found=", ".join(over) or None, allowed=EXAMPLE)
+    axes = []
+    for text in over:
+        try:
+            axes.append(_axis(task, text, COUNT[len(over) - 1]))
+        except ProblemError as error:
+            raise error.located(f"--over {text}") from None
+        if len({axis.name for axis in axes}) < len(axes):
+            raise ProblemError(_("this is swept twice"), found=quote(axes[-1].name), file=f"--over {text}")
+    return tuple(axes)
+
+
+def _axis(task: Task, text: str, usual: int) -> Axis:
+    found = OVER.fullmatch(text)
+    if found is None:
+        raise ProblemError(_("a name, two bounds and perhaps a count are wanted"), found=quote(text), allowed=EXAMPLE)
+    name, *ends, count = found.groups()
+    (own,) = task.dimensions((name,))
+    units = [part[2] for part in map(NUMBER_WITH_UNIT.fullmatch, ends[::-1]) if part]
+    unit = next(filter(None, units), "") or _own_unit(task, name)
+    said: list[Any] = []
+    for end in ends:
+        part = NUMBER_WITH_UNIT.fullmatch(end)
+        if part is None or (part[2] and part[2] != unit):
+            raise ProblemError(_("two numbers in one unit are wanted"), found=quote(end), allowed=EXAMPLE)
+        said.append(task.value(f"{part[1]} {unit}".strip()))
+    dimension = said[0].dimension
+    if own and dimension and not dimension.fits(own):
+        raise ProblemError(_("{want} is wanted here").format(want=own), found=quote(text), allowed=own.example)
+    low, high = (float(NUMBER_WITH_UNIT.fullmatch(end)[1]) for end in ends)  # type: ignore[index]
+    if not low < high:
+        raise ProblemError(_("the lower bound comes first"), found=quote(text), allowed=EXAMPLE)
+    steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
+    if not 2 <= steps <= MOST_VALUES:
+        raise ProblemError(
+            _("the number of values is a whole number"),
+            found=quote(count),
+            allowed=_("{least} to {most}").format(least=2, most=MOST_VALUES),
+        )
+    dimension = dimension or own
+    values = np.linspace(low, high, steps)
+    unit = unit or (task.units.symbol(dimension) if dimension else "")
+    return Axis(name, values, unit, dimension, task.number(task.value(f"1 {unit}"), dimension) if unit else 1.0)
+
+
+def _own_unit(task: Task, name: str) -> str:
+    """In which the file writes the parameter; none of arithmetic on others."""
+    written = NUMBER_WITH_UNIT.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
+    try:
+        task.value(f"1 {written[2]}" if written else "")
+    except ProblemError:
+        return ""
+    return written[2] if written else ""
+
+
+def grid_points(axes: Sequence[Axis]) -> Real:
+    """All points as they are written, (points, axes): the last parameter changes first."""
+    return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)
+
 
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
 USUAL = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
-MOST = 12  # quantities at once
+MOST_QUANTITIES = 12  # quantities at once
 
 
 @dataclass(frozen=True)
@@ -102,11 +191,11 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
     found = list(dict.fromkeys(found)) or [
         every[name] for name in USUAL if name in every and not (name == "H" and "psi" in every)
     ]
-    if len(found) > MOST:
+    if len(found) > MOST_QUANTITIES:
         raise ProblemError(
             _("these are too many quantities"),
             found=str(len(found)),
-            allowed=_("at most {most}").format(most=MOST),
+            allowed=_("at most {most}").format(most=MOST_QUANTITIES),
             file="--show",
         )
     return tuple(found)

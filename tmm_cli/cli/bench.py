@@ -1,0 +1,184 @@
+"""`tmm bench`: measurements. A new one is a function here, with its measurement and its charts in `tmm_cli/bench`."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, NoReturn, TypeVar
+
+import typer
+from matplotlib.figure import Figure
+
+from tmm_cli.bench import (
+    BY_NAME,
+    REFERENCE_NAMES,
+    Measured,
+    accuracy_charts,
+    measure_accuracy,
+    measure_grading,
+    measure_savings,
+    measure_searches,
+    measure_speed,
+    measure_stability,
+    png,
+    savings_charts,
+    search_charts,
+    speed_charts,
+    stability_charts,
+)
+from tmm_cli.cli.app import add_commands
+from tmm_cli.cli.common import Json, console, emit_json
+from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
+from tmm_cli.problem import UnitSystem
+from tmm_cli.reports import csv_text, json_bytes, show, write_whole
+
+MEASUREMENTS = {
+    "accuracy": "Time of a position against its error, of many methods.",
+    "grading": "Time and memory of grading a group, mistakes named rightly.",
+    "savings": "What is saved by computing no more than what is asked.",
+    "speed": "Time of a position, beside code by hand and other programs.",
+    "stability": "Every method as it comes near what kills it.",
+    "synthesis": "Candidates a second, how near seeds come to the best known.",
+}
+
+
+def group(words: Sequence[str]) -> typer.Typer:
+    """The command with the measurement that the further words of a command line ask for."""
+    app = typer.Typer(
+        name="bench",
+        help="Measure speed, accuracy, stability, savings and synthesis on this machine.",
+        no_args_is_help=True,
+        rich_markup_mode=None,
+    )
+    app.callback()(_together)
+    add_commands(app, MEASUREMENTS, words, lambda name: "bench")
+    return app
+
+
+def _together() -> None:
+    """One measurement alone is a command of its group too."""
+
+
+Charts = Mapping[str, Figure]  # by the names of their files
+M = TypeVar("M", bound=Measured)
+
+Reduced = Annotated[bool, typer.Option("--reduced", help="A shorter measurement; its targets are twice as wide.")]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", "-o", metavar="DIR", help="Write JSON, CSV, charts there.", show_default=False),
+]
+
+
+def chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
+    """Those asked for, or all; an unknown one ends the command with the words for that (of {name} and {names})."""
+    known = list(names)
+    found = list(dict.fromkeys(asked or known))
+    for name in found:
+        if name not in known:
+            say("error: " + unknown.format(name=name, names=", ".join(known)))
+            raise typer.Exit(BAD_INPUT)
+    return found
+
+
+def finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
+    """Show tables or JSON, write the files; then the verdict."""
+    if as_json:
+        emit_json(measured.to_dict())
+    else:
+        for table in measured.tables:
+            show(table, UnitSystem(), console())
+    if out is not None:
+        try:
+            say(f"written: {_write(name, measured, charts(measured), out)}")
+        except OSError as error:
+            say(f"error: {error.filename or out}: {error.strerror}")
+            raise typer.Exit(BAD_INPUT) from None
+    for line in measured.remarks:
+        say(line)
+    for failure in measured.failures:
+        say(f"target missed: {failure}")
+    if not measured.failures:
+        say(measured.met)
+    raise typer.Exit(CHECK_FAILED if measured.failures else OK)
+
+
+def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
+    """name.json, name.csv of the lines or of the one table, charts."""
+    contents = {f"{name}.json": json_bytes(measured.to_dict())}
+    lines = io.StringIO()
+    csv.writer(lines, lineterminator="\n").writerows(measured.lines())
+    if lines.getvalue():
+        contents[f"{name}.csv"] = lines.getvalue().encode()
+    elif len(measured.tables) == 1:
+        contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
+    contents |= {file: png(figure) for file, figure in charts.items()}
+    for file, content in contents.items():
+        write_whole(folder / file, content)
+    return ", ".join(str(folder / file) for file in contents)
+
+
+Linkages = Annotated[
+    list[str] | None,
+    typer.Option("--linkage", metavar="NAME", help="This linkage only (may be repeated).", show_default=False),
+]
+
+
+def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
+    """Time a position against largest relative error of many methods, on five linkages known to 50 digits.
+
+    Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
+    """
+    names = chosen(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
+    finish("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)
+
+
+def grading(
+    reduced: Reduced = False,
+    full: Annotated[bool, typer.Option("--full", help="A group of 100 000 students too.")] = False,
+    out: Out = None,
+    as_json: Json = False,
+) -> None:
+    """Time and memory of grading a group, how they grow, and how often mistakes are named rightly.
+
+    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    """
+    finish("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
+
+
+def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
+    """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
+    finish("savings", measure_savings(reduced=reduced, progress=say), savings_charts, out, as_json)
+
+
+def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
+    """Time a position against code written by hand for one mechanism, other programs, and growing problems.
+
+    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    """
+    finish("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)
+
+
+Families = Annotated[
+    list[str] | None,
+    typer.Option("--family", metavar="NAME", help="This family only (may be repeated).", show_default=False),
+]
+
+
+def stability(family: Families = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
+    """Every method as it comes near what kills it, and the distance at which it first lies, against 50 digits.
+
+    Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
+    are within 100 times the true error.
+    """
+    names = chosen(family, BY_NAME, "there is no family {name}; there are {names}")
+    finish("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
+
+
+def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
+    """Count candidates a second of the optimal synthesis, and how near 10 seeds come to the best known.
+
+    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    """
+    finish("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)

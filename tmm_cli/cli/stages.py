@@ -1,0 +1,214 @@
+"""Commands for single stages: `tmm structure`, `tmm kinematics`, `tmm forces`, `tmm dynamics`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
+from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
+from tmm_cli.cli.reporting import computed, report, write_pictures
+from tmm_cli.cli.talk import say
+from tmm_cli.language import _
+from tmm_cli.mechanics.analysis import Results, with_assemblies, with_centres, with_extremes
+from tmm_cli.mechanics.assembly import listed
+from tmm_cli.mechanics.structure import ChainResults
+from tmm_cli.problem import ProblemError, in_words_of
+from tmm_cli.synthesis import inputs_of, solve
+
+Drawings = Annotated[
+    bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")
+]
+Driver = Annotated[
+    str | None,
+    typer.Option("--driver", metavar="LINK", help="Drive this link instead: other groups.", show_default=False),
+]
+
+
+def structure(
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    drawings: Drawings = False,
+    driver: Driver = None,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+    tables: Tables = None,
+) -> None:
+    """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
+    names = ("structure", "properties", "links", "pairs", "groups", "contours", "space", "replacements")
+
+    def work(file: str) -> int:
+        own = variant_settings(file, variants, variant, settings)
+        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
+        if isinstance(results, ChainResults) or not drawings:
+            return report(results, names, as_json, out, people=tables)
+        code = report(results, names, as_json, None)
+        pictures = dict(drawn("whole", results))
+        if not pictures:
+            text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
+            say(text.format(problem=results.problem.name))
+        write_pictures(results, out, pictures)
+        return code
+
+    each(files, work, as_json=as_json, out=out)
+
+
+INTERMITTENT = ("intermittent", "intermittent-cycle")
+Assemblies = Annotated[
+    bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
+]
+Centres = Annotated[
+    bool, typer.Option("--centres", help="Instantaneous centres in the positions in detail; mechanical advantage.")
+]
+ExtremePlaces = Annotated[bool, typer.Option("--extremes", help="Extreme places of all points, links and stones.")]
+Of = Annotated[
+    str,
+    typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
+]
+
+
+def kinematics(
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    position: Position = None,
+    assemblies: Assemblies = False,
+    centres: Centres = False,
+    extremes: ExtremePlaces = False,
+    of: Of = "",
+    digits: WithDigits = False,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+    tables: Tables = None,
+) -> None:
+    """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
+    asked = [name.strip() for name in of.split(",") if name.strip()]
+    usual = ("quality", "properties", *INTERMITTENT, "pressure", "cycle", "points", "link-motion", "slides", "centres")
+    names = ("points", "link-motion") if asked else usual
+
+    def work(file: str) -> int:
+        own = variant_settings(file, variants, variant, settings)
+
+        if assemblies:
+            return _list_assemblies(file, as_json, out, position, own)
+        problem = opened(file, own, position, digits)
+        if centres or problem.whole.request.centres:
+            number = len(position) if position else count_detail(problem.whole)
+            afford(problem.whole, position, digits=digits, centres=number)
+        results = solve(problem, "kinematics", position, asked)
+        if extremes:
+            results = with_extremes(results)
+        if centres:
+            return _draw_centres(with_centres(results), as_json, out)
+        return report(results, ("extremes",) if extremes else names, as_json, out, digits, tables)
+
+    each(files, work, as_json=as_json, out=out)
+
+
+def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
+    """Instantaneous centres, listed and drawn; the exit code."""
+    code = report(results, ("extremes", "centres", "advantage"), as_json, None)
+    write_pictures(results, out, dict(drawn("centres", results)))
+    return code
+
+
+def _list_assemblies(
+    file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
+) -> int:
+    """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
+    problem = opened(file, settings).whole
+    with in_words_of(problem):
+        results = with_assemblies(inputs_of(problem), positions, problem)
+    code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
+    for here in results.assemblies or ():
+        if here.undecided is not None:
+            text = _("the sketch does not decide which assembly {group} has; all of them are listed")
+            say(text.format(group=here.undecided.title))
+            if positions and here.number is None:
+                say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
+        for group in here.lost:
+            say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
+    write_pictures(results, out, dict(drawn("assemblies", results)))
+    return code
+
+
+ExtremeReactions = Annotated[bool, typer.Option("--extremes", help="Largest and smallest reactions over the cycle.")]
+Hodographs = Annotated[bool, typer.Option("--hodographs", help="Draw the hodograph of every reaction.")]
+
+
+def forces(
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    position: Position = None,
+    extremes: ExtremeReactions = False,
+    hodographs: Hodographs = False,
+    digits: WithDigits = False,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+    tables: Tables = None,
+) -> None:
+    """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
+    names = (
+        "properties",
+        "cycle",
+        "loads",
+        "reactions",
+        "pins",
+        "transmission",
+        "balance",
+        "lever",
+        "lever-drawn",
+        "energy",
+        "friction",
+    )
+
+    def work(file: str) -> int:
+        own = variant_settings(file, variants, variant, settings)
+        results = solve(opened(file, own, position, digits), "forces", position)
+        if extremes:
+            results = with_extremes(results)
+        code = report(
+            results, ("extremes",) if extremes else names, as_json, None if hodographs else out, digits, tables
+        )
+        if hodographs:
+            write_pictures(results, out, dict(drawn("hodographs", results)), "hodographs")
+        return code
+
+    each(files, work, as_json=as_json, out=out)
+
+
+DYNAMICS_TABLES = ("dynamics", "law-of-motion", "balancing", "shaking")
+
+
+def dynamics(
+    files: Files,
+    as_json: Json = False,
+    out: Out = None,
+    position: Position = None,
+    digits: WithDigits = False,
+    settings: Settings = None,
+    variants: Variants = None,
+    variant: Variant = None,
+) -> None:
+    """Law of motion: what drives the machine, its flywheel, speeds of the driver; and balancing."""
+
+    def work(file: str) -> int:
+        problem = opened(file, variant_settings(file, variants, variant, settings), position, digits).whole
+        if problem.dynamics is None and problem.balancing is None:
+            missing = ProblemError(
+                _("nothing is asked of the law of motion or of balancing"),
+                path=("dynamics",),
+                allowed="dynamics: {delta: 1/30}, balancing: {counterweights: {1: {}}}",
+            )
+            raise missing.located(problem.file, problem.source)
+        return report(solve(problem, "forces", position), DYNAMICS_TABLES, as_json, out, digits)
+
+    each(files, work, as_json=as_json, out=out)
