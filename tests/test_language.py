@@ -223,3 +223,9 @@ def test_letters_are_those_of_the_course():
     with spoken("ru"):
         assert [symbol.plain for symbol in load_symbols(inertia)] == ["Φ3", "MΦ3"]
         assert balance_symbol("1", several=False, turns=True).plain == "Mу"
+
+
+def test_words_that_stay_in_files_are_those_of_messages_of_today():
+    kept = messages.read("files")
+    assert set(kept) <= {(context or None, text) for context, text, __ in messages.messages()}
+    assert all(text != word for (__, text), word in kept.items())

@@ -2,8 +2,10 @@
 
 A sentence stands in English at the place that says it, as `_("...")`, and is said in the language that is spoken
 there and then. What must be named when a module is imported, or is kept in results, is a phrase, `N_("...")`, and
-translated where it is shown. Files for machines are written in English: `with spoken("en"): ...`. Translations are in
-`locale/`.
+translated where it is shown. Translations are in `locale/`.
+
+Files for programs (CSV, result.json) are written in English, `with words_of_files(): ...`. Scripts rely on their
+headings and words, so these stay when a sentence gets better English: the catalogue `files` keeps what files say.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ LANGUAGES: Final = ("en", "ru", "sr")
 ENGLISH: Final = LANGUAGES[0]
 LOCALE: Final = Path(__file__).with_name("locale")
 DOMAIN: Final = "tmm"
+FILES: Final = "files"  # the catalogue of words of files that differ from the English of today
 CATALOGUES: Final[dict[str, NullTranslations]] = {}  # that have been read, by language
 
 Found = TypeVar("Found")
@@ -39,11 +42,15 @@ INERTIA: Final = {"U": {"U": "U", "M": "M"}, "Φ": {"U": "Φ", "M": "M_Φ"}}  # 
 
 @dataclass(frozen=True)
 class Course:
-    """How a course writes: its language, the number of the frame, the letter of inertia forces ("": the language's)."""
+    """How a course writes: its language, the number of the frame, the letter of inertia forces ("": the language's).
+
+    for_programs: with the words on which scripts rely (`words_of_files`).
+    """
 
     language: str = ENGLISH
     frame: str = "0"
     inertia: str = ""
+    for_programs: bool = False
 
 
 USUAL: Final = Course()
@@ -70,7 +77,7 @@ N_ = Phrase  # as gettext's mark is called
 
 def translated(text: str) -> str:
     """A phrase in the language that is spoken, with the phrases in its fields; a name or a title as it is."""
-    if not isinstance(text, Phrase) or language() == ENGLISH:
+    if not isinstance(text, Phrase) or _name_of_catalogue() == ENGLISH:
         return text
     message = _(text.message)
     return message.format(**{key: translated(own) for key, own in text.fields.items()}) if text.fields else message
@@ -78,8 +85,14 @@ def translated(text: str) -> str:
 
 def _(message: str) -> str:
     """The sentence in the language that is spoken; in English where it is not translated."""
-    spoken = language()
-    return message if spoken == ENGLISH or not message else _catalogue(spoken).gettext(message)
+    name = _name_of_catalogue()
+    return message if name == ENGLISH or not message else _catalogue(name).gettext(message)
+
+
+def _name_of_catalogue() -> str:
+    """The language, or FILES in files for programs."""
+    course = _course.get()
+    return FILES if course.for_programs else course.language
 
 
 def numeral(value: float, form: str) -> str:
@@ -140,8 +153,8 @@ def printed(link: str) -> str:
 
 
 def _in_context(context: str, message: str) -> str:
-    spoken = language()
-    return message if spoken == ENGLISH or not message else _catalogue(spoken).pgettext(context, message)
+    name = _name_of_catalogue()
+    return message if name == ENGLISH or not message else _catalogue(name).pgettext(context, message)
 
 
 def _catalogue(language: str) -> NullTranslations:
@@ -170,8 +183,21 @@ def course() -> Course:
 @contextmanager
 def spoken(language: str) -> Iterator[None]:
     """Speak a language inside; a sentence is said where it is made, so nothing may be left to be made later."""
-    with written_as(replace(_course.get(), language=language)):
+    with written_as(replace(_course.get(), language=language, for_programs=False)):
         yield
+
+
+@contextmanager
+def words_of_files() -> Iterator[None]:
+    """Write English inside, with the headings and words on which scripts rely."""
+    with written_as(replace(_course.get(), language=ENGLISH, for_programs=True)):
+        yield
+
+
+def word_of_files(text: str) -> str:
+    """A phrase as files for programs have it; a name or a title as it is."""
+    with words_of_files():
+        return translated(text)
 
 
 @contextmanager

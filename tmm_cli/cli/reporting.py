@@ -9,7 +9,7 @@ from pathlib import Path
 from tmm_cli.cli.common import console
 from tmm_cli.cli.opening import afford, count_detail, introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
-from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results, Stage
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import build_chain, is_chain, problem_of
@@ -119,7 +119,7 @@ def as_expected(results: Results | ChainResults) -> bool:
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
     """The content of result.json on standard output, as it comes."""
-    with spoken(ENGLISH):
+    with words_of_files():
         sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 

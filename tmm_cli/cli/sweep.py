@@ -13,7 +13,7 @@ from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, e
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.formats import files as drawings
-from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.language import _, words_of_files
 from tmm_cli.problem import Problem
 from tmm_cli.reports import (
     RECORD,
@@ -112,12 +112,12 @@ def _write(found: Swept, problem: Problem, out: Path) -> None:
     """All files at once, or none. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
     with Staged(folder) as staged:
-        with spoken(ENGLISH):
+        with words_of_files():
             staged.write("sweep.csv", csv_text(points_table(found), problem.units))
             staged.write("borders.csv", csv_text(borders_table(found), problem.units))
         for name, picture in drawings(sheets(problem.title, found, problem.units), say):
             staged.write(name, (picture,))
         names = sorted(staged.names)
-        with spoken(ENGLISH):
+        with words_of_files():
             staged.write(RECORD, json_text([*sections(found, problem), ("files", names)]))
     say(_("written: {files}").format(files=printable(folder)))

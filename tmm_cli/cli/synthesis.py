@@ -8,7 +8,7 @@ from pathlib import Path
 from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each, emit_json
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
-from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.problem import ProblemError, Synthesised, UnitSystem, ValueReader
 from tmm_cli.reports import (
@@ -44,7 +44,8 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
     name, title, found, units, results = _solved(file, settings)
     measured = None if results is None else measured_on(results)
-    whole = {"problem": name, **synthesis_json(found, measured)}
+    with words_of_files():
+        whole = {"problem": name, **synthesis_json(found, measured)}
     if as_json:
         emit_json(whole)
     else:
@@ -57,7 +58,7 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
     if out is not None:
         folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
         with Staged(folder) as staged:
-            with spoken(ENGLISH):
+            with words_of_files():
                 for table in tables_of_synthesis(found, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
             for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):

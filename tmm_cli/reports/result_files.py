@@ -15,7 +15,7 @@ from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
-from tmm_cli.language import ENGLISH, _, spoken
+from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports.digits import AccuracyReport
@@ -266,7 +266,7 @@ def write_results(
         return walk(results) if digits is None else digits.with_bounds(walk(results))
 
     with Staged(folder) as staged:
-        with spoken(ENGLISH):
+        with words_of_files():
             for table in tables():
                 staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
         for name, content in files(people, tables(), results.problem.units) if people else ():
@@ -275,6 +275,6 @@ def write_results(
             staged.write(name, (picture,))
         names = sorted(staged.names)
         parts = sections(results, None if digits is None else digits.json())
-        with spoken(ENGLISH):
+        with words_of_files():
             staged.write("result.json", json_text(chain(parts, [("part", part)] if part else [], [("files", names)])))
     return WrittenFolder(folder, staged.removed, kept)

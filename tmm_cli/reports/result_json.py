@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator
 from operator import methodcaller
 from typing import Any, NamedTuple
 
-from tmm_cli.language import ENGLISH, spoken
+from tmm_cli.language import words_of_files
 from tmm_cli.mechanics.analysis import Results, run_checks
 from tmm_cli.mechanics.linkage import Link
 from tmm_cli.mechanics.structure import (
@@ -389,7 +389,7 @@ LARGE = ("positions", "kinematics", "forces", "lever", "energy")
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
     """The whole content of result.json as plain data."""
-    with spoken(ENGLISH):
+    with words_of_files():
         return {key: plain(part) for key, part in sections(results)}
 
 

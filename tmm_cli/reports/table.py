@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.language import _, numeral, spelt, translated, typeset
+from tmm_cli.language import Phrase, _, numeral, spelt, translated, typeset, word_of_files
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import array
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER, Dimension
@@ -152,7 +152,7 @@ def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
 
 def _cells(values: Any, figures: Any) -> list[str]:
     if not isinstance(values, np.ndarray):
-        return [csv_cell(word) for word in values]
+        return [csv_cell(translated(word)) for word in values]
     if figures is None:
         return [FULL % v if v - v == 0 else "" for v in values.tolist()]  # nan and infinity have no cell
     return [FIGURES[n] % v if n >= 0 else "" for v, n in zip(values.tolist(), figures.tolist(), strict=True)]
@@ -232,4 +232,4 @@ def plain(value: Any) -> Any:
         return {key: plain(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
         return [plain(v) for v in value]
-    return value
+    return word_of_files(value) if isinstance(value, Phrase) else value
