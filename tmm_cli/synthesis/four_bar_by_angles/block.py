@@ -12,8 +12,7 @@ from tmm_cli.language import _, translated
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Block, Range, numbers
-from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, AnglePairsTask, Function
-from tmm_cli.synthesis.four_bar_by_angles.solver import LENGTHS, ZEROS
+from tmm_cli.synthesis.four_bar_by_angles.pairs import ANGLES, FUNCTIONS, LENGTHS, ZEROS, AnglePairsTask, Function
 
 DOMAINS = {
     "log10(x)": "x more than 0",

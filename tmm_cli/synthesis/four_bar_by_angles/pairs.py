@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from tmm_cli.language import N_
 from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, least
 from tmm_cli.synthesis.four_bar import FourBar, sharpest, turning
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein, freudenstein as least_squares
@@ -64,6 +65,21 @@ class Function:
         share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(float)
         phi = self.phi[0] + share * (self.phi[1] - self.phi[0])
         return phi, self.wanted(phi)
+
+
+# Keys of lengths and zero angles.
+
+
+LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
+    "l1": ("length", N_("input l1 = AB")),
+    "l2": ("length", N_("coupler l2 = BC")),
+    "l3": ("length", N_("output l3 = DC")),
+    "l4": ("length", N_("frame l4 = AD")),
+}
+ZEROS: Final = {
+    "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
+    "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
+}
 
 
 # Four-bars by pairs of angles, what each is worth, and which of them is taken.

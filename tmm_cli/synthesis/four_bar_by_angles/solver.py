@@ -15,7 +15,9 @@ from tmm_cli.synthesis.construction import Arc, Construction, Diagram, Line, Seg
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs, parallelogram
 from tmm_cli.synthesis.four_bar_by_angles.pairs import (
     ANGLES,
+    LENGTHS,
     LONGEST,
+    ZEROS,
     AnglePairsTask,
     Function,
     Quality,
@@ -155,16 +157,6 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
 
 
 __all__ = ["PARAMETERS", "AnglePairsTask", "solve"]
-LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
-    "l1": ("length", N_("input l1 = AB")),
-    "l2": ("length", N_("coupler l2 = BC")),
-    "l3": ("length", N_("output l3 = DC")),
-    "l4": ("length", N_("frame l4 = AD")),
-}
-ZEROS: Final = {
-    "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
-    "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
-}
 FOUND: Final = {
     **LENGTHS,
     **ZEROS,
