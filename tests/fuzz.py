@@ -59,7 +59,7 @@ from tmm_cli.problem import (
     read_text,
 )
 from tmm_cli.reports import accuracy, cells_with_digits, computed_tables, json_text, keys_of, sections, walk
-from tmm_cli.synthesis import TASKS, block, task_of
+from tmm_cli.synthesis import TASKS, block_module, read_task
 
 ROOT = Path(__file__).parents[1]
 LONGEST = {"load": 10, "solve": 30, "run": 60, "grade": 60}  # seconds of the processor, of each command
@@ -298,7 +298,7 @@ def _spots(data: Any, kind: Any) -> Iterator[Spot]:
         fields = {one.alias or name: one.annotation for name, one in model.model_fields.items()} if model else {}
         task = data.get("synthesis")
         if isinstance(task, dict) and str(task.get("task")) in TASKS:
-            fields["synthesis"] = block(task["task"]).Shape
+            fields["synthesis"] = block_module(task["task"]).BLOCK
         if get_origin(kind) is dict:
             fields = dict.fromkeys(data, get_args(kind)[1])
         for key, value in data.items():
@@ -427,7 +427,7 @@ def _ended(text: str, solving: bool) -> tuple[str, str]:
                 return "loaded", ""
             problem = problem_of(tree)
             if "synthesis" in tree.data and tree.data["synthesis"]["task"] == "optimal":
-                task_of(tree)  # which a file with a search does not need before it is solved
+                read_task(tree)  # which a file with a search does not need before it is solved
             if not solving:
                 return "loaded", ""
             results = solve(problem)

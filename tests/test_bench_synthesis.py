@@ -25,7 +25,7 @@ from tmm_cli.bench import (
     search_problem_text,
     searches,
 )
-from tmm_cli.synthesis import exactly
+from tmm_cli.synthesis import evaluate_exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND[SEARCHED])
 FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
@@ -46,7 +46,7 @@ def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_7
 def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
     best, search = best_known(), prepared(SEARCHED)
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
-    values = exactly(search, x)
+    values = evaluate_exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)
     assert all(limit.missed(v) < 1e-7 for limit, v in zip(search.constraints, values[1:], strict=True))
     assert best["objective"] == min(run["objective"] for run in best["runs"]) and len(best["runs"]) == 10

@@ -16,20 +16,20 @@ from tmm_cli.synthesis import (
     AnglePairsTask,
     CouplerPositionsTask,
     CrankSliderTask,
-    Evolved,
+    DyadData,
+    EvolutionResult,
     FourBarByKTask,
     ShaperTask,
-    Side,
     SlottedLeverTask,
     crank_slider,
-    frame,
-    history,
+    draw_history,
     shaper,
+    sheet_extent,
     slotted_lever,
 )
-from tmm_cli.synthesis.coupler_positions import solver as coupler_positions
+from tmm_cli.synthesis.coupler_positions import task as coupler_positions
 from tmm_cli.synthesis.four_bar_by_angles import solver as four_bar_by_angles
-from tmm_cli.synthesis.four_bar_by_k import solver as four_bar_by_k
+from tmm_cli.synthesis.four_bar_by_k import task as four_bar_by_k
 
 ROOT = Path(__file__).parents[1]
 
@@ -77,7 +77,7 @@ CASES = {
             coupler_positions,
             places=(0j, 0.06 + 0.06j, 0.09 + 0.14j),
             angles=tuple(np.radians([0.0, 20, 60])),
-            sides={"AB": Side(pivot=-0.06j), "DC": Side(pivot=0.12 - 0.04j)},
+            sides={"AB": DyadData(pivot=-0.06j), "DC": DyadData(pivot=0.12 - 0.04j)},
         ),
         (),
     ),
@@ -196,8 +196,8 @@ def test_the_history_is_never_empty():
     rows = np.array([[3.0, 0.4], [2.0, 0.1], [2.5, 1e-3], [2.6, 1e-5]])  # as with equalities: never quite kept
 
     def drawn(polished, *, each=False):
-        evolved = Evolved(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, every=each)
-        return history(evolved, lambda f: f, polished, "length", "length")
+        evolved = EvolutionResult(np.zeros((1, 1)), rows[-1:, 0], rows[-1:, 1], rows, False, every=each)
+        return draw_history(evolved, lambda f: f, polished, "length", "length")
 
     shown = drawn(2.7)
     assert [line.text for line in shown.lines] == [
@@ -264,7 +264,7 @@ def test_curves_of_four_positions_have_neither_gaps_nor_corners_and_pass_through
 
 def test_a_curve_that_comes_back_is_on_the_sheet_as_a_whole():
     turn = np.exp(1j * np.linspace(0, 2 * np.pi, 400))
-    low, high = frame([0j, 1 + 1j], [tuple(-0.4 + 0.8 * turn), tuple(np.linspace(0, 1.2, 50) * (3 + 0j))])
+    low, high = sheet_extent([0j, 1 + 1j], [tuple(-0.4 + 0.8 * turn), tuple(np.linspace(0, 1.2, 50) * (3 + 0j))])
     assert (low, high) == pytest.approx((-1.2 - 0.8j, 1.3 + 1j), abs=0.1)
 
 

@@ -13,16 +13,16 @@ from tmm_cli import solve
 from tmm_cli.mechanics.analysis import at_positions
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
+    CRANK_SLIDER_TYPES,
     FOUR_BAR_TYPES,
-    LEVERS,
-    SLIDERS,
+    SLOTTED_LEVER_TYPES,
     CrankSlider,
-    FourBar,
+    FourBarLinks,
     SlottedLever,
-    build,
+    build_synthesised,
     classify_crank_slider,
+    classify_four_bar,
     classify_slotted_lever,
-    turning,
 )
 
 FOUR_BAR = """
@@ -38,7 +38,7 @@ many = st.integers(0, 2**32 - 1).map(lambda seed: np.random.default_rng(seed).un
 
 def test_the_margin_at_a_change_point_is_zero_and_no_rounding():
     assert 0.3 - (0.1 + 0.2) != 0  # in binary numbers
-    assert turning(FourBar(0.1, 0.3, 0.2, 0.4)).excess == 0
+    assert classify_four_bar(FourBarLinks(0.1, 0.3, 0.2, 0.4)).excess == 0
     assert classify_crank_slider(CrankSlider(0.1, 0.3, 0.2)).margin == 0
     assert classify_slotted_lever(SlottedLever(0.1, 0.3, 0.2)).margin == 0
 
@@ -46,7 +46,7 @@ def test_the_margin_at_a_change_point_is_zero_and_no_rounding():
 def named(*lengths):
     """The type of a four-bar with frame, input, coupler and output of these lengths."""
     g, a, b, c = lengths
-    kind = int(turning(FourBar(a, b, c, g)).kind)
+    kind = int(classify_four_bar(FourBarLinks(a, b, c, g)).kind)
     return FOUR_BAR_TYPES[kind] if kind >= 0 else None
 
 
@@ -76,7 +76,7 @@ def test_every_type_has_its_name_and_its_turning_links(lengths, kind, letters):
     assert named(*lengths) == kind
     if letters is not None:
         g, a, b, c = lengths
-        turns = turning(FourBar(a, b, c, g)).turns
+        turns = classify_four_bar(FourBarLinks(a, b, c, g)).turns
         assert "".join(letter for letter, one in zip("ico", turns, strict=True) if one) == letters
 
 
@@ -97,7 +97,7 @@ def test_links_that_just_reach_do_not_close_in_whatever_unit_they_are_given():
 @given(many)
 def test_the_input_turns_fully_where_the_linkage_closes_at_every_angle(lengths):
     g, a, b, c = lengths
-    found = turning(FourBar(a, b, c, g))
+    found = classify_four_bar(FourBarLinks(a, b, c, g))
     angles = np.linspace(0, np.pi, 19)[:, None]
     for turns, (near, far) in ((found.turns[:, 0], (a, c)), (found.turns[:, 2], (c, a))):
         distance = np.abs(g - near * np.exp(1j * angles))
@@ -115,15 +115,18 @@ def test_the_input_turns_fully_where_the_linkage_closes_at_every_angle(lengths):
 @given(many)
 def test_coupler_and_frame_turn_against_each_other_whichever_is_fixed(lengths):
     l1, l2, l3, l4 = lengths
-    one, other = turning(FourBar(l1, l2, l3, l4, 4, 1)), turning(FourBar(l1, l2, l3, l4, 2, 3))
+    one, other = (
+        classify_four_bar(FourBarLinks(l1, l2, l3, l4, 4, 1)),
+        classify_four_bar(FourBarLinks(l1, l2, l3, l4, 2, 3)),
+    )
     assert np.array_equal(one.turns[:, 1], other.turns[:, 1])
-    back = turning(FourBar(l1, l2, l3, l4, 4, 3))
+    back = classify_four_bar(FourBarLinks(l1, l2, l3, l4, 4, 3))
     assert np.array_equal(one.turns[:, ::-1], back.turns)
     assert np.array_equal(one.excess, back.excess)
 
 
 def built(block, linkage=FOUR_BAR, extra=""):
-    return build(read_text(f"tmm: 1\nsynthesis: {block}\n{extra}{linkage}", "x.yaml"))
+    return build_synthesised(read_text(f"tmm: 1\nsynthesis: {block}\n{extra}{linkage}", "x.yaml"))
 
 
 @settings(max_examples=30)
@@ -131,7 +134,7 @@ def built(block, linkage=FOUR_BAR, extra=""):
 def test_the_ordinary_stages_find_the_same_links_turning(seed):
     rng = np.random.default_rng(seed)
     g, a, b, c = (float(x) for x in rng.uniform(0.1, 1.0, 4))
-    found = turning(FourBar(a, b, c, g))
+    found = classify_four_bar(FourBarLinks(a, b, c, g))
     if found.kind < 0 or abs(found.excess) < 1e-3:
         return
     # any closed position will do for a sketch
@@ -182,10 +185,10 @@ def test_the_crank_of_a_slotted_lever_turns_where_the_stone_stays_beyond_the_slo
 
 def test_conditions_of_crank_slider_and_slotted_lever_by_name():
     def slider(*lengths):
-        return list(SLIDERS)[int(classify_crank_slider(CrankSlider(*lengths)).kind)]
+        return list(CRANK_SLIDER_TYPES)[int(classify_crank_slider(CrankSlider(*lengths)).kind)]
 
     def lever(*lengths):
-        return list(LEVERS)[int(classify_slotted_lever(SlottedLever(*lengths)).kind)]
+        return list(SLOTTED_LEVER_TYPES)[int(classify_slotted_lever(SlottedLever(*lengths)).kind)]
 
     assert [slider(50, 190, 40), slider(50, 10, 20), slider(50, 60, 40)] == ["crank", "rod", "none"]
     assert [slider(50, 90, 40), slider(0.1, 0.3, 0.2), slider(1, 1)] == ["change", "change", "change"]

@@ -27,8 +27,8 @@ from tmm_cli.reports import schemes_table, show
 from tmm_cli.synthesis import (
     MOST_SCHEMES,
     KinematicChain,
-    canonical,
-    chains as every_chain,
+    canonical_form,
+    enumerate_chains as every_chain,
     enumerate_schemes as every_scheme,
 )
 
@@ -113,13 +113,13 @@ def test_the_canonical_form_does_not_depend_on_labels(links, mobility):
 
 def test_the_canonical_form_tells_colours_and_kinds_apart_and_the_petersen_graph_from_another_cubic_one():
     square = {(0, 1): 0, (1, 2): 0, (2, 3): 0, (0, 3): 1}
-    assert canonical([0, 1, 1, 1], square) == canonical([1, 1, 1, 0], square)
-    assert canonical([0, 1, 1, 1], square) != canonical([1, 0, 1, 1], square)
-    assert canonical([0] * 4, square) != canonical([0] * 4, dict.fromkeys(square, 0))
+    assert canonical_form([0, 1, 1, 1], square) == canonical_form([1, 1, 1, 0], square)
+    assert canonical_form([0, 1, 1, 1], square) != canonical_form([1, 0, 1, 1], square)
+    assert canonical_form([0] * 4, square) != canonical_form([0] * 4, dict.fromkeys(square, 0))
     ring = {(k, (k + 1) % 5) if k < 4 else (0, 4): 0 for k in range(5)} | {(k, k + 5): 0 for k in range(5)}
     petersen = ring | {tuple(sorted((5 + k, 5 + (k + 2) % 5))): 0 for k in range(5)}
     prism = ring | {tuple(sorted((5 + k, 5 + (k + 1) % 5))): 0 for k in range(5)}
-    assert canonical([0] * 10, petersen) != canonical([0] * 10, prism)
+    assert canonical_form([0] * 10, petersen) != canonical_form([0] * 10, prism)
 
 
 def test_schemes_with_three_moving_links_are_the_four_link_mechanisms():
@@ -166,7 +166,7 @@ def held_and_driven(chain):
     forms = {}
     for frame, crank in (way for pair in chain.pairs for way in (pair, pair[::-1])):
         colours = [0 if link == frame else 1 if link == crank else 2 for link in range(chain.links)]
-        forms.setdefault(canonical(colours, dict.fromkeys(chain.pairs, 0)), (frame, crank))
+        forms.setdefault(canonical_form(colours, dict.fromkeys(chain.pairs, 0)), (frame, crank))
     for frame, crank in forms.values():
         name = {link: str(link) if link else str(chain.links) for link in range(chain.links)} | {frame: "0"}
         hinges = tuple(Hinge(f"P{k}", (name[i], name[j])) for k, (i, j) in enumerate(chain.pairs))

@@ -12,7 +12,7 @@ from test_bad_input import changed, refusal
 
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import ExtendedUnits, ProblemError, build_problem, evaluate, read_text
-from tmm_cli.synthesis import alone, task_of
+from tmm_cli.synthesis import read_task, solve_alone
 
 FOUR_BAR = """tmm: 1
 points: {O: [0, 0], D: [300, 0]}
@@ -181,7 +181,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
     task = "synthesis: {task: optimal, vary: {l: [80, 120], a0: [0, 90]}, objective: {of: path, point: B, at: [a0], "
     text = FOUR_BAR.replace("length: 100", "length: l") + task + "through: [[250, 190]]}}\n"
     with pytest.raises(ProblemError) as caught:
-        task_of(read_text(text, "x.yaml"))
+        read_task(read_text(text, "x.yaml"))
     assert str(caught.value) == (
         "x.yaml:9:100: synthesis.objective.at[0]: an angle is wanted here\n  found:   'a0', a length (45 mm)\n"
         "  allowed: an angle, e.g. 30 deg or 0.5 rad"
@@ -205,7 +205,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
 )
 def test_tasks_that_no_mechanism_meets_end_at_once(task: str, message: str) -> None:
     with pytest.raises(ProblemError) as caught:
-        alone(read_text(f"tmm: 1\nsynthesis: {task}\n", "x.yaml"))
+        solve_alone(read_text(f"tmm: 1\nsynthesis: {task}\n", "x.yaml"))
     assert str(caught.value) == message
 
 

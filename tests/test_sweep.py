@@ -76,9 +76,9 @@ def test_each_point_is_the_mechanism_of_a_file_with_that_parameter(file, over, s
         results = one_by_one(file, [setting.format(point[0])])
         force = next(r for r in results.reactions.all if {r.by, r.on} == {"3", "4"})
         alone = [
-            measures.stroke(results),
-            measures.ratio(results),
-            measures.pressure(results),
+            measures.output_stroke(results),
+            measures.time_ratio(results),
+            measures.largest_pressure_angle(results),
             largest(lambda r: r.reactions.balance.moment, results),
             largest(lambda r, pair=force.pair.name: r.reactions.of(pair).force, results),
             largest(lambda r: r.motion.link("3").omega, results),

@@ -13,12 +13,12 @@ from test_synthesis_crank_slider import LINKAGE, MET
 from tmm_cli import load, solve
 from tmm_cli.drawing.sheets import diagram
 from tmm_cli.problem import ProblemError, TaskProblem, UnitSystem, read_text
-from tmm_cli.synthesis import TASKS, Diagram, Line, build
+from tmm_cli.synthesis import TASKS, Diagram, DiagramLine, build_synthesised
 
 
 def refusal(text):
     with pytest.raises(ProblemError) as caught:
-        build(read_text(f"tmm: 1\nsynthesis: {text}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
+        build_synthesised(read_text(f"tmm: 1\nsynthesis: {text}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
     return str(caught.value).partition(": ")[2]
 
 
@@ -136,7 +136,7 @@ def test_sizes_at_the_bounds_give_numbers():
         "nu: 0, pressure: 1e-6 rad",
         "k: 1.0000000001, ratio: 1e6",
     ):
-        found = build(
+        found = build_synthesised(
             read_text(
                 f"tmm: 1\nsynthesis: {{task: crank-slider, stroke: 10, {more}}}\n{LINKAGE.format(speed=1.0)}", "x"
             )
@@ -151,7 +151,7 @@ def test_what_cannot_be_is_refused_with_the_reason_and_what_could(text):
 
 def test_parameters_that_rest_on_the_answer_and_those_that_it_rests_on():
     text = "{task: crank-slider, stroke: H, ratio: L, nu: 0}\nparameters: {H: 2*a, a: 30, L: 3, AS: AB/2, AB: l}"
-    found = build(
+    found = build_synthesised(
         read_text(f"tmm: 1\nsynthesis: {text}\n{LINKAGE.format(speed=1.0)}".replace("-e]", "-AS + AB/2]"), "x")
     )
     assert abs(found.linkage.links["2"].points["B"]) == pytest.approx(0.09, rel=1e-15)
@@ -233,8 +233,8 @@ def test_a_file_without_a_synthesis_imports_nothing_of_it():
 
 def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
     axis = ("largest pressure angle", "angle")
-    line = Line("largest pressure angle", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
-    dots = Line("k", np.array([0.15]), np.array([1.0]), dots=True)
+    line = DiagramLine("largest pressure angle", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
+    dots = DiagramLine("k", np.array([0.15]), np.array([1.0]), dots=True)
     drawn = Diagram("family", "A family", ("stroke", "length"), axis, (line, dots))
     sheet = diagram("A task", drawn, UnitSystem())
     assert {"largest pressure angle, deg", "stroke, mm", "100", "200", "180", "k"} <= set(sheet.texts())
@@ -281,7 +281,7 @@ def test_a_misspelt_block_is_told_at_its_place(tmp_path):
 
 def test_what_the_synthesis_finds_is_among_the_names_that_arithmetic_may_use():
     with pytest.raises(ProblemError) as caught:
-        build(
+        build_synthesised(
             read_text(
                 "tmm: 1\nparameters: {n: 3, AS: 0.35*AB}\nsynthesis: {task: crank-slider, stroke: 120, k: 1.1, "
                 f"ratio: 3.5}}\n{LINKAGE.format(speed=1.0)}",
@@ -305,7 +305,7 @@ def test_what_the_synthesis_finds_is_among_the_names_that_arithmetic_may_use():
 )
 def test_a_place_or_a_range_that_is_none_is_said_in_our_words(block):
     with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\] are wanted"):
-        build(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
+        build_synthesised(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
 
 
 def test_a_family_is_written_in_numbers_and_not_shown_on_the_terminal(tmp_path):

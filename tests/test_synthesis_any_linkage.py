@@ -9,7 +9,7 @@ from models import file_of
 
 from tmm_cli import solve
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.synthesis import Candidates, build, measured, task_of
+from tmm_cli.synthesis import Candidates, build_synthesised, measure_demands, read_task
 
 
 def text_of(name, *edits):
@@ -140,19 +140,23 @@ def block(vary, objective, constraint):
 @pytest.mark.parametrize("kind", OPTIMAL)
 def test_what_is_found_for_any_linkage_is_measured_on_it(kind):
     name, edits, *task = OPTIMAL[kind]
-    problem = build(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
-    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+    problem = build_synthesised(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
+    for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")):
         assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
 def test_a_stroke_has_no_k():
     edits = (("speed: v1}", "speed: v1, stroke: [0, 120]}"), ("AB: 250, ", ""))
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", "k", ""))), "x.yaml"))
+        build_synthesised(
+            read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", "k", ""))), "x.yaml")
+        )
     assert "this belongs to a driver that turns on and on" in str(caught.value)
     law = "{of: law, link: 3, at: [0, 130], values: [10, 50]}"
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", law, ""))), "x.yaml"))
+        build_synthesised(
+            read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", law, ""))), "x.yaml")
+        )
     assert "the driver does not go there" in str(caught.value) and "0 to 120 mm" in str(caught.value)
     for over, said, allowed in (
         ("cycle", "the driver has no cycle", "stroke, positions, [from, to]"),
@@ -163,7 +167,7 @@ def test_a_stroke_has_no_k():
             text = text_of(
                 "cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", f"moment\n  over: {over}", ""))
             )
-            build(read_text(text, "x.yaml"))
+            build_synthesised(read_text(text, "x.yaml"))
         assert caught.value.message == said and caught.value.allowed == allowed
     with pytest.raises(ProblemError) as caught:
         text = text_of(
@@ -172,22 +176,22 @@ def test_a_stroke_has_no_k():
             ("at: .0, 20.*120., detail: .3.", "count: 12"),
             (r"points: \{", block("{AB: [240, 270]}", "mass", "")),
         )
-        build(read_text(text, "x.yaml"))
+        build_synthesised(read_text(text, "x.yaml"))
     assert "how far the driver goes is wanted" in str(caught.value)
 
 
 def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
     """The radii 3 OA/2 and OA/2 roll alike for every OA: the cycle is the same for all."""
     text = text_of("three-lobes", ("OA: 100, ", ""), (r"points: \{", block("{OA: [90, 110]}", "box", "")))
-    assert Candidates(task_of(read_text(text, "x.yaml"))).closed
+    assert Candidates(read_task(read_text(text, "x.yaml"))).closed
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm"), "x.yaml"))
+        build_synthesised(read_text(text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm"), "x.yaml"))
     assert caught.value.message == "after how many turns all comes round again rests on this parameter"
 
 
 def refused(name, edits, *task):
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
+        build_synthesised(read_text(text_of(name, *edits, (r"points: \{", block(*task))), "x.yaml"))
     return caught.value
 
 
@@ -217,4 +221,4 @@ def test_a_cycle_that_rests_on_what_varies_is_none_to_search_over():
     assert error.message == "after how many turns all comes round again rests on this parameter"
     both = (*edits, ("speed: 120 rpm", "speed: 2*n"))
     text = text_of("five-bar", *both, (r"points: \{", block("{n: [50 rpm, 70 rpm]}", "moment", "")))
-    assert Candidates(task_of(read_text(text, "x.yaml"))).closed
+    assert Candidates(read_task(read_text(text, "x.yaml"))).closed

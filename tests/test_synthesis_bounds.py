@@ -6,7 +6,7 @@ import pytest
 from test_commands import ROOT
 
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.synthesis import build
+from tmm_cli.synthesis import build_synthesised
 
 FOUR_BAR = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -27,7 +27,7 @@ output: 3
 
 
 def solved(constraint="", **bounds):
-    return build(read_text(FOUR_BAR.format(constraint=constraint, **bounds), "x.yaml")).synthesis.outcome
+    return build_synthesised(read_text(FOUR_BAR.format(constraint=constraint, **bounds), "x.yaml")).synthesis.outcome
 
 
 def refused(constraint="", **bounds):
@@ -71,9 +71,11 @@ def test_a_link_that_cannot_turn_fully_is_refused_with_another_way_whatever_else
     )
     text = text.replace("a: 120, ", "").replace("points: {O", f"{task}\npoints: {{O", 1)
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
+        build_synthesised(read_text(text, "x.yaml"))
     assert caught.value.message == NEVER
-    (found,) = build(read_text(text.replace("optimal,", "optimal, over: positions,"), "x.yaml")).synthesis.outcome.found
+    (found,) = build_synthesised(
+        read_text(text.replace("optimal,", "optimal, over: positions,"), "x.yaml")
+    ).synthesis.outcome.found
     assert float(found.value) == pytest.approx(0.1)  # 2 a tan(45 deg) = 200 mm
 
 
@@ -81,7 +83,7 @@ def file_with(name, edit, vary, more=""):
     """A file of the bank with an optimal synthesis of the largest balancing moment."""
     text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8").replace(*edit)
     task = f"synthesis: {{task: optimal, vary: {vary}, objective: moment, population: 8, generations: 3{more}}}\n"
-    return build(read_text(text.replace("points: {", task + "points: {", 1), "x.yaml"))
+    return build_synthesised(read_text(text.replace("points: {", task + "points: {", 1), "x.yaml"))
 
 
 @pytest.mark.parametrize("over", ["[-95, 45]", "[-100, 100]", "[100, 170]", "[-90, 45]"])

@@ -13,18 +13,18 @@ from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
+    CouplerPoses,
     CouplerPositionsTask,
     Dyads,
     Infeasible,
-    Poses,
-    beside,
-    build,
-    by_turn,
-    centre,
-    curve,
-    guiding,
-    marks,
-    measured,
+    build_synthesised,
+    burmester_curve,
+    circle_centre,
+    dyads_by_rotation,
+    find_dyads,
+    measure_demands,
+    point_at_distance,
+    rate_guidance,
 )
 from tmm_cli.synthesis.coupler_positions import dyads as search
 
@@ -45,7 +45,7 @@ COUNT = 250
 
 @cache
 def problem(block):
-    return build(read_text(f"tmm: 1\nsynthesis: {{task: coupler-positions, {block}}}\n{LINKAGE}", "x.yaml"))
+    return build_synthesised(read_text(f"tmm: 1\nsynthesis: {{task: coupler-positions, {block}}}\n{LINKAGE}", "x.yaml"))
 
 
 def random_tasks(count, seed, least=0.35):
@@ -108,7 +108,7 @@ def on_mechanism(poses, one, other):
 
 
 def comes_back(places, angles, one, other):
-    poses = Poses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
+    poses = CouplerPoses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
     found, turned = on_mechanism(poses, one, other)
     size = np.maximum(1.0, np.abs(np.asarray(one.pivot - other.pivot, complex)))[:, None]
     assert np.max(np.abs(found - places) / size) < MET
@@ -116,14 +116,14 @@ def comes_back(places, angles, one, other):
 
 
 def exact(places, angles):
-    return Poses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
+    return CouplerPoses(np.asarray(places, np.clongdouble), np.asarray(angles, np.longdouble))
 
 
 def test_three_positions_come_back_from_pins_and_from_pivots():
     places, angles, a, d, m, n = random_tasks(3, 3)
     poses = exact(places, angles)
-    by_pins = [Dyads(centre(poses.on_frame(pin)), pin) for pin in (m, n)]
-    by_pivots = [Dyads(pivot, centre(poses.in_plane(pivot))) for pivot in (a, d)]
+    by_pins = [Dyads(circle_centre(poses.on_frame(pin)), pin) for pin in (m, n)]
+    by_pivots = [Dyads(pivot, circle_centre(poses.in_plane(pivot))) for pivot in (a, d)]
     for found in (by_pins, by_pivots, (by_pins[0], by_pivots[1])):
         for dyads, pivot, pin in zip(found, (a, d), (m, n), strict=True):
             assert np.max(np.abs(dyads.pivot - pivot)) < 1e-6 and np.max(np.abs(dyads.pin - pin)) < 1e-6
@@ -138,7 +138,7 @@ def test_two_positions_come_back_from_pins_or_pivots_and_lengths():
         ends, third, given = (poses.on_frame(pin), pivot, pin) if by_pin else (poses.in_plane(pivot), pin, pivot)
         way = ends[:, 1] - ends[:, 0]
         side = np.sign((np.conj(way) * (third - ends[:, 0])).imag)
-        other = beside(ends, length, side)
+        other = point_at_distance(ends, length, side)
         assert np.max(np.abs(other - third)) < 1e-6
         found.append(Dyads(other, given) if by_pin else Dyads(given, other))
     comes_back(places, angles, *found)
@@ -150,7 +150,7 @@ def test_four_positions_come_back_from_the_turns_of_both_links():
     for pivot, pin in ((a, m), (d, n)):
         arm = np.asarray(poses.on_frame(pin) - pivot[:, None], complex)
         turn = np.angle(arm[:, 1] / arm[:, 0])
-        ways = [by_turn(poses, turn, branch) for branch in (0, 1)]
+        ways = [dyads_by_rotation(poses, turn, branch) for branch in (0, 1)]
         gaps = [np.nan_to_num(np.asarray(np.abs(w.pivot - pivot), float), nan=9.0) for w in ways]
         second = gaps[1] < gaps[0]
         one = Dyads(
@@ -168,11 +168,11 @@ def test_four_positions_come_back_from_the_turns_of_both_links():
 def test_positions_that_a_four_bar_took_in_order_have_no_defect_and_others_are_named(count):
     places, angles, a, d, m, n = random_tasks(count, 10 + count)
     one, other = Dyads(a, m), Dyads(d, n)
-    there = marks(exact(places, angles), one, other)
+    there = rate_guidance(exact(places, angles), one, other)
     assert np.all(there.defect == 0) and np.all(there.least > 0.34)
     if count == 4:
         mixed = [0, 2, 1, 3]
-        turned = marks(exact(places[:, mixed], angles[:, mixed]), one, other)
+        turned = rate_guidance(exact(places[:, mixed], angles[:, mixed]), one, other)
         assert np.mean(turned.defect == 2) > 0.9 and np.all(turned.defect[np.abs(there.turn) < np.pi] == 2)
 
 
@@ -193,7 +193,7 @@ FOUR = "[[0, 0, 0], [60, 40, 15], [110, 100, 35], [130, 170, 60]]"
 )
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block)
-    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    every = measure_demands(found.synthesis.outcome, solve(found, "kinematics"))
     assert len(every) >= 7
     for m in every:
         assert m.difference <= MET, m
@@ -202,7 +202,7 @@ def test_the_ordinary_stages_measure_what_was_asked(block):
 def test_every_place_of_the_curves_guides_through_four_positions():
     poses = exact([0, 0.06 + 0.04j, 0.11 + 0.1j, 0.13 + 0.17j], np.radians([0, 15, 35, 60]))
     for branch in (0, 1):
-        dyads = by_turn(poses, np.linspace(-3.1, 3.1, 400), branch)
+        dyads = dyads_by_rotation(poses, np.linspace(-3.1, 3.1, 400), branch)
         radii = np.abs(poses.on_frame(dyads.pin) - dyads.pivot[:, None])
         good = np.isfinite(radii).all(-1) & (radii[:, 0] < 10)
         assert good.sum() > 50 and np.ptp(radii[good], axis=1) == pytest.approx(0, abs=1e-13)
@@ -213,8 +213,8 @@ def test_the_best_transmission_on_the_curves_is_not_beaten_by_random_links_of_th
     least = next(v.value for v in found.found if v.text == LEAST)
     poses = exact([0, 0.06 + 0.04j, 0.11 + 0.1j, 0.13 + 0.17j], np.radians([0, 15, 35, 60]))
     size, rng = 0.17**2 + 0.13**2, np.random.default_rng(1)
-    dyads = [by_turn(poses, rng.uniform(-np.pi, np.pi, 20_000), branch) for branch in rng.integers(0, 2, 2)]
-    there = marks(poses, *dyads)
+    dyads = [dyads_by_rotation(poses, rng.uniform(-np.pi, np.pi, 20_000), branch) for branch in rng.integers(0, 2, 2)]
+    there = rate_guidance(poses, *dyads)
     (a, m), (d, n) = ((x.pivot, x.pin) for x in dyads)
     arms = [np.abs(poses.on_frame(x.pin)[..., 0] - x.pivot) for x in dyads]
     fair = np.all([(x > 0.15 * size**0.5) & (x < 2 * size**0.5) for x in (*arms, np.abs(a - d), np.abs(m - n))], 0)
@@ -226,7 +226,7 @@ def best_of(positions):
     """The search on Burmester's curves of positions (m, rad) itself: its dyads and how good they are."""
     places, angles = zip(*((complex(x, y), np.radians(angle)) for x, y, angle in positions), strict=True)
     task = CouplerPositionsTask(places, angles)
-    limits = search.Limits(0.15 * task.size, *(3 * [2 * task.size]))
+    limits = search.LinkLimits(0.15 * task.size, *(3 * [2 * task.size]))
     return task.poses, search.best_on_curves(task.poses, task.size, limits, {})
 
 
@@ -249,7 +249,7 @@ def test_the_best_transmission_does_not_depend_on_how_densely_the_curves_are_lai
     _, fine = best_of(positions)
     assert found[2] == pytest.approx(fine[2], abs=1e-6) or (found[2] < 1e-6 and fine[2] < 1e-6)
     if found[2] > 1e-6:
-        there = marks(poses, *found[:2])
+        there = rate_guidance(poses, *found[:2])
         assert there.defect == 0 and there.least == pytest.approx(found[2], abs=1e-9)
 
 
@@ -271,11 +271,11 @@ def test_a_four_bar_that_is_known_to_be_good_is_not_missed(positions, least):
 
 def test_three_positions_of_one_angle_leave_a_circle_of_pins_and_parallelograms_that_must_pass_their_change_point():
     poses = exact([0, 0.05 + 0.025j, 0.095 + 0.06j, 0.13 + 0.11j], np.radians([0, 0, 0, 20]))
-    pins = curve(poses).at(0, np.linspace(0, 6, 50))
+    pins = burmester_curve(poses).at(0, np.linspace(0, 6, 50))
     radii = np.abs(poses.on_frame(pins.pin) - pins.pivot[:, None])
     assert np.ptp(radii, axis=1) == pytest.approx(0, abs=1e-15) and np.ptp(radii[:, 0]) == pytest.approx(0, abs=1e-15)
     with pytest.raises(Infeasible, match="branch defect"):
-        guiding(CouplerPositionsTask(tuple(map(complex, poses.places)), tuple(map(float, poses.angles))))
+        find_dyads(CouplerPositionsTask(tuple(map(complex, poses.places)), tuple(map(float, poses.angles))))
 
 
 ON_CIRCLE = ", ".join(f"[100*cos({t} deg), 100*sin({t} deg), 15]" for t in (0, 30, 70, 100))
@@ -289,7 +289,7 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
     assert (numbers["l1"], numbers["l2"]) == pytest.approx((0.1, numbers["l4"])) and numbers["l3"] == pytest.approx(0.1)
     assert outcome.notes[0].startswith("the coupler does not turn: any parallelogram with these arms does it")
     assert next(v.value for v in outcome.found if v.text == LEAST) == pytest.approx(np.radians(40))
-    for m in measured(outcome, solve(found, "kinematics")):
+    for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
 

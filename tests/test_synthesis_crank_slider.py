@@ -16,13 +16,13 @@ from tmm_cli.mechanics.numerics import find_roots
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
     CrankSliderTask,
-    build,
-    find,
+    build_synthesised,
+    find_crank_slider,
     k_of,
     largest_theta,
-    least_pressure,
-    measured,
-    shortest,
+    measure_demands,
+    shortest_rod,
+    smallest_pressure,
     theta_of,
 )
 
@@ -51,7 +51,7 @@ def problem(block, speed=1.0):
     """A file with this synthesis and a crank-slider that uses what it finds."""
     keys = ", ".join(f"{key}: {value}" for key, value in block.items())
     text = f"tmm: 1\nsynthesis: {{task: crank-slider, {keys}}}\n{LINKAGE.format(speed=speed)}"
-    return build(read_text(text, "x.yaml"))
+    return build_synthesised(read_text(text, "x.yaml"))
 
 
 def variants(found):
@@ -91,7 +91,7 @@ def on_mechanism(found):
 
 def comes_back(asked):
     """Every stroke, k and pressure angle asked for, or foretold, is there on the mechanism."""
-    found = find(asked)
+    found = find_crank_slider(asked)
     for name, values in zip(("stroke", "k", "pressure"), on_mechanism(found), strict=True):
         given = getattr(asked, name)
         assert values == pytest.approx(np.broadcast_to(getattr(found, name), values.shape), rel=MET, abs=0), name
@@ -120,7 +120,7 @@ def test_stroke_and_offset_come_back_from_the_ratio(drawn):
     a, b, c = drawn
     ratio, stroke = 1.05 + 9 * a, metres(c)
     e = 0.97 * b * stroke * (ratio - 1) / (2 * np.sqrt(ratio))
-    assert find(CrankSliderTask(stroke=stroke, ratio=ratio, e=e)).e == pytest.approx(e, rel=MET)
+    assert find_crank_slider(CrankSliderTask(stroke=stroke, ratio=ratio, e=e)).e == pytest.approx(e, rel=MET)
     comes_back(CrankSliderTask(stroke=stroke, ratio=ratio, e=e))
 
 
@@ -129,7 +129,7 @@ def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
     h, e, length = 150.0, 20.0, 3.7
     more = (length**2 + 1) * h**2
     r = math.sqrt((more + math.sqrt(more**2 - 4 * length**2 * h**2 * (h**2 + 4 * e**2))) / (8 * length**2))
-    found = find(CrankSliderTask(stroke=h, e=e, ratio=length))
+    found = find_crank_slider(CrankSliderTask(stroke=h, e=e, ratio=length))
     assert found.r == pytest.approx(r, rel=1e-14)
     assert (found.r, found.l) == pytest.approx((74.788276, 276.716621), abs=5e-7)
     assert math.degrees(found.pressure) == pytest.approx(20.0321, abs=5e-5)
@@ -159,7 +159,7 @@ def test_offset_and_ratio_are_refused_where_they_give_no_crank(keys, message):
 def test_stroke_k_and_pressure_come_back_from_the_shortest_rod(drawn):
     a, b, c = drawn
     k = 1 + 1.2 * a
-    least = least_pressure(theta_of(k))
+    least = smallest_pressure(theta_of(k))
     comes_back(CrankSliderTask(stroke=metres(c), k=k, pressure=least + (0.02 + 0.9 * b) * (1.5 - least)))
 
 
@@ -183,7 +183,7 @@ def test_stroke_and_k_come_back_from_the_offset_in_metres(drawn):
 def test_the_mean_speed_comes_back(drawn):
     a, b, c = drawn
     ratio, speed = 1.2 + 5 * a, 1 + 90 * b
-    found = find(CrankSliderTask(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
+    found = find_crank_slider(CrankSliderTask(speed=c + 0.1, crank_speed=speed, ratio=ratio, nu=0.5 * (ratio - 1)))
     assert on_mechanism(found)[0] * speed / np.pi == pytest.approx(c + 0.1, rel=MET, abs=0)
 
 
@@ -201,27 +201,27 @@ def test_the_mean_speed_comes_back(drawn):
 )
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block, 15.0)
-    for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
+    for m in measure_demands(found.synthesis.outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
 
 def test_no_other_length_keeps_the_pressure_angle_and_is_shorter():
     theta, limit = theta_of(1.15), math.radians(45)
-    length = float(shortest(theta, limit))
+    length = float(shortest_rod(theta, limit))
     shorter = np.linspace(1.0001, length * (1 - 1e-9), 5000)
-    assert np.all(find(CrankSliderTask(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
+    assert np.all(find_crank_slider(CrankSliderTask(stroke=1.0, k=1.15, ratio=shorter)).pressure > limit)
 
 
 def test_the_least_pressure_angle_is_the_least_over_all_lengths():
     for k in (1.01, 1.2, 1.5, 2.0, 2.8):
         longest = 1 / math.tan(float(theta_of(k)) / 2) ** 2
         lengths = np.geomspace(1, longest, 200_003)[1:-1]
-        least = np.min(find(CrankSliderTask(stroke=1.0, k=k, ratio=lengths)).pressure)
-        assert float(least_pressure(theta_of(k))) == pytest.approx(least, rel=1e-7)
+        least = np.min(find_crank_slider(CrankSliderTask(stroke=1.0, k=k, ratio=lengths)).pressure)
+        assert float(smallest_pressure(theta_of(k))) == pytest.approx(least, rel=1e-7)
 
 
 def test_h_and_nu_obey_the_relations_of_the_course():
-    found = find(CrankSliderTask(stroke=0.12, k=1.3, ratio=3.0))
+    found = find_crank_slider(CrankSliderTask(stroke=0.12, k=1.3, ratio=3.0))
     theta = math.pi * 0.3 / 2.3
     assert found.h == pytest.approx(math.sqrt(2 * (10 - 8 * math.cos(theta))), rel=1e-14)
     assert found.nu == pytest.approx(8 * math.sin(theta) / found.h, rel=1e-14)
@@ -233,22 +233,24 @@ def test_h_and_nu_obey_the_relations_of_the_course():
 
 
 def test_the_printed_nu_is_right_for_small_theta_only():
-    errors = [float(find(CrankSliderTask(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)]
+    errors = [
+        float(find_crank_slider(CrankSliderTask(stroke=1.0, k=k, ratio=3.0)).error) for k in (1.001, 1.01, 1.1, 1.3)
+    ]
     assert errors == sorted(errors) and errors[0] < 1e-5 and errors[-1] > 0.05
 
 
 def test_the_mean_speed_gives_the_stroke_by_30_v_over_n():
     n, v = 300.0, 0.8
-    found = find(CrankSliderTask(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
+    found = find_crank_slider(CrankSliderTask(speed=v, crank_speed=n * math.pi / 30, ratio=4.0, nu=0.0))
     assert found.stroke == pytest.approx(30 * v / n, rel=1e-15)
     assert found.r == pytest.approx(found.stroke / 2, rel=1e-15)
 
 
 def test_the_triangle_of_both_extreme_positions_worked_by_hand():
     # 3-4-5: A above B2 at e = 3 is the limit; sides l + r = 5, l - r = 3 with H = 4
-    found = find(CrankSliderTask(stroke=4.0, ratio=4.0, nu=2.999999))
+    found = find_crank_slider(CrankSliderTask(stroke=4.0, ratio=4.0, nu=2.999999))
     assert (found.r, found.l) == (pytest.approx(1, rel=1e-2), pytest.approx(4, rel=1e-2))
-    found = find(CrankSliderTask(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
+    found = find_crank_slider(CrankSliderTask(stroke=7.0, e=12.0, k=k_of(np.arctan2(16, 12) - np.arctan2(9, 12))))
     assert (found.r, found.l) == (pytest.approx(2.5, rel=1e-14), pytest.approx(17.5, rel=1e-14))
 
 

@@ -14,17 +14,17 @@ from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
     AnglePairsTask,
-    Bars,
-    build,
-    chosen,
-    measured,
-    of_zeros,
-    outputs,
-    quality,
-    real,
-    signed_bars,
-    solutions,
-    through,
+    FourBarRatios,
+    are_real,
+    build_synthesised,
+    choose_four_bar,
+    fitted_lengths,
+    four_bars_through,
+    measure_demands,
+    output_angles,
+    rate_four_bars,
+    solve_exact_pairs,
+    solve_pqs,
 )
 
 LINKAGE = """
@@ -43,7 +43,9 @@ COUNT = 250
 
 
 def problem(block):
-    return build(read_text(f"tmm: 1\nsynthesis: {{task: four-bar-by-angles, {block}}}\n{LINKAGE}", "x.yaml"))
+    return build_synthesised(
+        read_text(f"tmm: 1\nsynthesis: {{task: four-bar-by-angles, {block}}}\n{LINKAGE}", "x.yaml")
+    )
 
 
 def random_tasks(count, seed, least=0.35):
@@ -109,7 +111,7 @@ def nearest_root(found, l1, l3):
     """Of all roots that of the mechanism from which the task was made."""
     gap = np.abs(found.l1 / l1[:, None] - 1) + np.abs(found.l3 / l3[:, None] - 1)
     best = np.nanargmin(np.asarray(gap, dtype=float), axis=1)
-    return Bars(*(np.take_along_axis(x, best[:, None], axis=1)[:, 0] for x in found))
+    return FourBarRatios(*(np.take_along_axis(x, best[:, None], axis=1)[:, 0] for x in found))
 
 
 @pytest.mark.parametrize(("count", "free"), [(3, ()), (4, ("phi0",)), (4, ("psi0",)), (5, ("phi0", "psi0"))])
@@ -118,7 +120,7 @@ def test_pairs_come_back_and_the_mechanism_of_the_task_is_among_the_roots(count,
     given_phi = phi if "phi0" in free else phi + phi0[:, None]
     given_psi = psi if "psi0" in free else psi + psi0[:, None]
     zeros = {name: None if name in free else 0.0 for name in ("phi0", "psi0")}
-    found = nearest_root(solutions(given_phi, given_psi, **zeros), l1, l3)
+    found = nearest_root(solve_exact_pairs(given_phi, given_psi, **zeros), l1, l3)
     for value, truth in ((found.l1, l1), (found.l2, l2), (found.l3, l3)):
         assert np.asarray(value, float) == pytest.approx(truth, rel=2e-4)  # how sharply near pairs tell the lengths
     comes_back(given_phi, given_psi, found)
@@ -183,7 +185,7 @@ def test_no_four_bar_through_five_near_pairs_is_lost(span):
             continue
         count += 1
         truth = sorted(exact_lengths(*made))
-        found = solutions(*made, None, None)
+        found = solve_exact_pairs(*made, None, None)
         own = sorted(
             (float(a), float(b)) for a, b in zip(found.l1[0], found.l3[0], strict=True) if np.isfinite(float(a))
         )
@@ -200,7 +202,7 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
         if made is None:
             continue
         count += 1
-        found = solutions(*made, **{name: None if name == free else 0.0 for name in ("phi0", "psi0")})
+        found = solve_exact_pairs(*made, **{name: None if name == free else 0.0 for name in ("phi0", "psi0")})
         assert np.nanmin(np.abs(found.l1 / l1 - 1) + np.abs(found.l3 / l3 - 1)) < 1e-5
 
 
@@ -220,7 +222,7 @@ def test_equal_angles_are_those_of_any_parallelogram(block):
     assert any("every parallelogram l1 = l3, l2 = l4 passes the pairs" in note for note in outcome.notes)
     l1, l2, l3, l4 = (outcome.parameters[name].value for name in ("l1", "l2", "l3", "l4"))
     assert (l1, l2) == (l3, l4)
-    for m in measured(outcome, solve(found, "kinematics")):
+    for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
 
@@ -230,20 +232,20 @@ def test_what_is_chosen_passes_all_pairs_on_one_assembly(count, zeros):
     phi, psi, _, _, _, phi0, psi0 = (np.concatenate(both) for both in drawn)
     phi = phi if zeros[0] is None else phi + phi0[:, None]
     psi = psi if zeros[1] is None else psi + psi0[:, None]
-    every = solutions(phi, psi, *zeros)
+    every = solve_exact_pairs(phi, psi, *zeros)
     taken, rows = [], []
     for k in range(len(phi)):
         task = AnglePairsTask(tuple(phi[k]), tuple(psi[k]), {"l4": 1.0}, *zeros)
         own = every.at(k)
-        here = own.at(real(own))
-        if not np.any(quality(here, task).defect == ""):
+        here = own.at(are_real(own))
+        if not np.any(rate_four_bars(here, task).defect == ""):
             continue
-        at = chosen(task, here)
-        if quality(here.at(at), task).least > 0.2:
+        at = choose_four_bar(task, here)
+        if rate_four_bars(here.at(at), task).least > 0.2:
             taken.append(here.at(at))
             rows.append(k)
     assert len(rows) > max(COUNT, 0.97 * len(phi))
-    bars = Bars(*(np.array(numbers) for numbers in zip(*taken, strict=True)))
+    bars = FourBarRatios(*(np.array(numbers) for numbers in zip(*taken, strict=True)))
     comes_back(phi[rows], psi[rows], bars)
 
 
@@ -252,10 +254,10 @@ def test_two_pairs_and_the_ratio_of_two_links_come_back():
     phi, psi, taken = phi + phi0[:, None], psi + psi0[:, None], []
     for k in range(COUNT):
         lengths = [{"l1": l1[k], "l4": 1.0}, {"l3": l3[k], "l4": 1.0}, {"l1": l1[k], "l3": l3[k]}][k % 3]
-        ways = through(AnglePairsTask(tuple(phi[k]), tuple(psi[k]), lengths))
+        ways = four_bars_through(AnglePairsTask(tuple(phi[k]), tuple(psi[k]), lengths))
         taken.append(ways.at(np.argmin(np.abs(ways.l1 - l1[k]) + np.abs(ways.l3 - l3[k]))))
         assert float(taken[-1].l1) == pytest.approx(l1[k], rel=1e-8)
-    bars = Bars(*(np.array(numbers) for numbers in zip(*taken, strict=True)))
+    bars = FourBarRatios(*(np.array(numbers) for numbers in zip(*taken, strict=True)))
     comes_back(phi, psi, bars)
 
 
@@ -268,7 +270,7 @@ def test_three_pairs_with_the_frame_and_the_crank_or_the_rocker_come_back(held):
         AnglePairsTask(tuple(a), tuple(b), {held: one, "l4": 1.0}, *zeros)
         for a, b, one in zip(phi, psi, known, strict=True)
     ]
-    bars = Bars(*(np.concatenate(numbers) for numbers in zip(*map(through, tasks), strict=True)))
+    bars = FourBarRatios(*(np.concatenate(numbers) for numbers in zip(*map(four_bars_through, tasks), strict=True)))
     for value, truth in ((bars.l1, l1), (bars.l2, l2), (bars.l3, l3)):
         assert np.asarray(value, float) == pytest.approx(truth, rel=1e-9)
     comes_back(phi, psi, bars)
@@ -280,7 +282,7 @@ def test_more_pairs_of_a_four_bar_than_are_needed_find_it(count, zeros):
     for k in range(0, COUNT, 200):
         a = phi[k] + (0 if zeros[0] is None else phi0[k])
         b = psi[k] + (0 if zeros[1] is None else psi0[k])
-        found = through(AnglePairsTask(tuple(a), tuple(b), {"l4": 1.0}, *zeros))
+        found = four_bars_through(AnglePairsTask(tuple(a), tuple(b), {"l4": 1.0}, *zeros))
         assert np.concatenate(found[:3]) == pytest.approx([one[k] for one in lengths], rel=1e-6)
 
 
@@ -297,7 +299,7 @@ def test_more_pairs_of_a_four_bar_than_are_needed_find_it(count, zeros):
 def test_errors_at_more_pairs_have_the_least_squares_and_are_those_of_the_mechanism(block):
     found = problem(f"{block}, l4: 100")
     outcome = found.synthesis.outcome
-    every = measured(outcome, solve(found, "kinematics"))
+    every = measure_demands(outcome, solve(found, "kinematics"))
     for m in every:
         assert m.difference <= MET, m
     (pairs,) = outcome.listings
@@ -309,26 +311,26 @@ def test_errors_at_more_pairs_have_the_least_squares_and_are_those_of_the_mechan
     free = 3 if "psi0: 0" in block else 4 if "psi0" in block else 5
     for k in range(free):
         for step in (-1e-4, 1e-4):
-            other = Bars(*(value + step * (k == n) for n, value in enumerate(one)))
-            off = min((outputs(other, phi, psi, side) - psi for side in (1, -1)), key=np.linalg.norm)
+            other = FourBarRatios(*(value + step * (k == n) for n, value in enumerate(one)))
+            off = min((output_angles(other, phi, psi, side) - psi for side in (1, -1)), key=np.linalg.norm)
             assert np.mean(off**2) > least
 
 
 def test_the_pairs_of_a_weaving_machine_are_met_better_than_by_least_squares_of_the_equation():
     # a laboratory task: five pairs from the frame, 180 mm, by least squares of Freudenstein's equation
     phi, psi = np.radians([[40, 45, 50, 55, 60], [70, 76, 83, 91, 100]])
-    equation = signed_bars(np.append(of_zeros(phi[None], psi[None])[0], [0, 0]))
+    equation = fitted_lengths(np.append(solve_pqs(phi[None], psi[None])[0], [0, 0]))
     assert float(equation.l1) == pytest.approx(0.980334, rel=1e-6)  # of Gauss's normal equations
-    found = through(AnglePairsTask(tuple(phi), tuple(psi), {"l4": 0.18})).at(0)
-    means = [np.degrees(np.sqrt(np.mean((outputs(one, phi, psi, -1.0) - psi) ** 2))) for one in (equation, found)]
+    found = four_bars_through(AnglePairsTask(tuple(phi), tuple(psi), {"l4": 0.18})).at(0)
+    means = [np.degrees(np.sqrt(np.mean((output_angles(one, phi, psi, -1.0) - psi) ** 2))) for one in (equation, found)]
     assert means == pytest.approx([0.0982, 0.0931], abs=1e-4)
 
 
 def test_two_pairs_alone_get_the_best_transmission():
     task = AnglePairsTask((0.5, 1.4), (1.0, 1.6), {"l4": 1.0})
-    (least,) = quality(through(task), task).least
+    (least,) = rate_four_bars(four_bars_through(task), task).least
     for ratio in np.linspace(0.11, 9, 300):
-        mark = quality(through(replace(task, lengths={"l1": ratio, "l4": 1.0})), task)
+        mark = rate_four_bars(four_bars_through(replace(task, lengths={"l1": ratio, "l4": 1.0})), task)
         assert np.all((mark.defect != "") | mark.reversed | (mark.least <= least + 1e-9))
 
 
@@ -351,7 +353,7 @@ def test_two_pairs_alone_get_the_best_transmission():
 )
 def test_the_ordinary_stages_measure_what_was_asked(block):
     found = problem(block)
-    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    every = measure_demands(found.synthesis.outcome, solve(found, "kinematics"))
     assert len(every) >= 4
     for m in every:
         assert m.difference <= MET, m
@@ -446,7 +448,7 @@ def test_the_nearest_output_angle_that_is_told_is_good_and_one_that_is_nearer_is
 
 def test_a_branch_defect_that_is_kept_shows_on_the_mechanism():
     found = problem("pairs: [[30, 60], [80, 60], [120, 100]], l4: 100, defects: keep")
-    every = measured(found.synthesis.outcome, solve(found, "kinematics"))
+    every = measure_demands(found.synthesis.outcome, solve(found, "kinematics"))
     assert not all(m.met for m in every)
 
 

@@ -15,21 +15,21 @@ from tmm_cli.mechanics.linkage import FRAME, Sketch
 from tmm_cli.mechanics.numerics import find_roots
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
-    ARC,
-    Found,
-    FourBar,
+    SHORTEST_ARC,
+    FourBarByKSolution,
     FourBarByKTask,
+    FourBarLinks,
     Infeasible,
-    arcs,
-    at,
-    bound,
-    build,
-    choose,
+    admissible_arcs,
+    build_synthesised,
+    choose_pivot,
+    classify_four_bar,
+    four_bar_at,
     k_of,
-    measured,
-    places,
-    turning,
-    widest,
+    largest_beta,
+    largest_w,
+    measure_demands,
+    sample_arc,
 )
 
 LINKAGE = """
@@ -49,7 +49,7 @@ def problem(more, psi1="50 deg", psi2="105 deg", k=1.2, driver="ccw"):
         f"tmm: 1\nparameters: {{CD: 200, psi1: {psi1}, psi2: {psi2}}}\n"
         f"synthesis: {{task: four-bar-by-k, l3: CD, psi1: psi1, psi2: psi2, k: {k}, support: [30, -20]{more}}}\n"
     )
-    return build(read_text(text + LINKAGE.replace("SENSE", driver), "x.yaml"))
+    return build_synthesised(read_text(text + LINKAGE.replace("SENSE", driver), "x.yaml"))
 
 
 def drawn(seed, way, count=1000, least=0.0):
@@ -63,7 +63,7 @@ def drawn(seed, way, count=1000, least=0.0):
     task = FourBarByKTask(
         l3=0.02 * 100 ** a[4], psi1=psi1, psi2=psi1 + way * 2 * half, k=k_of(theta), support=a[5] - 0.5 + 0.3j
     )
-    beta = widest(task, side) * (0.05 + 0.85 * a[6])
+    beta = largest_beta(task, side) * (0.05 + 0.85 * a[6])
     w = np.where(theta > 0, np.sin(beta + theta / 2) / np.sin(np.maximum(theta, 1e-9) / 2), 1.1 + 10 * a[6])
     return task, w, side
 
@@ -128,13 +128,13 @@ def comes_back(task, found):
 @pytest.mark.parametrize("way", [1, -1])
 def test_k_and_both_extreme_angles_come_back_anywhere_on_the_arcs(way):
     task, w, side = drawn(1, way)
-    comes_back(task, at(task, w, side))
+    comes_back(task, four_bar_at(task, w, side))
 
 
 def test_with_k_of_1_the_pivots_lie_on_the_line_of_both_ends():
     task, _, side = drawn(2, 1)
     task = replace(task, k=np.ones(1000))
-    found = at(task, 1.05 + 10 * np.random.default_rng(3).random(1000), side)
+    found = four_bar_at(task, 1.05 + 10 * np.random.default_rng(3).random(1000), side)
     comes_back(task, found)
     c1, c2 = (task.support + task.l3 * np.exp(1j * psi) for psi in (task.psi1, task.psi2))
     assert np.max(np.abs(np.imag((found.a - c1) / (c2 - c1)))) < MET
@@ -143,7 +143,7 @@ def test_with_k_of_1_the_pivots_lie_on_the_line_of_both_ends():
 
 def test_what_hundreds_of_choices_ask_for_comes_back():
     task, w, side = drawn(4, 1, 300, least=0.05)
-    family, chosen = at(task, w, side), []
+    family, chosen = four_bar_at(task, w, side), []
     for n in range(300):
         one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
         way = ("best", "l4", "near", "level", "xA", "yA")[n % 6]
@@ -152,7 +152,7 @@ def test_what_hundreds_of_choices_ask_for_comes_back():
             task.psi1[n], task.psi2[n] = one.psi1 + turn, one.psi2 + turn
             one = replace(one, psi1=one.psi1 + turn, psi2=one.psi2 + turn)
         place = complex(family.a[n])
-        f = choose(replace(one, choose=way, l4=float(family.l4[n]), near=place, xA=place.real, yA=place.imag))
+        f = choose_pivot(replace(one, choose=way, l4=float(family.l4[n]), near=place, xA=place.real, yA=place.imag))
         if way in ("xA", "yA"):
             there = (f.a.real, place.real) if way == "xA" else (f.a.imag, place.imag)
             assert abs(there[0] - there[1]) < MET * f.l4
@@ -167,7 +167,12 @@ def test_what_hundreds_of_choices_ask_for_comes_back():
         if way == "best":
             assert f.pressure <= family.pressure[n] * (1 + 1e-12)
         chosen.append(f)
-    comes_back(task, Found(*(np.array([getattr(f, name) for f in chosen]) for name in Found.__dataclass_fields__)))
+    comes_back(
+        task,
+        FourBarByKSolution(
+            *(np.array([getattr(f, name) for f in chosen]) for name in FourBarByKSolution.__dataclass_fields__)
+        ),
+    )
 
 
 def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_positions_on_one_side():
@@ -177,13 +182,13 @@ def test_every_pivot_of_the_arcs_makes_a_crank_and_none_beyond_them_keeps_both_p
         c1, c2 = (one.support + one.l3 * np.exp(1j * psi) for psi in (one.psi1, one.psi2))
         for side in (-1, 1):
             beta = np.linspace(0, (np.pi - one.theta) / 2, 402)[1:-1]
-            f = at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), side)
-            inside = beta < widest(one, side)
-            turns = turning(FourBar(f.l1, f.l2, one.l3, f.l4)).turns[:, 0]
+            f = four_bar_at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), side)
+            inside = beta < largest_beta(one, side)
+            turns = classify_four_bar(FourBarLinks(f.l1, f.l2, one.l3, f.l4)).turns[:, 0]
             assert np.all(turns)  # every circle's triangles make a crank; the sides of AD decide
             sides = [np.imag((f.a - one.support) * np.conj(c - one.support)) for c in (c1, c2)]
             same = sides[0] * sides[1] > 0
-            sure = np.abs(beta - widest(one, side)) > 1e-9
+            sure = np.abs(beta - largest_beta(one, side)) > 1e-9
             assert np.all((same == inside)[sure])
             seen = np.angle((c2 - f.a) / (c1 - f.a))
             assert np.abs(seen) == pytest.approx(one.theta, rel=1e-9)
@@ -194,27 +199,27 @@ def test_the_frame_grows_or_shrinks_all_along_an_arc_and_the_slope_is_that_of_th
     task, _, _ = drawn(6, 1, 200, least=0.02)
     for n in range(200):
         one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), complex(task.support[n]))
-        for side in arcs(one):
-            w = places(one, side)
-            f = at(one, w, side)
+        for side in admissible_arcs(one):
+            w = sample_arc(one, side)
+            f = four_bar_at(one, w, side)
             assert np.unique(np.sign(np.diff(f.l4[50:]))).size == 1
             x = np.linspace(w[0], w[-1], 9)[2:-2]
             step = 1e-6 * (w[-1] - w[0])
-            rough = (at(one, x + step, side).a - at(one, x - step, side).a) / (2 * step)
-            assert at(one, x, side).slope == pytest.approx(rough, rel=1e-5)
+            rough = (four_bar_at(one, x + step, side).a - four_bar_at(one, x - step, side).a) / (2 * step)
+            assert four_bar_at(one, x, side).slope == pytest.approx(rough, rel=1e-5)
 
 
 def test_the_pressure_angle_is_a_right_angle_at_the_ends_of_the_arcs():
     one = FourBarByKTask(1.0, 0.3, 1.4, 1.25)
-    for side in arcs(one):
-        assert float(at(one, bound(one, side), side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
-        assert float(at(one, 1.0, side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
+    for side in admissible_arcs(one):
+        assert float(four_bar_at(one, largest_w(one, side), side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
+        assert float(four_bar_at(one, 1.0, side).pressure) == pytest.approx(np.pi / 2, abs=1e-6)
 
 
 def test_the_best_transmission_of_goessner_to_his_printed_digits():
     # S. Goessner, crocker (crank-rocker design), Examples/optimal.js: d = 120, psi = 80 deg, k = 10/9 printed with
     # a = 46.7, b = 116, c = 73.9, least transmission angle 37.7 deg; any size of the rocker gives the same shape
-    f = choose(FourBarByKTask(1.0, 0.0, math.radians(80), 10 / 9))
+    f = choose_pivot(FourBarByKTask(1.0, 0.0, math.radians(80), 10 / 9))
     size = 120 / f.l4
     assert (round(f.l1 * size, 1), round(f.l2 * size), round(size, 1)) == (46.7, 116, 73.9)
     assert round(90 - math.degrees(f.pressure), 1) == 37.7
@@ -223,14 +228,14 @@ def test_the_best_transmission_of_goessner_to_his_printed_digits():
 def test_the_crank_rocker_of_goessner_with_a_given_crank_and_frame():
     # the same, Examples/simple.js: a = 60, d = 120 printed with b = 103, c = 94, least transmission angle 35 deg
     one = FourBarByKTask(1.0, 0.0, math.radians(80), 10 / 9, sense=1)
-    (side,) = arcs(one)
+    (side,) = admissible_arcs(one)
 
     def crank(x):
-        f = at(one, x, side)
+        f = four_bar_at(one, x, side)
         return f.l1 / f.l4 - 0.5
 
-    w = find_roots(crank, np.array([1.001]), np.array([float(bound(one, side))]))
-    f = at(one, w, side)
+    w = find_roots(crank, np.array([1.001]), np.array([float(largest_w(one, side))]))
+    f = four_bar_at(one, w, side)
     size = 120 / f.l4[0]
     assert (round(f.l2[0] * size), round(size)) == (103, 94)
     assert round(90 - math.degrees(f.pressure[0])) == 35
@@ -259,7 +264,7 @@ def test_the_ordinary_stages_measure_what_was_asked(more, angles):
         )
     x, y = {"50 deg": (200, 60), "100 deg": (-90, 150), "0": (200, 60)}[angles[0]]
     found = problem(more.replace("xF", str(x)).replace("yF", str(y)), *angles)
-    for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
+    for m in measure_demands(found.synthesis.outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
 
@@ -375,10 +380,10 @@ def test_what_cannot_be_is_refused_with_the_reason_and_the_nearest_that_can(more
 def test_a_circle_is_cut_twice_by_the_level_of_the_support_even_where_it_only_just_passes_it():
     # the pivots of this arc are from 2.2e-6 below D to 1.99 above it
     one = FourBarByKTask(1.0, 0.4301902709955578, 1.1314720235491965, 1.1067413188268937, choose="level", sense=-1)
-    f = choose(one)
+    f = choose_pivot(one)
     assert abs(f.a.imag) < 1e-14 and f.pressure < np.radians(89)
-    beta = widest(one, 1) * np.linspace(0, 1, 2_000_001)[1:-1]
-    along = at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), 1)
+    beta = largest_beta(one, 1) * np.linspace(0, 1, 2_000_001)[1:-1]
+    along = four_bar_at(one, np.sin(beta + one.theta / 2) / np.sin(one.theta / 2), 1)
     (crossings,) = np.nonzero(np.diff(np.sign(along.a.imag)))
     assert len(crossings) == 2 and f.pressure == pytest.approx(np.min(along.pressure[crossings]), abs=1e-5)
 
@@ -387,21 +392,21 @@ def test_pivots_as_high_as_the_support_are_found_wherever_there_are_some():
     task, _, _ = drawn(9, 1, 50, least=0.02)
     for n in range(50):
         one = FourBarByKTask(*(float(v[n]) for v in (task.l3, task.psi1, task.psi2, task.k)), choose="level")
-        scan = [at(one, places(one, side), side).a.imag for side in arcs(one)]
+        scan = [four_bar_at(one, sample_arc(one, side), side).a.imag for side in admissible_arcs(one)]
         if any(np.any(np.diff(np.sign(offsets))) for offsets in scan):
-            f = choose(one)
+            f = choose_pivot(one)
             assert abs(f.a.imag) < MET * f.l4
         else:
             with pytest.raises(Infeasible):
-                choose(one)
+                choose_pivot(one)
 
 
 @pytest.mark.parametrize("way", ["best", "level", "near", "xA", "yA"])
 def test_a_support_that_is_far_away_takes_no_digits(way):
     one = FourBarByKTask(1.0, 0.3, 1.2, 1.15, choose=way, near=2.25 - 0.5j if way == "near" else None, xA=1.5, yA=-0.5)
-    here = choose(one)
+    here = choose_pivot(one)
     for far in (2.0**20, 2.0**20 * 1j):  # places beside it are exact in doubles
-        there = choose(
+        there = choose_pivot(
             replace(
                 one,
                 support=far,
@@ -415,30 +420,33 @@ def test_a_support_that_is_far_away_takes_no_digits(way):
 
 def test_the_nearest_k_and_l4_that_are_told_are_the_bounds():
     one = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2)
-    most = float(k_of(np.pi / 2 + one.swing / 2 - ARC))
-    assert arcs(replace(one, k=most * (1 - 1e-6))) == [-1] and arcs(replace(one, k=most * (1 + 1e-9))) == []
-    for side in arcs(one):
-        end = float(at(one, bound(one, side), side).l4)
-        assert choose(replace(one, choose="l4", l4=end - 1e-6)).l4 == pytest.approx(end - 1e-6, rel=1e-12)
+    most = float(k_of(np.pi / 2 + one.swing / 2 - SHORTEST_ARC))
+    assert (
+        admissible_arcs(replace(one, k=most * (1 - 1e-6))) == [-1]
+        and admissible_arcs(replace(one, k=most * (1 + 1e-9))) == []
+    )
+    for side in admissible_arcs(one):
+        end = float(four_bar_at(one, largest_w(one, side), side).l4)
+        assert choose_pivot(replace(one, choose="l4", l4=end - 1e-6)).l4 == pytest.approx(end - 1e-6, rel=1e-12)
     with pytest.raises(Infeasible):
-        choose(replace(one, choose="l4", l4=end + 1e-6))
+        choose_pivot(replace(one, choose="l4", l4=end + 1e-6))
 
 
 def test_a_given_crank_or_coupler_is_taken_with_the_better_transmission_of_both_arcs():
     one = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2)
     for name, value in (("l1", 0.088), ("l2", 0.25)):
-        found = choose(replace(one, choose=name, **{name: value}))
+        found = choose_pivot(replace(one, choose=name, **{name: value}))
         assert getattr(found, name) == pytest.approx(value, rel=1e-14)
-        other = choose(replace(one, choose=name, sense=-int(found.sense), **{name: value}))
+        other = choose_pivot(replace(one, choose=name, sense=-int(found.sense), **{name: value}))
         assert getattr(other, name) == pytest.approx(value, rel=1e-14) and other.pressure > found.pressure
 
 
 def test_a_wished_pressure_angle_is_met_by_the_smaller_of_all_mechanisms_that_have_it():
     task = FourBarByKTask(0.2, math.radians(50), math.radians(105), 1.2, choose="pressure", pressure=math.radians(55))
-    chosen = choose(task)
+    chosen = choose_pivot(task)
     assert chosen.pressure == pytest.approx(task.pressure, rel=1e-12)
-    for side in arcs(task):
-        family = at(task, places(task, side), side)
+    for side in admissible_arcs(task):
+        family = four_bar_at(task, sample_arc(task, side), side)
         near = np.abs(family.pressure - task.pressure) < 2e-3
         assert np.all(family.l2[near] + family.l4[near] > 0.98 * (chosen.l2 + chosen.l4))
 
@@ -447,7 +455,7 @@ def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     found = problem(", l4: 400", k=1)
     outcome = found.synthesis.outcome
     assert outcome.notes == ("with k = 1 the circle is the line C1C2: A is any place of it beyond C1",)
-    for m in measured(outcome, solve(found, "kinematics")):
+    for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
     at_height = problem(", yA: 130", k=1).synthesis.outcome.parameters
     assert at_height["yA"].value == pytest.approx(0.13, rel=1e-14)

@@ -11,7 +11,16 @@ import pytest
 from tmm_cli import solve
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
 from tmm_cli.problem import ProblemError, UnitSystem, read_text
-from tmm_cli.synthesis import Infeasible, Outcome, Value, alone, build, measured, rounded, sound
+from tmm_cli.synthesis import (
+    Infeasible,
+    NamedValue,
+    SynthesisOutcome,
+    build_synthesised,
+    measure_demands,
+    refuse_nonfinite,
+    round_to_side,
+    solve_alone,
+)
 
 SEEDS = range(2)
 FARTHER = 2e-4  # relative: beyond the limit
@@ -27,7 +36,7 @@ def solved(block):
     keys = ", ".join(f"{key}: {flow(value)}" for key, value in block.items())
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        _, _, found, _ = alone(read_text(f"tmm: 1\nsynthesis: {{{keys}}}\n", "x.yaml"))
+        _, _, found, _ = solve_alone(read_text(f"tmm: 1\nsynthesis: {{{keys}}}\n", "x.yaml"))
     assert all(np.isfinite(float(v.value)) for v in found.outcome.found if v.kind != "word")
     return found.outcome
 
@@ -249,8 +258,8 @@ def test_at_a_printed_limit_the_four_bar_still_moves_as_it_was_asked(case):
         block[key] = told(block)[1]
         keys = ", ".join(f"{name}: {flow(value)}" for name, value in block.items())
         linkage = ROCKER.format(l3=block["l3"], psi2=float(block["psi2"]))
-        found = build(read_text(f"tmm: 1\nsynthesis: {{{keys}}}\n{linkage}", "x.yaml"))
-        assert all(m.met for m in measured(found.synthesis.outcome, solve(found, "kinematics")))
+        found = build_synthesised(read_text(f"tmm: 1\nsynthesis: {{{keys}}}\n{linkage}", "x.yaml"))
+        assert all(m.met for m in measure_demands(found.synthesis.outcome, solve(found, "kinematics")))
 
 
 def test_limits_are_rounded_to_their_side():
@@ -261,16 +270,16 @@ def test_limits_are_rounded_to_their_side():
         (0.25, 1, 250),
         (0.1234567654, 0, 123.4567654),
     ):
-        assert rounded(units, number, LENGTH, side) == pytest.approx(told, rel=1e-15)
-    assert rounded(units, 3.0, NUMBER, -1) == 3 and rounded(units, 0.0, NUMBER, 1) == 0
+        assert round_to_side(units, number, LENGTH, side) == pytest.approx(told, rel=1e-15)
+    assert round_to_side(units, 3.0, NUMBER, -1) == 3 and round_to_side(units, 0.0, NUMBER, 1) == 0
 
 
 def test_what_is_no_number_is_never_an_answer():
-    good = Value("l1", 0.1, "length", "word.value")
-    assert sound(Outcome((), (good,), "word.value")).found == (good,)
+    good = NamedValue("l1", 0.1, "length", "word.value")
+    assert refuse_nonfinite(SynthesisOutcome((), (good,), "word.value")).found == (good,)
     for bad in (np.nan, np.inf, np.longdouble("nan")):
         with pytest.raises(Infeasible):
-            sound(Outcome((), (good, Value("l2", bad, "length", "word.value")), "word.value"))
+            refuse_nonfinite(SynthesisOutcome((), (good, NamedValue("l2", bad, "length", "word.value")), "word.value"))
 
 
 def test_near_the_largest_k_the_four_bar_is_still_found_and_beyond_it_the_reason_is_told():

@@ -13,7 +13,16 @@ from test_commands import ROOT, tmm
 from tmm_cli import solve
 from tmm_cli.mechanics.numerics import peak, zero
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.synthesis import DONE, CrankSliderTask, Local, build, evolve, find, measured, polish
+from tmm_cli.synthesis import (
+    OBJECTIVE_TOLERANCE,
+    CrankSliderTask,
+    LocalValues,
+    build_synthesised,
+    evolve,
+    find_crank_slider,
+    measure_demands,
+    minimize_locally,
+)
 
 SLIDER = """
 tmm: 1
@@ -45,7 +54,7 @@ ROD = """
 
 @cache
 def slider(options):
-    return build(read_text(SLIDER.replace("OPTIONS", options.strip("\n")), "x.yaml"))
+    return build_synthesised(read_text(SLIDER.replace("OPTIONS", options.strip("\n")), "x.yaml"))
 
 
 def parameters(problem):
@@ -55,14 +64,14 @@ def parameters(problem):
 @pytest.mark.parametrize("seed", ["", "  seed: 2\n"])
 def test_the_shortest_rod_that_keeps_a_pressure_angle_is_that_of_the_closed_formula(seed):
     problem = slider(ROD + seed)
-    known = find(CrankSliderTask(stroke=0.12, k=1.08, pressure=np.radians(32)))
+    known = find_crank_slider(CrankSliderTask(stroke=0.12, k=1.08, pressure=np.radians(32)))
     found = parameters(problem)
     assert [found["OA"], found["AB"], found["e"]] == pytest.approx([known.r, known.l, known.e], rel=1e-9)
 
 
 def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told():
     problem = slider(ROD)
-    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
     (table,) = problem.synthesis.outcome.listings
     rows = {row[0]: row for row in table.rows}
     *__, bound, value, margin, unit, state = rows["largest pressure angle"]
@@ -76,14 +85,14 @@ def test_the_same_seed_gives_the_same_answer_to_the_last_bit():
 
 
 def test_least_pressure_angle_of_a_crank_slider_is_the_least_that_its_k_allows():
-    from tmm_cli.synthesis import least_pressure, theta_of
+    from tmm_cli.synthesis import smallest_pressure, theta_of
 
     problem = slider("""
   objective: pressure
   constraints: [{of: stroke, equal: 120}, {of: k, equal: 1.3}]
 """)
     best = problem.synthesis.outcome.demands[1].value
-    assert best == pytest.approx(float(least_pressure(theta_of(1.3))), rel=1e-9)
+    assert best == pytest.approx(float(smallest_pressure(theta_of(1.3))), rel=1e-9)
 
 
 FORCES = {
@@ -106,7 +115,7 @@ def test_every_objective_is_what_is_measured_on_the_analysed_mechanism(name):
   constraints: [{{of: stroke, least: 100}}, {{of: pressure, most: 40 deg}}]
   generations: 60
 """)
-    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+    for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")):
         assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
@@ -114,7 +123,7 @@ def test_a_law_whose_first_angle_is_free_gives_back_the_linkage_that_it_was_read
     q = np.radians([20, 80, 140, 200])
     runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
     text = SLIDER.replace("e: [1, 80]}", "a0: [0 deg, 90 deg]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
-    problem = build(
+    problem = build_synthesised(
         read_text(
             text.replace(
                 "OPTIONS",
@@ -129,7 +138,7 @@ def test_a_law_whose_first_angle_is_free_gives_back_the_linkage_that_it_was_read
     assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, np.radians(20)], rel=1e-8)
     law = problem.synthesis.outcome.listings[1]
     assert [row[0] for row in law.rows] == pytest.approx(q, rel=1e-8)
-    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
 def test_a_law_may_leave_open_where_the_run_is_counted_from():
@@ -137,7 +146,7 @@ def test_a_law_may_leave_open_where_the_run_is_counted_from():
     runs = 40 * np.cos(q) + np.sqrt(150**2 - (40 * np.sin(q) + 20) ** 2)
     text = SLIDER.replace("e: [1, 80]}", "s0: [50, 300]}").replace("n1: 90 rpm", "n1: 90 rpm, e: 20")
     values = ", ".join(f"s0 + {run!r}" for run in (runs - runs[0]).tolist())
-    problem = build(
+    problem = build_synthesised(
         read_text(
             text.replace(
                 "OPTIONS",
@@ -152,22 +161,24 @@ def test_a_law_may_leave_open_where_the_run_is_counted_from():
     assert list(parameters(problem).values()) == pytest.approx([0.04, 0.15, runs[0] / 1000], rel=1e-8)
     law = problem.synthesis.outcome.listings[1]
     assert [row[1] for row in law.rows] == pytest.approx(runs / 1000, rel=1e-8)
-    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
 def test_a_coupler_point_on_a_straight_line_comes_out_the_same_from_another_seed():
     text = (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(encoding="utf-8")
-    found = build(read_text(text.replace("objective:", "seed: 3\n  objective:"), "x.yaml")).synthesis.outcome
+    found = build_synthesised(
+        read_text(text.replace("objective:", "seed: 3\n  objective:"), "x.yaml")
+    ).synthesis.outcome
     assert found.demands[1].value == pytest.approx(0.39599372e-3, rel=1e-7)
 
 
 def test_what_is_found_is_assembled_though_the_sketch_is_far_from_it():
     # at its bound, the shortest rod lies far from where the file sketches B for rods of 240 mm
     text = SLIDER.replace("[OA/2 + AB, -e]", "[270, -20]").replace("OPTIONS", "  objective: box\n  generations: 40")
-    problem = build(read_text(text, "x.yaml"))
+    problem = build_synthesised(read_text(text, "x.yaml"))
     (note,) = problem.synthesis.outcome.notes
     assert note.startswith("the file's sketch does not show the mechanism that was found")
-    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
 def test_the_nearest_value_that_is_told_can_be_met():
@@ -178,7 +189,7 @@ def test_the_nearest_value_that_is_told_can_be_met():
     nearest = str(caught.value).partition("the nearest is constraints[0].most: ")[2]
     assert float(nearest.split()[0]) == pytest.approx(np.degrees(np.arcsin(86 / 400)), rel=1e-5)
     problem = slider(task.replace("VALUE", nearest))
-    assert all(m.met for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")))
+    assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
     with pytest.raises(ProblemError):
         slider(task.replace("VALUE", f"{float(nearest.split()[0]) * 0.9999} deg"))
 
@@ -188,7 +199,7 @@ def with_constraints(name, edit, vary, constraints):
     text = (ROOT / "problems" / f"{name}.yaml").read_text(encoding="utf-8").replace(*edit)
     task = f"task: optimal, generations: 60, vary: {vary}, objective: length, constraints: [{constraints}]"
     task = f"synthesis: {{{task}}}\npoints: {{O"
-    return build(read_text(text.replace("points: {O", task, 1), "x.yaml")).synthesis.outcome
+    return build_synthesised(read_text(text.replace("points: {O", task, 1), "x.yaml")).synthesis.outcome
 
 
 def test_constraints_that_contradict_one_another_are_refused_with_the_nearest_value_of_one():
@@ -249,7 +260,7 @@ def test_what_cannot_be_asked_is_refused(options):
 def test_bounds_that_cannot_be_are_refused(vary, words):
     text = SLIDER.replace("{OA: [30, 90], AB: [80, 400], e: [1, 80]}", vary).replace("OPTIONS", "  objective: mass")
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
+        build_synthesised(read_text(text, "x.yaml"))
     assert words in str(caught.value)
 
 
@@ -297,9 +308,9 @@ def test_the_smallest_box_comes_out_the_same_from_two_seeds_although_points_take
 
 def test_a_start_that_cannot_be_assembled_all_round_is_left_as_it_is():
     def edge(x):
-        return Local(np.where(x[:, :1] > 0.5, np.nan, x[:, :1]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
+        return LocalValues(np.where(x[:, :1] > 0.5, np.nan, x[:, :1]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
 
-    assert polish(edge, np.array([0.5])) == pytest.approx([0.5])
+    assert minimize_locally(edge, np.array([0.5])) == pytest.approx([0.5])
 
 
 def test_polish_solves_a_problem_of_textbooks():
@@ -308,19 +319,19 @@ def test_polish_solves_a_problem_of_textbooks():
 
     def square(x):
         apart = 2 * x - np.array([1, 2.5])
-        return Local(np.sum(apart**2, axis=1, keepdims=True), 2 * x @ rows.T - bounds, np.zeros((len(x), 0)))
+        return LocalValues(np.sum(apart**2, axis=1, keepdims=True), 2 * x @ rows.T - bounds, np.zeros((len(x), 0)))
 
-    best = 2 * polish(square, np.array([0.5, 0.2]))
-    assert np.sum((best - [1, 2.5]) ** 2) == pytest.approx(0.8, abs=DONE)
-    assert np.all(rows @ best - bounds >= -DONE)
+    best = 2 * minimize_locally(square, np.array([0.5, 0.2]))
+    assert np.sum((best - [1, 2.5]) ** 2) == pytest.approx(0.8, abs=OBJECTIVE_TOLERANCE)
+    assert np.all(rows @ best - bounds >= -OBJECTIVE_TOLERANCE)
     # along the limit the objective grows by the square of the distance: the place is known to the root of it
-    assert best == pytest.approx([1.4, 1.7], abs=np.sqrt(DONE))
+    assert best == pytest.approx([1.4, 1.7], abs=np.sqrt(OBJECTIVE_TOLERANCE))
     # the largest of two parabolas is least where they are equal
 
     def both(x):
-        return Local(np.hstack([x**2, (x - 1) ** 2 + 0.5]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
+        return LocalValues(np.hstack([x**2, (x - 1) ** 2 + 0.5]), np.zeros((len(x), 0)), np.zeros((len(x), 0)))
 
-    assert polish(both, np.array([0.2])) == pytest.approx([0.75], abs=1e-10)
+    assert minimize_locally(both, np.array([0.2])) == pytest.approx([0.75], abs=1e-10)
 
 
 def test_peaks_and_zeros_are_found_between_the_places():

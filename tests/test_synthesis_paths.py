@@ -9,7 +9,18 @@ import pytest
 
 from tmm_cli.bench import PROBLEMS
 from tmm_cli.problem import read_text
-from tmm_cli.synthesis import Candidates, Ends, Rows, Settling, best, descend, outcome_of, residuals, step_of, task_of
+from tmm_cli.synthesis import (
+    Candidates,
+    IndependentEnds,
+    LinearParameters,
+    ResidualRows,
+    damped_step,
+    find_best,
+    minimize_squares,
+    outcome_of,
+    read_task,
+    residual_function,
+)
 from tmm_cli.synthesis.optimal import many_starts
 
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
@@ -17,7 +28,7 @@ SEMICIRCLE, ELLIPSE = "semicircle of 6 points, timed", "ellipse of 10 points"
 
 
 def prepared(name, **changed):
-    task = task_of(read_text(BY_NAME[name].text(), "x.yaml"))
+    task = read_task(read_text(BY_NAME[name].text(), "x.yaml"))
     return Candidates(replace(task, positions=36, generations=20, **changed))
 
 
@@ -31,7 +42,7 @@ def _few_starts():
 
 @pytest.fixture(scope="module")
 def found():
-    return [best(prepared(SEMICIRCLE, seed=seed)) for seed in (1, 2)]
+    return [find_best(prepared(SEMICIRCLE, seed=seed)) for seed in (1, 2)]
 
 
 def test_seeds_agree_in_ten_digits_of_the_objective_and_in_the_lengths(found):
@@ -44,7 +55,7 @@ def test_seeds_agree_in_ten_digits_of_the_objective_and_in_the_lengths(found):
 
 def test_where_a_coupler_point_and_the_frame_are_follows_linearly():
     search = prepared(SEMICIRCLE)
-    settle = Settling(search)
+    settle = LinearParameters(search)
     assert [search.task.parameters[k].name for k in settle.linear] == ["along", "aside", "x0", "y0"]
     x = np.random.default_rng(3).random((500, len(search.low)))
     x = x[search.evaluate(x)[1] == 0]
@@ -53,16 +64,16 @@ def test_where_a_coupler_point_and_the_frame_are_follows_linearly():
 
 def test_starts_agree_where_enough_of_them_end_at_the_same_least():
     def ends(*distances):
-        return Ends.of([(distance**2, None) for distance in distances])
+        return IndependentEnds.of([(distance**2, None) for distance in distances])
 
     assert ends(*[1.0] * 6, 1.2).agree
-    assert ends(*[1.0] * 5, *[1.005] * 20, 1.2) == Ends(26, same=5, near=25, met=False)
+    assert ends(*[1.0] * 5, *[1.005] * 20, 1.2) == IndependentEnds(26, same=5, near=25, met=False)
     assert not ends(*[1.0] * 5, *[1.005] * 20, 1.2).agree
     assert ends(1e-9, 1.0).agree  # the points are met
 
 
 def test_the_answer_says_when_independent_starts_do_not_agree(found):
-    search, apart = prepared(SEMICIRCLE), Ends(24, same=2, near=20, met=False)
+    search, apart = prepared(SEMICIRCLE), IndependentEnds(24, same=2, near=20, met=False)
     assert not any("not sure" in note for note in outcome_of(search, found[0]).notes)
     assert outcome_of(search, replace(found[0], ends=apart)).notes[0] == (
         "not sure to be the least: of 24 independent starts 2 ended at it and 20 within 1 % of it; try another seed, "
@@ -76,14 +87,14 @@ def test_the_answer_says_when_the_search_was_cut_short():
             raise KeyboardInterrupt
 
     search = prepared(SEMICIRCLE, seed=2, progress=stop)
-    cut = best(search)
+    cut = find_best(search)
     assert cut.evolved.stopped and cut.missed == 0
     assert outcome_of(search, cut).notes[0] == "stopped by hand: the best candidate so far, polished"
 
 
 def test_slopes_of_residuals_are_those_of_the_sum_of_squares():
     search = prepared(ELLIPSE)
-    rows = residuals(search)
+    rows = residual_function(search)
     x = np.random.default_rng(2).random((2000, len(search.low)))
     x = x[search.evaluate(x)[1] == 0][0]
     step = 1e-5 * np.eye(len(x))
@@ -95,13 +106,13 @@ def test_slopes_of_residuals_are_those_of_the_sum_of_squares():
 
 
 def test_what_is_at_the_least_stays_there(found):
-    again, __ = descend(residuals(prepared(SEMICIRCLE)), found[0].x[None], 50)
+    again, __ = minimize_squares(residual_function(prepared(SEMICIRCLE)), found[0].x[None], 50)
     np.testing.assert_allclose(again[0], found[0].x, atol=1e-6)
 
 
 def test_a_constraint_beside_which_nothing_is_left_costs_a_step_and_not_the_search():
-    rows = Rows(np.array([[0.1, -0.2], [0.1, -0.2]]), np.array([[-1e12], [1.0]]))
-    slopes = Rows(np.array([np.eye(2)] * 2), np.array([[[1e12, 1e12]], [[0.0, 0.0]]]))
-    step = step_of(rows, slopes, np.full((2, 2), 0.5), np.array([1e-3, 1e-3]))
+    rows = ResidualRows(np.array([[0.1, -0.2], [0.1, -0.2]]), np.array([[-1e12], [1.0]]))
+    slopes = ResidualRows(np.array([np.eye(2)] * 2), np.array([[[1e12, 1e12]], [[0.0, 0.0]]]))
+    step = damped_step(rows, slopes, np.full((2, 2), 0.5), np.array([1e-3, 1e-3]))
     assert np.all(np.isfinite(step[0]))
     np.testing.assert_allclose(step[1], [-0.1, 0.2], rtol=2e-3)

@@ -28,7 +28,7 @@ from test_synthesis_slotted_lever import lever, shaping
 from tmm_cli import solve
 from tmm_cli.batch import prepare_batch
 from tmm_cli.problem import read_text
-from tmm_cli.synthesis import build, measured
+from tmm_cli.synthesis import build_synthesised, measure_demands
 
 
 def found(problem):
@@ -53,7 +53,7 @@ def test_crank_shapers_of_khurmi_and_gupta(name):
     problem = shaping(keys)
     lengths = found(problem)
     assert all(prints(lengths[key] * 1000, text) for key, text in printed.items()), lengths
-    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+    for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")):
         assert m.difference <= 1e-12, m
 
 
@@ -232,7 +232,7 @@ output: 3
 
 def line(vary=(), synthesis=""):
     fixed = ", ".join(f"{name}: {value!r}" for name, value in BEST.items() if name not in vary)
-    return build(read_text(LINE.replace("PARAMETERS", fixed).replace("SYNTHESIS", synthesis), "x.yaml"))
+    return build_synthesised(read_text(LINE.replace("PARAMETERS", fixed).replace("SYNTHESIS", synthesis), "x.yaml"))
 
 
 def test_the_best_four_bar_of_eca_passes_the_six_points():

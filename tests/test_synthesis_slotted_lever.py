@@ -14,7 +14,7 @@ from tmm_cli.batch import prepare_batch
 from tmm_cli.mechanics.linkage import FRAME, Sketch
 from tmm_cli.mechanics.numerics import find_roots
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.synthesis import build, k_of, measured, shaper, slotted_lever
+from tmm_cli.synthesis import build_synthesised, k_of, measure_demands, shaper, slotted_lever
 
 LEVER = """
 points: {O: [xO, yO], C: [xC, yC]}
@@ -44,11 +44,11 @@ SIZE = 1000
 
 def lever(keys, sense="ccw"):
     text = f"tmm: 1\nsynthesis: {{task: slotted-lever, {keys}}}\n{LEVER.replace('SENSE', sense)}"
-    return build(read_text(text, "x.yaml"))
+    return build_synthesised(read_text(text, "x.yaml"))
 
 
 def shaping(keys):
-    return build(read_text(f"tmm: 1\nsynthesis: {{task: shaper, {keys}}}\n{SHAPER}", "x.yaml"))
+    return build_synthesised(read_text(f"tmm: 1\nsynthesis: {{task: shaper, {keys}}}\n{SHAPER}", "x.yaml"))
 
 
 def random(seed, rows):
@@ -103,8 +103,8 @@ def test_k_and_two_places_of_the_end_come_back(side):
     k = k_of(0.05 + 2.5 * a[0])
     b1, b2 = a[1] - 0.5 + 1j * a[2], a[3] + 1 + 1j * a[4]
     task = slotted_lever.SlottedLeverTask(b1=b1, b2=b2, k=k, side=side, OC=1.0)
-    longest = slotted_lever.find(task).longest
-    found = slotted_lever.find(replace(task, OC=longest * (0.05 + 0.94 * a[5])))
+    longest = slotted_lever.find_slotted_lever(task).longest
+    found = slotted_lever.find_slotted_lever(replace(task, OC=longest * (0.05 + 0.94 * a[5])))
     places = lever_comes_back(found, k, side)
     for place, wanted in zip(places[:: -1 if side > 0 else 1], (b1, b2), strict=True):
         assert np.max(np.abs(place - wanted) / (found.lever + np.abs(found.c))) < MET
@@ -117,13 +117,13 @@ def test_swing_and_length_come_back_with_the_frame_within_bounds():
     task = slotted_lever.SlottedLeverTask(
         CB=length, c=a[3] - 0.5 + 1j * a[4], axis=7 * a[5] - 3.5, swing=swing, within=within
     )
-    found = slotted_lever.find(task)
+    found = slotted_lever.find_slotted_lever(task)
     assert np.all((found.frame >= within[0]) & (found.frame <= within[1]))
     assert np.all(found.frame + found.crank <= length * (1 + 1e-15))
     longer = np.minimum(within[1], found.frame * (1 + 1e-9))
     assert np.all((longer == found.frame) | (longer * (1 + np.sin(swing / 2)) > length))  # none longer would do
     lever_comes_back(found, k_of(swing), -1)
-    assert np.all(slotted_lever.find(replace(task, choose="shortest")).frame == within[0])
+    assert np.all(slotted_lever.find_slotted_lever(replace(task, choose="shortest")).frame == within[0])
 
 
 def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
@@ -133,7 +133,7 @@ def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
     task = shaper.ShaperTask(
         stroke=stroke, k=k_of(theta), frame_ratio=most * (0.05 + 0.9 * a[1]), pressure=steepest * (0.02 + 0.83 * a[2])
     )
-    found = shaper.find(task)
+    found = shaper.find_shaper(task)
     first = shaping("stroke: 200, k: 1.4, frame_ratio: 0.5, rod_ratio: 0.4").linkage
     variants = []
     columns = (found.crank, found.frame, found.lever, found.rod, found.level)
@@ -164,7 +164,7 @@ def test_stroke_k_and_pressure_angle_of_the_shaper_come_back():
 
 
 def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
-    f = shaper.find(shaper.ShaperTask(stroke=0.4, k=1.5, frame_ratio=0.5, rod_ratio=0.3))
+    f = shaper.find_shaper(shaper.ShaperTask(stroke=0.4, k=1.5, frame_ratio=0.5, rod_ratio=0.3))
     heights = f.lever * np.cos(np.linspace(-1, 1, 2001) * f.theta / 2) - f.frame
     levels = f.level + np.linspace(-0.1, 0.1, 401) * f.lever
     largest = np.max(np.abs(np.arcsin((heights[:, None] - levels) / f.rod)), axis=0)
@@ -175,7 +175,7 @@ def test_no_other_level_of_the_guide_has_a_smaller_pressure_angle():
 def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
     # OA = 110, OC = 350, CD = 650 mm: sin(theta/2) = OA/OC, H = 2 CD OA/OC
     theta = 2 * math.asin(110 / 350)
-    f = shaper.find(shaper.ShaperTask(stroke=1.3 * 110 / 350, k=float(k_of(theta)), OC=0.35, DE=0.21))
+    f = shaper.find_shaper(shaper.ShaperTask(stroke=1.3 * 110 / 350, k=float(k_of(theta)), OC=0.35, DE=0.21))
     assert (f.crank, f.lever) == (pytest.approx(0.11, rel=1e-14), pytest.approx(0.65, rel=1e-14))
 
 
@@ -194,11 +194,11 @@ def test_the_shaper_of_the_bank_comes_out_of_its_own_stroke_and_k():
 def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
     found = lever(keys, sense)
     results = solve(found, "kinematics")
-    for m in measured(found.synthesis.outcome, results):
+    for m in measure_demands(found.synthesis.outcome, results):
         assert m.difference <= MET, m
     asks_left = "left" in keys
     (slow,) = results.strokes.working
-    ends = {v.demand.text: v.value for v in measured(found.synthesis.outcome, results)}
+    ends = {v.demand.text: v.value for v in measure_demands(found.synthesis.outcome, results)}
     run = math.remainder(ends["angle of CB2"] - ends["angle of CB1"], math.tau)
     told = (sense == "ccw") == asks_left  # the crank turns as told for a slow stroke from B1 to B2
     assert slow.run == pytest.approx(run if told else -run, rel=1e-12)
@@ -215,7 +215,7 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
 )
 def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
     found = shaping(keys)
-    for m in measured(found.synthesis.outcome, solve(found, "kinematics")):
+    for m in measure_demands(found.synthesis.outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
 
 

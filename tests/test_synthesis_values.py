@@ -9,7 +9,7 @@ from models import file_of
 
 from tmm_cli import solve
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.synthesis import QUANTITIES, build, longest, measured_on, task_of
+from tmm_cli.synthesis import QUANTITIES, build_synthesised, longest_stroke, measure_problem, read_task
 
 
 def measure(of, results, name=""):
@@ -26,8 +26,8 @@ def text_of(name, edits, task):
 
 def best_of(text):
     """What is found, and what is measured on it."""
-    results = solve(build(read_text(text, "x.yaml")))
-    assert measured_on(results) and all(m.met for m in measured_on(results))
+    results = solve(build_synthesised(read_text(text, "x.yaml")))
+    assert measure_problem(results) and all(m.met for m in measure_problem(results))
     return {name: value.value for name, value in results.problem.synthesis.outcome.parameters.items()}, results
 
 
@@ -35,7 +35,7 @@ def with_numbers(text, **numbers):
     """The same file without its synthesis, with these parameters."""
     text = re.sub(r"synthesis:\n(  .*\n)+", "", text)
     given = ", ".join(f"{name}: {value}" for name, value in numbers.items())
-    return solve(build(read_text(text.replace("parameters: {", f"parameters: {{{given}, ", 1), "x.yaml")))
+    return solve(build_synthesised(read_text(text.replace("parameters: {", f"parameters: {{{given}, ", 1), "x.yaml")))
 
 
 def test_of_lengths_from_a_series_the_best_pair_of_all_is_found():
@@ -88,7 +88,10 @@ def test_bare_bounds_are_what_the_file_takes_them_for():
         (("{on: AB, at: 0.35}", "{on: AB, at: share}"), ("r: 60, ", "")),
         "vary: {r: [50, 70], share: [0.2, 0.8]}\n  objective: moment",
     )
-    assert {p.name: p.kind for p in task_of(read_text(text, "x.yaml")).parameters} == {"r": "length", "share": "number"}
+    assert {p.name: p.kind for p in read_task(read_text(text, "x.yaml")).parameters} == {
+        "r": "length",
+        "share": "number",
+    }
 
 
 def test_the_longest_of_many_strokes_may_lie_between_neither_of_the_extremes():
@@ -96,7 +99,9 @@ def test_the_longest_of_many_strokes_may_lie_between_neither_of_the_extremes():
     run = np.concatenate([np.linspace(a, b, 9)[:-1] for a, b in itertools.pairwise([*ends[0], ends[0, 0]])])[None]
     assert np.ptp(run) == 4.0
     for shift in range(0, run.shape[1], 5):
-        assert longest(np.roll(run, shift, axis=1), np.array([4.0]), turns=False)[0] == pytest.approx(3.0, abs=1e-15)
+        assert longest_stroke(np.roll(run, shift, axis=1), np.array([4.0]), turns=False)[0] == pytest.approx(
+            3.0, abs=1e-15
+        )
 
 
 FREE = "n2: [60 rpm, 180 rpm]"
@@ -165,7 +170,7 @@ def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the
 
 def refusal_of(text):
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text, "x.yaml"))
+        build_synthesised(read_text(text, "x.yaml"))
     return str(caught.value)
 
 
@@ -221,7 +226,9 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
     """Only with DE = OC = 300 mm the second coupler holds nothing; one that both couplers rest on may vary."""
     task = "vary: {DE: [250, 320]}\n  objective: mass"
     with pytest.raises(ProblemError) as caught:
-        build(read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml"))
+        build_synthesised(
+            read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml")
+        )
     assert str(caught.value) == (
         "x.yaml:12:9: synthesis.vary: with values in the middle of these bounds link 1 cannot be driven: pairs or "
         "other drivers hold it already\n"

@@ -21,7 +21,7 @@ from tmm_cli.mechanics.groups import DriverMotion, Newton, State, Telescope, Tel
 from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.numerics import EPS, exactly
 from tmm_cli.problem import read_text
-from tmm_cli.synthesis import Candidates, build, measured, task_of
+from tmm_cli.synthesis import Candidates, build_synthesised, measure_demands, read_task
 
 # pairs of the arm with what it hangs on, of the arm with the cylinder's far end, and of its near end
 CHAINS = ("RRR", "RRP", "PRR", "RPR", "PRP", "RPP", "PPR")
@@ -174,7 +174,7 @@ def test_a_dead_position_that_two_drivers_touch_is_found_where_the_triangle_is_f
     speed = 100 * 500 * np.sin(2.0) / d * length / run
     at = run - (30.0 if offset else 0.0) - 0.5 * speed
     text = FLAT.format(pin=pin, angle=angle, speed=repr(float(speed)), at=repr(float(at)))
-    results = solve(build(read_text(text, "flat.yaml")))
+    results = solve(build_synthesised(read_text(text, "flat.yaml")))
     (dead,) = [dead for dead in results.dead if abs(dead.place - 2.0) < 0.1]
     assert dead.group == "II(2,3,4)" and dead.place == pytest.approx(2.0, abs=1e-13) and dead.passed
 
@@ -224,7 +224,7 @@ positions: {at: [first, (first + last)/2, last]}
 
 def test_candidates_whose_strokes_vary_are_on_one_tape():
     """The boom goes from 10 to 60 deg in each of them, so that the cylinder goes another way in each."""
-    search = Candidates(task_of(read_text(LIFT, "x.yaml")))
+    search = Candidates(read_task(read_text(LIFT, "x.yaml")))
     assert isinstance(search.program, Taped)
     variants = search.numbers(np.random.default_rng(3).random((5, 3)))
     places = Places(np.linspace(0, 1, 7), np.zeros(0))
@@ -235,8 +235,8 @@ def test_candidates_whose_strokes_vary_are_on_one_tape():
 
 
 def test_what_is_found_for_a_lift_is_measured_on_it():
-    problem = build(read_text(LIFT, "x.yaml"))
-    for m in measured(problem.synthesis.outcome, solve(problem, "kinematics")):
+    problem = build_synthesised(read_text(LIFT, "x.yaml"))
+    for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")):
         assert m.met, (m.demand.text, m.demand.value, m.value)
 
 
@@ -249,7 +249,7 @@ def digger():
     for old, new in (("s1: sqrt(600^2", "s1: sqrt(HX^2"), ("H: [600, 0]", "H: [HX, 0]"), ("points: {O", asked)):
         assert old in text
         text = text.replace(old, new, 1)
-    return Candidates(task_of(read_text(text, "x.yaml")))
+    return Candidates(read_task(read_text(text, "x.yaml")))
 
 
 def test_drivers_of_each_candidate_pass_through_its_own_sketch():

@@ -8,7 +8,7 @@ from test_synthesis_any_linkage import block, text_of
 
 from tmm_cli.batch import OneByOne
 from tmm_cli.problem import read_text
-from tmm_cli.synthesis import Candidates, task_of
+from tmm_cli.synthesis import Candidates, read_task
 
 ALWAYS = (", when: working stroke", ""), ("from: working stroke", "from: 90")
 TASKS = {
@@ -30,7 +30,7 @@ TASKS = {
 def test_candidates_on_the_tape_are_those_one_by_one(kind):
     name, edits, vary, objective = TASKS[kind]
     text = text_of(name, *edits, (r"points: \{", block(vary, objective, "")))
-    candidates = Candidates(task_of(read_text(text, "x.yaml")))
+    candidates = Candidates(read_task(read_text(text, "x.yaml")))
     assert candidates.taped
     forces = any(quantity.forces for quantity in candidates.quantities)
     one = OneByOne(candidates.task.make, candidates.first, candidates.outputs, forces=forces)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tmm_cli.bench import SEARCHED, prepared
-from tmm_cli.synthesis import best
+from tmm_cli.synthesis import find_best
 
 BEST = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "synthesis" / "best.json"
 
@@ -26,7 +26,7 @@ def long_runs():
     for seed in range(101, 101 + LONG_RUNS):  # others than those that are measured against them
         print(f"{SEARCHED}, long run from seed {seed}")
         search.task = replace(search.task, seed=seed)
-        one = best(search)
+        one = find_best(search)
         runs.append(
             (one.missed, one.values[0], seed, [float(v) for v in one.numbers], population * len(one.evolved.history))
         )

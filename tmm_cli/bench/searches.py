@@ -23,7 +23,7 @@ from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import read_text
 from tmm_cli.reports import Table
-from tmm_cli.synthesis import Candidates, best, task_of
+from tmm_cli.synthesis import Candidates, find_best, read_task
 
 Bounds = tuple[float, float]
 TURN: Final = (0.0, 360.0)
@@ -356,7 +356,7 @@ def best_known() -> dict[str, Any]:
 
 def prepared(name: str) -> Candidates:
     """The task of a problem by its name, ready for evaluation."""
-    return Candidates(task_of(read_text(search_problem_text(name), f"{name}.yaml")))
+    return Candidates(read_task(read_text(search_problem_text(name), f"{name}.yaml")))
 
 
 def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
@@ -386,10 +386,10 @@ def _paths(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathFound
 
 def path_found(problem: PathProblem, seed: int) -> PathFound:
     """What the ordinary search leads to."""
-    search = Candidates(task_of(read_text(problem.text(), f"{problem.name}.yaml")))
+    search = Candidates(read_task(read_text(problem.text(), f"{problem.name}.yaml")))
     search.task = replace(search.task, seed=seed)
     start = CLOCK()
-    one = best(search)
+    one = find_best(search)
     distance, spread = 1000 * one.values[0], 1000 * float(np.std(np.array(search.task.objective.wanted)))
     off = distance / problem.least - 1 if problem.least else distance / spread
     return PathFound(problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start, problem.printed)
@@ -427,7 +427,7 @@ def searched(search: Candidates, seed: int, known: float) -> Found:
             times.append(CLOCK())
 
     search.task = replace(search.task, seed=seed, progress=watch)
-    one = best(search)
+    one = find_best(search)
     times.append(CLOCK())
     size = search.population
     f = np.where(one.evolved.history[:, 1] == 0, one.evolved.history[:, 0], np.nan)

@@ -31,7 +31,7 @@ from tmm_cli.reports import (
     walk,
     write_results,
 )
-from tmm_cli.synthesis import count, measured_on, redrive, solve, structure_of
+from tmm_cli.synthesis import count, measure_problem, redrive, solve, structure_of
 
 
 def computed(
@@ -109,7 +109,7 @@ def checked(results: Results | ChainResults) -> int:
         return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
         return OK
-    return OK if results.lever_holds and all(m.met for m in measured_on(results)) else CHECK_FAILED
+    return OK if results.lever_holds and all(m.met for m in measure_problem(results)) else CHECK_FAILED
 
 
 def as_expected(results: Results | ChainResults) -> bool:

@@ -10,7 +10,7 @@ from tmm_cli.batch import Blocks
 from tmm_cli.cli.common import emit_json
 from tmm_cli.problem import file_schema
 from tmm_cli.reports import schema as result_schema
-from tmm_cli.synthesis import TASKS, block
+from tmm_cli.synthesis import TASKS, block_module
 
 
 def schema(
@@ -20,4 +20,4 @@ def schema(
     if result:
         emit_json(result_schema())
     else:
-        emit_json(file_schema((block(task).Shape for task in TASKS), Blocks))
+        emit_json(file_schema((block_module(task).BLOCK for task in TASKS), Blocks))

@@ -26,7 +26,7 @@ from tmm_cli.reports import (
     write_whole,
 )
 from tmm_cli.synthesis import (
-    CLASSES,
+    GROUP_CLASSES,
     GROUP_TYPES,
     MOST_CRANKS,
     MOST_LINKS_OF_CHAIN as MOST_CHAIN_LINKS,
@@ -35,9 +35,9 @@ from tmm_cli.synthesis import (
     KinematicChain,
     Scheme,
     TooManySchemes,
-    chains,
+    enumerate_chains,
     enumerate_schemes as all_schemes,
-    layouts,
+    find_layouts,
     problem_text,
     solve,
 )
@@ -64,7 +64,7 @@ def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
     """The first good pose, or that with the fewest warnings; None when no pose can be assembled."""
     closed = all(group.type.grade == 2 for group in scheme.groups)
     best: Skeleton | None = None
-    for layout in layouts(scheme)[: CANDIDATES if closed else FEW]:
+    for layout in find_layouts(scheme)[: CANDIDATES if closed else FEW]:
         found = _tried(problem_text(scheme, layout, title), scheme, closed)
         if found is not None and (best is None or found.badness < best.badness):
             best = found
@@ -126,10 +126,10 @@ def named_types(text: str) -> tuple[str, ...]:
     found: list[str] = []
     for word in text.split(","):
         name = word.strip().upper()
-        if name not in GROUP_TYPES and name not in CLASSES:
-            known = [*CLASSES, *(name for name in GROUP_TYPES if name not in CLASSES)]
+        if name not in GROUP_TYPES and name not in GROUP_CLASSES:
+            known = [*GROUP_CLASSES, *(name for name in GROUP_TYPES if name not in GROUP_CLASSES)]
             raise unknown_name(word.strip(), known, _("there is no such group"), path=("--groups",))
-        found += CLASSES.get(name, (name,))
+        found += GROUP_CLASSES.get(name, (name,))
     return tuple(dict.fromkeys(found))
 
 
@@ -150,7 +150,7 @@ def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[S
 def wanted_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
     """The chains, or a ProblemError that says what can be asked for."""
     _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
-    return chains(links, mobility)
+    return enumerate_chains(links, mobility)
 
 
 def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: range) -> None:

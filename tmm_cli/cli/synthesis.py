@@ -24,7 +24,7 @@ from tmm_cli.reports import (
     synthesis_json,
     tables_of_synthesis,
 )
-from tmm_cli.synthesis import TaskFile, alone, build, measured_on, solve
+from tmm_cli.synthesis import TaskFile, build_synthesised, measure_problem, solve, solve_alone
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
@@ -43,7 +43,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
 def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
     name, title, found, units, results = _solved(file, settings)
-    measured = None if results is None else measured_on(results)
+    measured = None if results is None else measure_problem(results)
     with words_of_files():
         whole = {"problem": name, **synthesis_json(found, measured)}
     if as_json:
@@ -74,15 +74,15 @@ def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthe
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
     tree = tree_of(file, settings)
     if "synthesis" not in tree.data:
-        build(tree)  # refuses a misspelt key
+        build_synthesised(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
-        found = alone(tree)
+        found = solve_alone(tree)
         say(f"{found[0]}: {bare_units(found[3])}")
         for doubt in bare_speeds(tree.data, ValueReader(TaskFile(tree).early, found[3])):
             warn(f"{found[0]}: {doubt}")
         return (*found, None)
-    problem = build(tree)
+    problem = build_synthesised(tree)
     introduce(problem)
     assert problem.synthesis is not None
     return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

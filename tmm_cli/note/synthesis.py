@@ -13,7 +13,7 @@ from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.tables import rows_of
 from tmm_cli.problem import Synthesised
 from tmm_cli.reports import tables_of_synthesis
-from tmm_cli.synthesis import Diagram, measured_on, theta_of
+from tmm_cli.synthesis import Diagram, measure_problem, theta_of
 
 FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
 THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")
@@ -27,7 +27,7 @@ def blocks(subject: Subject) -> Iterable[Block]:
     if task is None:
         return
     yield Heading(_("Synthesis of the mechanism"))
-    tables = {t.name: t for t in tables_of_synthesis(task, measured_on(results), results.problem.units, FOUND)}
+    tables = {t.name: t for t in tables_of_synthesis(task, measure_problem(results), results.problem.units, FOUND)}
     asked = tables.pop("synthesis-asked", None)
     if asked is None:
         yield paragraph(_("The sizes of the mechanism are found from its requirements."))

@@ -18,7 +18,7 @@ from tmm_cli.problem.values import ValueReader
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import WheelTask
     from tmm_cli.mechanics.dynamics import BalancingTask, RunTask, SteadyTask
-    from tmm_cli.synthesis import Outcome
+    from tmm_cli.synthesis import SynthesisOutcome
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Synthesised:
     """What the block `synthesis` of a file gave; names: of its parameters, standard name to that in the file."""
 
     task: str
-    outcome: Outcome
+    outcome: SynthesisOutcome
     names: Mapping[str, str]
 
 

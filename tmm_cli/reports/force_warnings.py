@@ -28,7 +28,7 @@ from tmm_cli.reports.input_load_tables import argument_dimension
 from tmm_cli.reports.motion_warnings import driver_place
 from tmm_cli.reports.synthesis_tables import missed
 from tmm_cli.reports.table import with_unit
-from tmm_cli.synthesis import measured_on
+from tmm_cli.synthesis import measure_problem
 
 CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
 ENDS_MEET = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
@@ -274,7 +274,7 @@ def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
 
 def unmet_demands(results: Results) -> Iterable[str]:
     """What a synthesis was asked and did not do."""
-    return missed(measured_on(results), results.problem.units)
+    return missed(measure_problem(results), results.problem.units)
 
 
 def lever_apart(results: Results) -> Iterable[str]:

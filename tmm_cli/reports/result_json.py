@@ -46,7 +46,7 @@ from tmm_cli.reports.structure_tables import motion_of_link
 from tmm_cli.reports.synthesis_tables import synthesis_json as synthesis_json
 from tmm_cli.reports.table import plain
 from tmm_cli.reports.warnings import collect_warnings
-from tmm_cli.synthesis import measured_on
+from tmm_cli.synthesis import measure_problem
 
 PROBLEM = record(
     "what was computed",
@@ -300,7 +300,7 @@ SI = UnitSystem({"length": "m", "angle": "rad"})
 
 def _synthesis(results: Results) -> dict[str, Any]:
     assert results.problem.synthesis is not None
-    return synthesis_json(results.problem.synthesis, measured_on(results), long=False)
+    return synthesis_json(results.problem.synthesis, measure_problem(results), long=False)
 
 
 FIRST = (

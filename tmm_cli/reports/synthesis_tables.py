@@ -14,7 +14,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import KINDS
 from tmm_cli.problem import Synthesised, UnitSystem
 from tmm_cli.reports.table import Column, Table, plain
-from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, Value, measured_on
+from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, NamedValue, measure_problem
 
 NUMERIC = (*KINDS, "share")
 ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
@@ -38,7 +38,7 @@ def synthesis_tables(results: Results) -> Iterable[Table]:
     """As `tmm synthesis` has them."""
     synthesis = results.problem.synthesis
     if synthesis is not None and results.motion is not None:
-        yield from tables_of_synthesis(synthesis, measured_on(results), results.problem.units)
+        yield from tables_of_synthesis(synthesis, measure_problem(results), results.problem.units)
 
 
 def tables_of_synthesis(
@@ -99,7 +99,7 @@ def synthesis_json(
     }
 
 
-def _values(name: str, title: str, values: Sequence[Value], names: Mapping[str, str] | None) -> Listing:
+def _values(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
     """Quantities row by row; names: how their parameters are called; None: there are none."""
     rows = tuple((v.text, v.value, v.kind) for v in values)
     if names is None:

@@ -118,7 +118,7 @@ class Mechanisms:
     @cached_property
     def goes(self) -> bool:
         """Whether the driver of the file's own variant turns fully, or goes its whole stroke."""
-        return measures.goes_its_way(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
+        return measures.completes_range(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
 
     def at(self, points: Real, *, values: bool = True) -> Found:
         """Points as they are written (points, parameters). values: else it is only told how they go."""
@@ -232,7 +232,7 @@ class Mechanisms:
         except LinkageError as error:
             state = APART if isinstance(error, AssemblyError) else REFUSED
             return state, refusal(error, problem).message, *nothing
-        if self.goes and not measures.goes_its_way(results):
+        if self.goes and not measures.completes_range(results):
             return STOPS, "", *nothing
         over = [f"pressure {one.link}" for one in results.pressure if not one.holds]
         over += [f"slot {one.slide.name}" for one in results.slots if one.ways]
@@ -257,9 +257,9 @@ class Mechanisms:
         assert results.motion is not None
         searched = {
             "H": measures.arc_or_stroke,
-            "psi": measures.stroke,
-            "k": measures.ratio,
-            PRESSURE: measures.pressure,
+            "psi": measures.output_stroke,
+            "k": measures.time_ratio,
+            PRESSURE: measures.largest_pressure_angle,
         }
         q = results.closely(CYCLE * max(results.turns, 1) + 1)
         read = _AtPlaces(results)

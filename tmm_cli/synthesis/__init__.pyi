@@ -2,64 +2,68 @@
 
 from . import measures as measures, solving as solving
 from .construction import (
-    LETTERS as LETTERS,
+    CHAIN_LETTERS as CHAIN_LETTERS,
     Arc as Arc,
-    Centre as Centre,
     Chain as Chain,
-    Construction as Construction,
+    CircleCentre as CircleCentre,
     Diagram as Diagram,
-    Line as Line,
-    Size as Size,
-    Spot as Spot,
+    DiagramLine as DiagramLine,
+    DimensionLine as DimensionLine,
+    GeometricConstruction as GeometricConstruction,
+    LetteredPoint as LetteredPoint,
 )
 from .coupler_positions.burmester import (
+    CouplerPoses as CouplerPoses,
     CouplerPositionsTask as CouplerPositionsTask,
+    DyadData as DyadData,
     Dyads as Dyads,
-    Poses as Poses,
-    Side as Side,
-    beside as beside,
-    by_turn as by_turn,
-    centre as centre,
-    marks as marks,
+    circle_centre as circle_centre,
+    dyads_by_rotation as dyads_by_rotation,
+    point_at_distance as point_at_distance,
+    rate_guidance as rate_guidance,
 )
-from .coupler_positions.curve import curve as curve, frame as frame
-from .coupler_positions.dyads import guiding as guiding
+from .coupler_positions.curve import burmester_curve as burmester_curve, sheet_extent as sheet_extent
+from .coupler_positions.dyads import find_dyads as find_dyads
 from .crank_slider import (
     CrankSliderTask as CrankSliderTask,
-    find as find,
+    find_crank_slider as find_crank_slider,
     largest_theta as largest_theta,
-    least_pressure as least_pressure,
-    shortest as shortest,
+    shortest_rod as shortest_rod,
+    smallest_pressure as smallest_pressure,
 )
-from .four_bar import FOUR_BAR_TYPES as FOUR_BAR_TYPES, FourBar as FourBar, turning as turning
-from .four_bar_by_angles.freudenstein import (
-    Bars as Bars,
-    of_zeros as of_zeros,
-    outputs as outputs,
-    signed_bars as signed_bars,
-    solutions as solutions,
+from .four_bar import (
+    FOUR_BAR_TYPES as FOUR_BAR_TYPES,
+    FourBarLinks as FourBarLinks,
+    classify_four_bar as classify_four_bar,
 )
-from .four_bar_by_angles.pairs import (
+from .four_bar_by_angles.angle_pairs import (
     AnglePairsTask as AnglePairsTask,
-    chosen as chosen,
-    quality as quality,
-    real as real,
-    through as through,
+    are_real as are_real,
+    choose_four_bar as choose_four_bar,
+    four_bars_through as four_bars_through,
+    rate_four_bars as rate_four_bars,
+)
+from .four_bar_by_angles.freudenstein import (
+    FourBarRatios as FourBarRatios,
+    fitted_lengths as fitted_lengths,
+    output_angles as output_angles,
+    solve_exact_pairs as solve_exact_pairs,
+    solve_pqs as solve_pqs,
 )
 from .four_bar_by_k.arcs import (
-    ARC as ARC,
-    Found as Found,
+    SHORTEST_ARC as SHORTEST_ARC,
+    FourBarByKSolution as FourBarByKSolution,
     FourBarByKTask as FourBarByKTask,
-    arcs as arcs,
-    at as at,
-    bound as bound,
-    places as places,
-    widest as widest,
+    admissible_arcs as admissible_arcs,
+    four_bar_at as four_bar_at,
+    largest_beta as largest_beta,
+    largest_w as largest_w,
+    sample_arc as sample_arc,
 )
-from .four_bar_by_k.solver import choose as choose
+from .four_bar_by_k.task import choose_pivot as choose_pivot
 from .grashof import (
-    LEVERS as LEVERS,
-    SLIDERS as SLIDERS,
+    CRANK_SLIDER_TYPES as CRANK_SLIDER_TYPES,
+    SLOTTED_LEVER_TYPES as SLOTTED_LEVER_TYPES,
     CrankSlider as CrankSlider,
     SlottedLever as SlottedLever,
     classify_crank_slider as classify_crank_slider,
@@ -68,45 +72,57 @@ from .grashof import (
 from .measures import (
     MeasuredDemand as MeasuredDemand,
     k_of as k_of,
-    measured as measured,
-    measured_on as measured_on,
-    ratio_of_curve as ratio_of_curve,
-    ratio_open as ratio_open,
+    measure_demands as measure_demands,
+    measure_problem as measure_problem,
     theta_of as theta_of,
+    time_ratio_of_curve as time_ratio_of_curve,
+    time_ratio_uncertainty as time_ratio_uncertainty,
 )
 from .optimal.candidates import Candidates as Candidates
-from .optimal.evolution import Evolved as Evolved, evolve as evolve
+from .optimal.evolution import EvolutionResult as EvolutionResult, evolve as evolve
 from .optimal.many_starts import (
-    Ends as Ends,
-    Rows as Rows,
-    Settling as Settling,
-    descend as descend,
-    residuals as residuals,
-    step_of as step_of,
+    IndependentEnds as IndependentEnds,
+    LinearParameters as LinearParameters,
+    ResidualRows as ResidualRows,
+    damped_step as damped_step,
+    minimize_squares as minimize_squares,
+    residual_function as residual_function,
 )
-from .optimal.outcome import history as history, outcome_of as outcome_of
-from .optimal.polish import DONE as DONE, Local as Local, exactly as exactly, polish as polish
+from .optimal.outcome import draw_history as draw_history, outcome_of as outcome_of
 from .optimal.quantities import QUANTITIES as QUANTITIES
-from .optimal.quantities.strokes import longest as longest
-from .optimal.solver import best as best
-from .reading import TaskFile as TaskFile, alone as alone, build as build, rounded as rounded, task_of as task_of
+from .optimal.quantities.strokes import longest_stroke as longest_stroke
+from .optimal.refinement import (
+    OBJECTIVE_TOLERANCE as OBJECTIVE_TOLERANCE,
+    LocalValues as LocalValues,
+    evaluate_exactly as evaluate_exactly,
+    minimize_locally as minimize_locally,
+)
+from .optimal.solver import find_best as find_best
+from .reading import (
+    TaskFile as TaskFile,
+    build_synthesised as build_synthesised,
+    read_task as read_task,
+    round_to_side as round_to_side,
+    solve_alone as solve_alone,
+)
 from .record import (
     Infeasible as Infeasible,
     Kind as Kind,
     Listing as Listing,
-    Outcome as Outcome,
-    Value as Value,
-    sound as sound,
+    NamedValue as NamedValue,
+    SynthesisOutcome as SynthesisOutcome,
+    refuse_nonfinite as refuse_nonfinite,
 )
 from .schemes.chains import (
     MOST_LINKS_OF_CHAIN as MOST_LINKS_OF_CHAIN,
     KinematicChain as KinematicChain,
-    canonical as canonical,
-    chains as chains,
+    canonical_form as canonical_form,
+    enumerate_chains as enumerate_chains,
 )
-from .schemes.layout import layouts as layouts
+from .schemes.layout import find_layouts as find_layouts
+from .schemes.problem_file import problem_text as problem_text
 from .schemes.schemes import (
-    CLASSES as CLASSES,
+    GROUP_CLASSES as GROUP_CLASSES,
     GROUP_TYPES as GROUP_TYPES,
     MOST_CRANKS as MOST_CRANKS,
     MOST_LINKS_OF_SCHEME as MOST_LINKS_OF_SCHEME,
@@ -115,7 +131,6 @@ from .schemes.schemes import (
     TooManySchemes as TooManySchemes,
     enumerate_schemes as enumerate_schemes,
 )
-from .schemes.skeleton import problem_text as problem_text
 from .shaper import ShaperTask as ShaperTask
 from .slotted_lever import SlottedLeverTask as SlottedLeverTask
 from .solving import (
@@ -127,4 +142,4 @@ from .solving import (
     solve as solve,
     structure_of as structure_of,
 )
-from .tasks import TASKS as TASKS, block as block
+from .tasks import TASKS as TASKS, block_module as block_module

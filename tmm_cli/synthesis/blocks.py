@@ -28,21 +28,21 @@ from tmm_cli.problem import (
     shape_error,
 )
 from tmm_cli.synthesis.record import SMALLEST, Kind
-from tmm_cli.synthesis.tasks import TASKS, block
+from tmm_cli.synthesis.tasks import TASKS, block_module
 
 
-def _range(found: Any) -> Any:
+def _check_range(found: Any) -> Any:
     if not isinstance(found, list) or len(found) != 2:
         raise PydanticCustomError("range", "two numbers [from, to] are wanted")
     return [checked_value(item) for item in found]
 
 
 Range = Annotated[
-    Any, BeforeValidator(_range), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
+    Any, BeforeValidator(_check_range), WithJsonSchema({"type": "array", "items": VALUE, "minItems": 2, "maxItems": 2})
 ]
 
 
-class Block(Strict):
+class TaskBlock(Strict):
     """What all tasks have. names: other names of the parameters that are found."""
 
     task: str = Field(description="one of: " + ", ".join(TASKS))
@@ -54,8 +54,8 @@ class Block(Strict):
 UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 
 
-def one_of(
-    shape: Block, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
+def choose_key_set(
+    shape: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:
     """Return the set of keys that the block has, with no other of them and none of `others`.
 
@@ -85,13 +85,13 @@ def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
     return _(" or ").join(dict.fromkeys(_(" and ").join(keys) for keys in sets))
 
 
-def numbers(shape: Block, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
+def read_numbers(shape: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
     """The values in SI of those of these quantities, by their keys, that are given. Raises ProblemError."""
     given = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
     return {key: values.number(value, KINDS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
 
 
-class OfTheFile(Exception):  # noqa: N818  it says whose the error is
+class TriedFileError(Exception):
     """What the file around the block is refused for, with numbers that the synthesis tries."""
 
     def __init__(self, error: ProblemError) -> None:
@@ -107,20 +107,20 @@ class SynthesisFile(FileHead):
     synthesis: dict[str, Any]
 
 
-class Named(BaseModel):
+class TaskName(BaseModel):
     """The key that says whose block it is."""
 
     task: Literal[tuple(TASKS)]  # type: ignore[valid-type]
 
 
-def checked(tree: Tree) -> Block:
+def check_block(tree: Tree) -> TaskBlock:
     """The block of a file in the shape of its task, of which only the file's own is imported. Raises ProblemError."""
-    given, shape = tree.data["synthesis"], Block
+    given, shape = tree.data["synthesis"], TaskBlock
     try:
         if not isinstance(given, dict) or not isinstance(given.get("task"), str) or given["task"] not in TASKS:
-            Named.model_validate(given)
-        shape = block(given["task"]).Shape
-        found: Block = shape.model_validate(given)
+            TaskName.model_validate(given)
+        shape = block_module(given["task"]).BLOCK
+        found: TaskBlock = shape.model_validate(given)
     except ValidationError as error:
         raise shape_error(error, tree, shape, ("synthesis",)) from None
     return found
@@ -129,16 +129,16 @@ def checked(tree: Tree) -> Block:
 # Values of a task of synthesis within what a mechanism can have: beyond, numbers overflow and answers mean nothing.
 
 
-MOST: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
+LARGEST_VALUES: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
 # what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
 # k is refused by its task, which knows the bounds of it
-SIZED: Final = (LENGTH, SPEED, ANGULAR_SPEED)
-SHARES: Final = ("ratio", "frame_ratio", "rod_ratio", "pressure")
-PLACES: Final = ("e", "xA", "yA")
-PLAIN: Final = ("table", "x")  # of a function: they are no measures of a mechanism
+SIZE_DIMENSIONS: Final = (LENGTH, SPEED, ANGULAR_SPEED)
+RATIO_KEYS: Final = ("ratio", "frame_ratio", "rod_ratio", "pressure")
+COORDINATE_KEYS: Final = ("e", "xA", "yA")
+FUNCTION_KEYS: Final = ("table", "x")  # of a function: they are no measures of a mechanism
 
 
-class Bounded(ValueReader):
+class BoundedReader(ValueReader):
     """The sense of a file's values, for a task that computes a mechanism.
 
     others: values (SI) in the place of the file's own; given: what was read, with its dimension. Both by their paths.
@@ -156,18 +156,18 @@ class Bounded(ValueReader):
 
     def most(self, want: Dimension, path: Path) -> float:
         limit = super().most(want, path)
-        return limit if _exempt(path) else MOST.get(want, limit)
+        return limit if _exempt(path) else LARGEST_VALUES.get(want, limit)
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI. Raises ProblemError where no mechanism has it."""
         found = super().number(value, want, path)
         self.given[path] = found, want
         key = path[-1] if path else ""
-        sized = isinstance(key, str) and key not in PLACES and (want in SIZED or key in SHARES)
+        sized = isinstance(key, str) and key not in COORDINATE_KEYS and (want in SIZE_DIMENSIONS or key in RATIO_KEYS)
         if not sized or _exempt(path) or found >= SMALLEST:
             return found
         raise self.too_small(value, SMALLEST, want, path)
 
 
 def _exempt(path: Path) -> bool:
-    return bool(path) and (path[-1] == "k" or path[0] in PLAIN)
+    return bool(path) and (path[-1] == "k" or path[0] in FUNCTION_KEYS)

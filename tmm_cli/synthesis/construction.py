@@ -14,7 +14,9 @@ import numpy as np
 Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
 Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
 Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
-LETTERS: Final[Mapping[Chain, str]] = {  # of the joints along the chain from the driver's pivot, as constructions say
+CHAIN_LETTERS: Final[
+    Mapping[Chain, str]
+] = {  # of the joints along the chain from the driver's pivot, as constructions say
     "four-bar": "ABCD",
     "crank-slider": "OAB",
     "slotted-lever": "OACB",
@@ -43,19 +45,19 @@ class Arc:
     style: Style = "thin"
 
 
-def circle(centre: complex, radius: float) -> Arc:
+def full_circle(centre: complex, radius: float) -> Arc:
     """A whole circle of construction."""
     return Arc(centre, radius, 0.0, 2 * np.pi, "dashed")
 
 
-def swept(centre: complex, places: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
+def swept_arc(centre: complex, places: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
     """The arc about a centre on which places (an array) follow one another, and so far (rad) beyond both ends."""
     turns = np.unwrap(np.angle(places - centre))
     return Arc(centre, float(abs(places[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
 
 
 @dataclass(frozen=True)
-class Curve:
+class ConstructionCurve:
     """A curve through places that lie close together (locus of pivots, coupler curve); name: written beside it.
 
     It is cut at the edge of the sheet. Pieces of one curve have one name, which is written once.
@@ -67,7 +69,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Spot:
+class LetteredPoint:
     """A lettered point; along: direction of a slider's guide, or of the link that a stone is on."""
 
     name: str
@@ -88,7 +90,7 @@ class Angle:
 
 
 @dataclass(frozen=True)
-class Size:
+class DimensionLine:
     """A dimension line: the distance of two places along a direction (of the line between them if it is 0)."""
 
     start: complex
@@ -98,7 +100,7 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Centre:
+class CircleCentre:
     """Centre of a circle of construction, with lines to it from places on the circle; it may be far off the sheet."""
 
     at: complex
@@ -108,7 +110,7 @@ class Centre:
 
 
 @dataclass(frozen=True)
-class Construction:
+class GeometricConstruction:
     """A sheet to scale. title, and notes for the corner: texts with letters in {}; name: of its file.
 
     wishes: what else is on the sheet if the mechanism stays large enough on it, first wish first. Places that are not
@@ -118,13 +120,13 @@ class Construction:
     title: str
     segments: tuple[Segment, ...] = ()
     arcs: tuple[Arc, ...] = ()
-    spots: tuple[Spot, ...] = ()
+    spots: tuple[LetteredPoint, ...] = ()
     notes: tuple[str, ...] = ()
-    curves: tuple[Curve, ...] = ()
+    curves: tuple[ConstructionCurve, ...] = ()
     name: str = "construction"
     angles: tuple[Angle, ...] = ()
-    sizes: tuple[Size, ...] = ()
-    centres: tuple[Centre, ...] = ()
+    sizes: tuple[DimensionLine, ...] = ()
+    centres: tuple[CircleCentre, ...] = ()
     wishes: tuple[tuple[complex, ...], ...] = ()
     chain: Chain = ""
     values: tuple[tuple[str, float, str], ...] = ()  # name, value in SI, kind: for the corner
@@ -137,13 +139,13 @@ class Construction:
         return [*ends, *(s.at for s in self.spots), *sizes, *self.around]
 
 
-def box(centre: complex, radius: float) -> tuple[complex, ...]:
+def circle_extent(centre: complex, radius: float) -> tuple[complex, ...]:
     """Places that hold a whole circle."""
     return tuple(centre + radius * way for way in (1, 1j, -1, -1j))
 
 
 @dataclass(frozen=True)
-class Line:
+class DiagramLine:
     """A curve of a diagram: values over its x (SI, rad); text: what it is called; dots: drawn as single points.
 
     faint: behind the others.
@@ -168,7 +170,7 @@ class Diagram:
     title: str
     x: tuple[str, str]
     y: tuple[str, str]
-    lines: tuple[Line, ...]
+    lines: tuple[DiagramLine, ...]
     equal: bool = False
-    lower: tuple[Line, ...] = ()
+    lower: tuple[DiagramLine, ...] = ()
     lower_y: tuple[str, str] = ("", "number")

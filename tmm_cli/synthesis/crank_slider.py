@@ -11,15 +11,33 @@ from pydantic import Field
 from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import find_roots
 from tmm_cli.problem import Value as FileValue, ValueReader
-from tmm_cli.synthesis.blocks import Block, numbers, one_of
-from tmm_cli.synthesis.construction import Angle, Arc, Centre, Construction, Segment, Size, Spot, box, circle
-from tmm_cli.synthesis.measures import crank_turns, k_of, mean_speed, pressure, ratio, stroke, theta_of
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
+from tmm_cli.synthesis.blocks import TaskBlock, choose_key_set, read_numbers
+from tmm_cli.synthesis.construction import (
+    Angle,
+    Arc,
+    CircleCentre,
+    DimensionLine,
+    GeometricConstruction,
+    LetteredPoint,
+    Segment,
+    circle_extent,
+    full_circle,
+)
+from tmm_cli.synthesis.measures import (
+    driver_completes_range,
+    k_of,
+    largest_pressure_angle,
+    mean_output_speed,
+    output_stroke,
+    theta_of,
+    time_ratio,
+)
+from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
 
-DRAWN: Final = 0.01  # rad: the least theta that shows on a drawing
+SMALLEST_DRAWN_THETA: Final = 0.01  # rad: the least theta that shows on a drawing
 
 
-def construction(found: Found) -> Construction:
+def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
     """The extreme positions, and the circle on which B1B2 is seen under theta, with O on it at the distance e.
 
     B1 is the far extreme position (the rod in line with the crank), B2 the near one; the crank's pivot O is the origin.
@@ -36,26 +54,26 @@ def construction(found: Found) -> Construction:
         Segment(pin2, o, "link2", "r"),
         Segment(o, b2, "link2", "l − r"),
     ]
-    arcs = [circle(o, r)]
+    arcs = [full_circle(o, r)]
     spots = [
-        Spot("O", o, "support"),
-        Spot("A1", pin1, "hinge"),
-        Spot("A2", pin2, "hinge"),
-        Spot("B1", b1, "slider"),
-        Spot("B2", b2, "slider"),
+        LetteredPoint("O", o, "support"),
+        LetteredPoint("A1", pin1, "hinge"),
+        LetteredPoint("A2", pin2, "hinge"),
+        LetteredPoint("B1", b1, "slider"),
+        LetteredPoint("B2", b2, "slider"),
     ]
-    sizes = (Size(b2, b1, "H", 1 + 0j), *((Size(o, b2, "e", 1j),) if e > 0 else ()))
-    plain = Construction(
+    sizes = (DimensionLine(b2, b1, "H", 1 + 0j), *((DimensionLine(o, b2, "e", 1j),) if e > 0 else ()))
+    plain = GeometricConstruction(
         N_("Extreme positions of the slider"),
         tuple(segments),
         tuple(arcs),
         tuple(spots),
         sizes=sizes,
-        wishes=(box(o, r),),
+        wishes=(circle_extent(o, r),),
         chain="crank-slider",
         values=(("r", r, "length"), ("l", l, "length")),
     )
-    if not theta > DRAWN:
+    if not theta > SMALLEST_DRAWN_THETA:
         return plain
     middle, radius = (b1 + b2) / 2, height / 2 / float(np.sin(theta))
     centre = middle + 1j * height / 2 / np.tan(theta)
@@ -68,8 +86,8 @@ def construction(found: Found) -> Construction:
         segments=(*segments, Segment(b1, b2, "thin")),
         arcs=tuple(arcs),
         angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
-        centres=(Centre(centre, radius, (b1, b2)),),
-        wishes=(box(o, r), (centre,), box(centre, radius)),
+        centres=(CircleCentre(centre, radius, (b1, b2)),),
+        wishes=(circle_extent(o, r), (centre,), circle_extent(centre, radius)),
         values=(*plain.values, ("θ", theta, "angle")),
         notes=(N_("red: where {O} may be, so that the crank turns fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
     )
@@ -95,7 +113,7 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "pressure": ("angle", N_("largest pressure angle lambda")),
     "e": ("length", N_("offset of the guide e")),
 }
-FOUND: Final = {
+FOUND_QUANTITIES: Final = {
     "r": ("length", N_("crank r")),
     "l": ("length", N_("connecting rod l")),
     "e": QUANTITIES["e"],
@@ -123,7 +141,7 @@ class CrankSliderTask:
 
 
 @dataclass(frozen=True)
-class Found:
+class CrankSliderSolution:
     """Lengths r, l, e and the stroke (m), theta and the largest pressure angle (rad), L, nu, h, k.
 
     printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: of that, relative.
@@ -167,7 +185,7 @@ def largest_theta(length: Any) -> Any:
     return 2 * np.arctan(1 / np.sqrt(length))
 
 
-def least_pressure(theta: Any) -> Any:
+def smallest_pressure(theta: Any) -> Any:
     """The least possible largest pressure angle for theta, over all L; see `shortest`.
 
     The derivative of sin(lambda) over sigma vanishes where sin(sigma)^2 = s cos(sigma).
@@ -177,7 +195,7 @@ def least_pressure(theta: Any) -> Any:
     return np.arcsin(np.sqrt(s * cosine) * (2 - s / cosine) / np.cos(theta / 2))
 
 
-def shortest(theta: Any, pressure: Any) -> Any:
+def shortest_rod(theta: Any, pressure: Any) -> Any:
     """The least ratio L for theta at which the largest pressure angle is the given one; nan where there is none.
 
     With sigma half the sum of the angles of both extreme rods with the guide, s = sin(theta/2), c = cos(theta/2):
@@ -220,16 +238,16 @@ def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
         return np.sqrt(height * ((length * length + 1) * height + np.sqrt(under)) / 8) / length
 
 
-def find(task: CrankSliderTask) -> Found:
+def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
-    height = _stroke(task)
+    height = _stroke_length(task)
     theta = None if task.k is None else theta_of(task.k)
     if task.ratio is not None:
         length = np.asarray(task.ratio)
     elif task.e is not None:
         length = ratio_of_offset(height, task.e, theta)
     elif theta is not None:
-        length = shortest(theta, task.pressure)
+        length = shortest_rod(theta, task.pressure)
     else:
         length = (1 + np.asarray(task.nu)) / np.sin(task.pressure)
     if theta is not None:
@@ -247,7 +265,7 @@ def find(task: CrankSliderTask) -> Found:
     if task.e is not None:
         nu = task.e / r
     scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
-    return Found(
+    return CrankSliderSolution(
         r,
         length * r,
         nu * r,
@@ -263,7 +281,7 @@ def find(task: CrankSliderTask) -> Found:
     )
 
 
-def _stroke(task: CrankSliderTask) -> Any:
+def _stroke_length(task: CrankSliderTask) -> Any:
     """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
@@ -283,12 +301,12 @@ def refuse(task: CrankSliderTask) -> None:
         raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"))
     if ratio is not None and nu is not None and not nu < ratio - 1:
         raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"))
-    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke(task):
+    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke_length(task):
         raise Infeasible("e", _("the crank does not turn fully: it needs l > r + e"))
     theta = 0.0 if task.k is None else _refuse_k(task)
     if pressure is not None and not pressure < np.pi / 2:
         raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
-    if pressure is not None and pressure < least_pressure(theta):
+    if pressure is not None and pressure < smallest_pressure(theta):
         raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"))
 
 
@@ -302,7 +320,7 @@ def _refuse_k(task: CrankSliderTask) -> float:
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
     elif task.e is not None:  # the pivot O is on the circle between B2 and the place over it: e < H cot(theta)
-        limit = float(np.arctan2(_stroke(task), task.e))
+        limit = float(np.arctan2(_stroke_length(task), task.e))
     if theta >= np.pi / 2:
         raise Infeasible("k", _("no crank-slider whose crank turns fully has k of 3 or more"))
     if theta >= limit and task.ratio is not None:
@@ -312,32 +330,32 @@ def _refuse_k(task: CrankSliderTask) -> float:
     return theta
 
 
-def solve(task: CrankSliderTask) -> Outcome:
+def solve(task: CrankSliderTask) -> SynthesisOutcome:
     """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
     refuse(task)
-    found = find(task)
-    lengths = tuple(Value(name, getattr(found, name), *FOUND[name]) for name in PARAMETERS)
+    found = find_crank_slider(task)
+    lengths = tuple(NamedValue(name, getattr(found, name), *FOUND_QUANTITIES[name]) for name in PARAMETERS)
     rest = [name for name in ("stroke", "ratio", "nu", "k", "pressure") if getattr(task, name) is None]
     more = tuple(
-        Value("", getattr(found, name), *(QUANTITIES | FOUND)[name])
+        NamedValue("", getattr(found, name), *(QUANTITIES | FOUND_QUANTITIES)[name])
         for name in ("h", *rest, "theta", "printed", "error")
     )
-    demands = [Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False)]
+    demands = [Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False)]
     if task.speed is not None:
-        demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_speed))
-    for name, measure in (("stroke", stroke), ("k", ratio), ("pressure", pressure)):
+        demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_output_speed))
+    for name, measure in (("stroke", output_stroke), ("k", time_ratio), ("pressure", largest_pressure_angle)):
         kind, text = QUANTITIES[name]
         wanted = float(getattr(found, name))
         demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
-    return Outcome(
-        given(task, QUANTITIES),
+    return SynthesisOutcome(
+        given_values(task, QUANTITIES),
         lengths + more,
         N_(
             "triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
             "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"
         ),
         tuple(demands),
-        (construction(found),),
+        (draw_construction(found),),
         output="slide",
     )
 
@@ -345,11 +363,11 @@ def solve(task: CrankSliderTask) -> Outcome:
 # Crank-slider by its stroke: keys of the task.
 
 
-STROKES = (("stroke",), ("speed", "crank_speed"))
-PAIRS = (("ratio", "nu"), ("ratio", "e"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
+STROKE_KEYS = (("stroke",), ("speed", "crank_speed"))
+KEY_PAIRS = (("ratio", "nu"), ("ratio", "e"), ("ratio", "k"), ("pressure", "nu"), ("pressure", "k"), ("e", "k"))
 
 
-class Shape(Block):
+class CrankSliderBlock(TaskBlock):
     """A crank-slider by its stroke (or mean speed) and two of L, nu, e, k, pressure angle."""
 
     task: Literal["crank-slider"]
@@ -365,8 +383,11 @@ class Shape(Block):
     e: FileValue | None = Field(default=None, description="offset of the guide from the crank's axis")
 
 
-def read(shape: Shape, values: ValueReader) -> CrankSliderTask:
+BLOCK = CrankSliderBlock
+
+
+def read(shape: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
     """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
-    for sets in (STROKES, PAIRS):
-        one_of(shape, sets)
-    return CrankSliderTask(**numbers(shape, values, QUANTITIES))
+    for sets in (STROKE_KEYS, KEY_PAIRS):
+        choose_key_set(shape, sets)
+    return CrankSliderTask(**read_numbers(shape, values, QUANTITIES))

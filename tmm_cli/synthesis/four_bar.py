@@ -38,12 +38,12 @@ FOUR_BAR_TYPES: Final = (
     "S2X",
     "S3X",
 )
-CHANGE: Final = 8  # the first type with change points
-PLACES: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only places are asked for
+FIRST_CHANGE_POINT: Final = 8  # the first type with change points
+POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only places are asked for
 
 
 @dataclass(frozen=True)
-class FourBar:
+class FourBarLinks:
     """Lengths (m) of links 1 to 4 as they are joined round; frame, driver: numbers (1 to 4) of two adjacent ones."""
 
     l1: Any
@@ -63,7 +63,7 @@ class FourBar:
 
 
 @dataclass(frozen=True)
-class Turning:
+class FourBarType:
     """kind: number in TYPES, -1 where the links do not close; excess: (p + q) - (s + l), m: positive for Grashof.
 
     joints: whether those of frame-input, input-coupler, coupler-output, output-frame turn fully; turns: whether input,
@@ -77,7 +77,7 @@ class Turning:
     turns: Any
 
 
-def turning(links: FourBar) -> Turning:
+def classify_four_bar(links: FourBarLinks) -> FourBarType:
     """Type and turning links of four-bars."""
     lengths = np.stack(np.broadcast_arrays(*links.ordered), axis=-1)
     total = lengths.sum(-1)
@@ -90,7 +90,7 @@ def turning(links: FourBar) -> Turning:
     change = np.abs(excess) <= same
     pairs = equal[..., 0] & equal[..., 2]  # at a change point one pair of equal links brings the other
     kind = np.where(excess > 0, shortest, 4 + longest)
-    kind = np.where(change, np.where(pairs, np.where(equal[..., 1], 13, 12), CHANGE + shortest), kind)
+    kind = np.where(change, np.where(pairs, np.where(equal[..., 1], 13, 12), FIRST_CHANGE_POINT + shortest), kind)
     kind = np.where(2 * ranked[..., 3] >= total - same, -1, kind)
     joints = []
     for k in range(4):
@@ -99,15 +99,15 @@ def turning(links: FourBar) -> Turning:
     a, b, c, d = joints
     # full turns in both joints on the way from the frame to the coupler take each other away
     excess = np.where(change, 0.0, excess)[()]  # zero but for rounding
-    return Turning(kind, excess, np.stack(joints, -1), np.stack([a, (a ^ b) | (c ^ d), d], -1))
+    return FourBarType(kind, excess, np.stack(joints, -1), np.stack([a, (a ^ b) | (c ^ d), d], -1))
 
 
-def cosine(l2: Any, l3: Any, square: Any) -> Any:
+def cosine_bcd(l2: Any, l3: Any, square: Any) -> Any:
     """Of the angle BCD, from the square of BD; the transmission angle is BCD, or what it lacks of two right angles."""
     return (l2 * l2 + l3 * l3 - square) / (2 * l2 * l3)
 
 
-def sharpest(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[Any, Any]:
+def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[Any, Any]:
     """The largest size of the cosine of BCD while AB turns from low to high (rad from AD), and the angle of AB there.
 
     lengths: l1 to l4. BD, and with it BCD, is extreme at both ends, and where B lies on AD.
@@ -115,14 +115,14 @@ def sharpest(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[A
     l1, l2, l3, l4, low, high = (np.asarray(x)[..., None] for x in (*lengths, low, high))
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
     places = np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
-    sizes = np.abs(cosine(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(places)))
+    sizes = np.abs(cosine_bcd(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(places)))
     worst = np.argmax(sizes, axis=-1)[..., None]  # what is no number is the worst
     size, place = (np.take_along_axis(x, worst, axis=-1)[..., 0] for x in (sizes, places))
     return size, place
 
 
 @dataclass(frozen=True)
-class Loop:
+class FourBarPins:
     """The four-bar in a linkage that the crank AB drives: names of its pins."""
 
     a: str
@@ -131,7 +131,7 @@ class Loop:
     d: str
 
 
-def loop_of(linkage: Linkage) -> Loop | None:
+def find_four_bar(linkage: Linkage) -> FourBarPins | None:
     """The four-bar that the crank drives; None where there is none."""
     crank = linkage.driver.link
     a = linkage.shared(FRAME, crank)
@@ -142,35 +142,35 @@ def loop_of(linkage: Linkage) -> Loop | None:
         for output in linkage.moving if b is not None and coupler != crank else ():
             c, d = linkage.shared(coupler, output), linkage.shared(FRAME, output)
             if output not in (crank, coupler) and b is not None and c is not None and d is not None:
-                return Loop(a, b, c, d)
+                return FourBarPins(a, b, c, d)
     return None
 
 
-def pins(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | None:
+def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | None:
     """A, B, C, D (m) where AB stands at angles phi (rad) from AD; A, D single, B, C a place for each angle, nan where
     it cannot be assembled.
     """
-    linkage, loop = results.linkage, loop_of(results.linkage)
+    linkage, loop = results.linkage, find_four_bar(results.linkage)
     if loop is None or not results.kernels:
         return None
     frame, crank = linkage.links[FRAME].points, linkage.links[linkage.driver.link].points
     base = np.angle(frame[loop.d] - frame[loop.a]) - np.angle(crank[loop.b] - crank[loop.a])
-    motion = move(linkage, results.kernels, np.atleast_1d(phi) + base, PLACES, 0)
+    motion = move(linkage, results.kernels, np.atleast_1d(phi) + base, POSITIONS_ONLY, 0)
     return frame[loop.a], motion.spot(loop.b), motion.spot(loop.c), frame[loop.d]
 
 
 def output_angles(results: Results, phi: Any, near: Any) -> Any:
     """Angles of DC from AD (rad) at those phi of AB, of all whole turns the one nearest to `near`."""
-    found = pins(results, phi)
+    found = pin_positions(results, phi)
     if found is None:
         return np.full(np.shape(near), np.nan)
     a, _, c, d = found
     return near + np.angle((c - d) / (d - a) * np.exp(-1j * np.asarray(near)))
 
 
-def transmission(phi: float, results: Results) -> float:
+def transmission_angle(phi: float, results: Results) -> float:
     """The transmission angle (rad, acute) where AB stands at phi from AD."""
-    found = pins(results, np.array([phi]))
+    found = pin_positions(results, np.array([phi]))
     if found is None:
         return float("nan")
     _, b, c, d = found

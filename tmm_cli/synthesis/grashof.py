@@ -11,10 +11,10 @@ from pydantic import Field
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.numerics import SAME_RATIO
 from tmm_cli.problem import ProblemError, Value as FileValue, ValueReader
-from tmm_cli.synthesis.blocks import UNDETERMINED, Block, numbers
-from tmm_cli.synthesis.four_bar import CHANGE, FOUR_BAR_TYPES, FourBar, turning
-from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
+from tmm_cli.synthesis.blocks import UNDETERMINED, TaskBlock, read_numbers
+from tmm_cli.synthesis.four_bar import FIRST_CHANGE_POINT, FOUR_BAR_TYPES, FourBarLinks, classify_four_bar
+from tmm_cli.synthesis.measures import driver_completes_range
+from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
 
 PARAMETERS: Final[dict[str, str]] = {}
 LINKS: Final = {  # that a task may give: kind and what they are called
@@ -28,7 +28,7 @@ LINKS: Final = {  # that a task may give: kind and what they are called
     "OA": ("length", N_("crank OA")),
     "OC": ("length", N_("frame OC")),
 }
-FOUR_BARS: Final = {
+FOUR_BAR_TITLES: Final = {
     "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
     "GCRR": N_("GCRR: crank-rocker-rocker (crank-rocker)"),
     "GRCR": N_("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
@@ -44,13 +44,13 @@ FOUR_BARS: Final = {
     "S2X": N_("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
     "S3X": N_("S3X: four equal links (rhombus), change points"),
 }
-SLIDERS: Final = {  # by the number of the kind
+CRANK_SLIDER_TYPES: Final = {  # by the number of the kind
     "crank": N_("the crank turns fully"),
     "rod": N_("the crank rocks, the rod turns fully"),
     "none": N_("neither crank nor rod turns fully"),
     "change": N_("change point: the slider may leave its side"),
 }
-LEVERS: Final = {
+SLOTTED_LEVER_TYPES: Final = {
     "swings": N_("the crank turns fully, the slotted link swings"),
     "turns": N_("the crank turns fully, and the slotted link with it"),
     "none": N_("the crank does not turn fully"),
@@ -77,17 +77,17 @@ class SlottedLever:
 
 
 @dataclass(frozen=True)
-class Condition:
+class CrankCondition:
     """kind: number in SLIDERS or LEVERS; margin (m): by how much the crank turns fully (negative: does not)."""
 
     kind: Any
     margin: Any
 
 
-Task = FourBar | CrankSlider | SlottedLever
+CrankConditionTask = FourBarLinks | CrankSlider | SlottedLever
 
 
-def classify_crank_slider(task: CrankSlider) -> Condition:
+def classify_crank_slider(task: CrankSlider) -> CrankCondition:
     """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
     r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
     same = SAME_RATIO * (r + rod + e)
@@ -95,90 +95,97 @@ def classify_crank_slider(task: CrankSlider) -> Condition:
     other = r - (rod + e)
     kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
     kind = np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind)
-    return Condition(kind, _without_rounding(margin, same))
+    return CrankCondition(kind, _without_rounding(margin, same))
 
 
-def classify_slotted_lever(task: SlottedLever) -> Condition:
+def classify_slotted_lever(task: SlottedLever) -> CrankCondition:
     """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
     crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
     same = SAME_RATIO * (crank + frame + e)
     margin = np.abs(frame - crank) - e
     kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
-    return Condition(np.where(np.abs(margin) <= same, 3, kind), _without_rounding(margin, same))
+    return CrankCondition(np.where(np.abs(margin) <= same, 3, kind), _without_rounding(margin, same))
 
 
 def _without_rounding(margin: Any, same: Any) -> Any:
     return np.where(np.abs(margin) <= same, 0.0, margin)[()]
 
 
-def refuse(task: Task) -> None:
+def refuse(task: CrankConditionTask) -> None:
     """Raises Infeasible for links that do not close."""
-    if isinstance(task, FourBar) and turning(task).kind < 0:
+    if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _("the links do not close: {link} is as long as the others together, or longer")
         raise Infeasible(longest, reason.format(link=longest))
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: CrankConditionTask) -> SynthesisOutcome:
     """The answer for one file. Raises Infeasible for what is no mechanism."""
     refuse(task)
-    if isinstance(task, FourBar):
-        return _four_bar(task)
+    if isinstance(task, FourBarLinks):
+        return _solve_four_bar(task)
     if isinstance(task, CrankSlider):
-        found, kinds, margin = classify_crank_slider(task), SLIDERS, N_("l - (r + e)")
+        found, kinds, margin = classify_crank_slider(task), CRANK_SLIDER_TYPES, N_("l - (r + e)")
         source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
     else:
-        found, kinds, margin = classify_slotted_lever(task), LEVERS, N_("|OC - OA| - e")
+        found, kinds, margin = classify_slotted_lever(task), SLOTTED_LEVER_TYPES, N_("|OC - OA| - e")
         source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
     name = list(kinds)[int(found.kind)]
-    values = (Value("", kinds[name], "word", N_("type")), Value("", found.margin, "length", margin))
-    return Outcome(given(task, LINKS), values, source, _turning(name in ("crank", "swings", "turns"), name == "change"))
+    values = (NamedValue("", kinds[name], "word", N_("type")), NamedValue("", found.margin, "length", margin))
+    return SynthesisOutcome(
+        given_values(task, LINKS),
+        values,
+        source,
+        _rotation_demands(name in ("crank", "swings", "turns"), name == "change"),
+    )
 
 
-def _four_bar(task: FourBar) -> Outcome:
-    found = turning(task)
-    change = int(found.kind) >= CHANGE
+def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
+    found = classify_four_bar(task)
+    change = int(found.kind) >= FIRST_CHANGE_POINT
     at_change, fully, rocks = (
         N_("turns fully or rocks: decided in the change positions"),
         N_("turns fully"),
         N_("rocks"),
     )
     asked = (
-        *given(task, LINKS),
-        Value("frame", f"l{task.frame}", "word", N_("frame")),
-        Value("driver", f"l{task.driver}", "word", N_("driver")),
+        *given_values(task, LINKS),
+        NamedValue("frame", f"l{task.frame}", "word", N_("frame")),
+        NamedValue("driver", f"l{task.driver}", "word", N_("driver")),
     )
     values = [
-        Value("", FOUR_BARS[FOUR_BAR_TYPES[int(found.kind)]], "word", N_("type")),
-        Value("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
+        NamedValue("", FOUR_BAR_TITLES[FOUR_BAR_TYPES[int(found.kind)]], "word", N_("type")),
+        NamedValue("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
     ]
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
-        values.append(Value("", (at_change if change else fully) if turns else rocks, "word", role))
+        values.append(NamedValue("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_(
         "F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
         "four-bar linkages, Mechanism and Machine Theory 20 (1985)"
     )
-    return Outcome(asked, tuple(values), source, _turning(bool(found.turns[0]), change))
+    return SynthesisOutcome(asked, tuple(values), source, _rotation_demands(bool(found.turns[0]), change))
 
 
-def _turning(turns: bool, change: bool) -> tuple[Demand, ...]:
+def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
     """Nothing is foretold of a change point."""
     words = N_("driver turns fully (1: yes, 0: no)")
-    return () if change else (Demand(words, float(turns), "number", crank_turns, asked=False),)
+    return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 
 
 # Which links turn fully: keys of the task.
 
 
-Link = Literal["l1", "l2", "l3", "l4"]
-SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record, keys that it needs, keys that it may have
-    (FourBar, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
+LinkName = Literal["l1", "l2", "l3", "l4"]
+KEY_SETS: tuple[
+    tuple[Any, tuple[str, ...], tuple[str, ...]], ...
+] = (  # record, keys that it needs, keys that it may have
+    (FourBarLinks, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
     (CrankSlider, ("r", "l"), ("e",)),
     (SlottedLever, ("OA", "OC"), ("e",)),
 )
 
 
-class Shape(Block):
+class GrashofBlock(TaskBlock):
     """Crank conditions of a four-bar (l1 to l4), a crank-slider (r, l, e) or a slotted lever (OA, OC, e)."""
 
     task: Literal["grashof"]
@@ -186,8 +193,8 @@ class Shape(Block):
     l2: FileValue | None = None
     l3: FileValue | None = None
     l4: FileValue | None = None
-    frame: Link | None = Field(default=None, description="which of them is the frame; l4")
-    driver: Link | None = Field(default=None, description="which of its two neighbours drives; the next one round")
+    frame: LinkName | None = Field(default=None, description="which of them is the frame; l4")
+    driver: LinkName | None = Field(default=None, description="which of its two neighbours drives; the next one round")
     r: FileValue | None = Field(default=None, description="crank of a crank-slider")
     l: FileValue | None = Field(default=None, description="its rod")  # noqa: E741
     e: FileValue | None = Field(default=None, description="offset of the guide, or of the slot; 0")
@@ -195,20 +202,23 @@ class Shape(Block):
     OC: FileValue | None = Field(default=None, description="distance of its fixed hinges")
 
 
-def read(shape: Shape, values: ValueReader) -> Task:
+BLOCK = GrashofBlock
+
+
+def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
     """The lengths in m. Raises ProblemError."""
-    found = numbers(shape, values, LINKS)
+    found = read_numbers(shape, values, LINKS)
     given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
-    fitting = [one for one, needed, more in SETS if set(needed) <= given <= {*needed, *more}]
+    fitting = [one for one, needed, more in KEY_SETS if set(needed) <= given <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
             translated(UNDETERMINED),
             found=", ".join(sorted(given)) or _("none"),
-            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in SETS),
+            allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in KEY_SETS),
             key=True,
         )
     record = fitting[0]
-    if record is FourBar:
+    if record is FourBarLinks:
         frame = int((shape.frame or "l4")[1])
         driver = int(shape.driver[1]) if shape.driver else frame % 4 + 1
         if (driver - frame) % 2 == 0:
@@ -220,5 +230,5 @@ def read(shape: Shape, values: ValueReader) -> Task:
                 allowed=allowed,
             )
         found |= {"frame": frame, "driver": driver}
-    made: Task = record(**found)
+    made: CrankConditionTask = record(**found)
     return made

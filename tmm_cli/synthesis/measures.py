@@ -19,7 +19,7 @@ from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.kinematics import DriverRange, find_pressure, find_travel, output_slope
 from tmm_cli.mechanics.linkage import FRAME, Output
 from tmm_cli.mechanics.numerics import MET, NO_DEMAND, SURE_SIGN, Real, bisect
-from tmm_cli.synthesis.record import Demand, Outcome
+from tmm_cli.synthesis.record import Demand, SynthesisOutcome
 
 
 def theta_of(k: Any) -> Any:
@@ -33,7 +33,7 @@ def k_of(theta: Any) -> Any:
     return (np.pi + theta) / (np.pi - theta)
 
 
-def ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
+def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
     """The longer strokes over the shorter; nan where there are none.
 
     slope: the output's first transfer function at shares of the cycle; shares: all round it, at equal steps.
@@ -47,8 +47,8 @@ def ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
         return float("nan")
     still = np.mod(first - last, len(y)) > 1
     before, on = np.sign(y[last]), np.sign(y[first])
-    stops = _edges(slope, shares[last], step, before)
-    goes_on = 1.0 - _edges(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
+    stops = _stroke_ends(slope, shares[last], step, before)
+    goes_on = 1.0 - _stroke_ends(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
     middle = stops + (np.mod(goes_on - stops + 0.5, 1.0) - 0.5) / 2
     stops, goes_on = np.where(still, stops, middle), np.where(still, goes_on, middle)
     lengths = np.mod(np.roll(stops, -1) - goes_on, 1.0)
@@ -57,7 +57,7 @@ def ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
     return max(rise, fall) / min(rise, fall)
 
 
-def _edges(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
+def _stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
     """Where a slope that has the sign `before` at low has it no more, at most a step farther on."""
     return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
 
@@ -65,35 +65,35 @@ def _edges(slope: Callable[[Real], Real], low: Real, step: float, before: Real) 
 # What is measured on an analysed mechanism (pipeline.Results); nan where it has no such quantity.
 
 
-NONE = math.nan
+NO_VALUE = math.nan
 
-Ends = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
+DriverEnds = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
 
 
-def stroke(results: Results, ends: Ends = None) -> float:
+def output_stroke(results: Results, ends: DriverEnds = None) -> float:
     """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over a way of the driver."""
     if results.driver_range is not None and (ends or not results.driver_range.full):
         way, link = results.driver_range, results.mechanism.output
         found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
-        return found.high - found.low if found else NONE
+        return found.high - found.low if found else NO_VALUE
     strokes = results.strokes
-    return strokes.travel if strokes is not None and strokes.strokes else NONE
+    return strokes.travel if strokes is not None and strokes.strokes else NO_VALUE
 
 
 def arc_or_stroke(results: Results) -> float:
     """Stroke H (m) of the output; of an output that swings the arc H = psi l of its first point."""
     link = results.mechanism.output
     arm = results.linkage.output_arm(link) if link else None
-    return stroke(results) * (1.0 if arm is None else arm[1])
+    return output_stroke(results) * (1.0 if arm is None else arm[1])
 
 
-def ratio(results: Results) -> float:
+def time_ratio(results: Results) -> float:
     """Coefficient of change of mean speed k."""
     strokes = results.strokes
-    return strokes.k if strokes is not None and strokes.strokes else NONE
+    return strokes.k if strokes is not None and strokes.strokes else NO_VALUE
 
 
-def ratio_open(results: Results) -> float:
+def time_ratio_uncertainty(results: Results) -> float:
     """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
     strokes = results.strokes
     if strokes is None or not strokes.strokes:
@@ -112,7 +112,7 @@ def ratio_open(results: Results) -> float:
     return blur * (1 / float(lengths[works].sum()) + 1 / float(lengths[~works].sum()))
 
 
-def pressure(results: Results, ends: Ends = None) -> float:
+def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
     """The largest pressure angle on the output, rad."""
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
@@ -120,20 +120,20 @@ def pressure(results: Results, ends: Ends = None) -> float:
         way = DriverRange(*ends, False, inclusive=True)
         over = find_pressure(results.linkage, results.kernels, way, results.inputs.pressure_limits)
     found = [p.largest for p in over if p.link == link] or [p.largest for p in over]
-    return max(found, default=NONE)
+    return max(found, default=NO_VALUE)
 
 
-def mean_speed(results: Results) -> float:
+def mean_output_speed(results: Results) -> float:
     """Mean speed of a sliding output over a cycle, of an accelerated crank over the first from position 0 on, m/s."""
     strokes, driver = results.strokes, results.linkage.driver
     if strokes is None or not strokes.strokes or strokes.kind != "slide":
-        return NONE
+        return NO_VALUE
     way = math.fsum(abs(s.run) for s in strokes.strokes)
     last = driver.rate**2 + 2 * driver.acceleration * strokes.cycle
-    return NONE if last < 0 else way * (driver.rate + math.sqrt(last)) / (2 * strokes.cycle)
+    return NO_VALUE if last < 0 else way * (driver.rate + math.sqrt(last)) / (2 * strokes.cycle)
 
 
-def goes_its_way(results: Results, ends: Ends = None) -> bool:
+def completes_range(results: Results, ends: DriverEnds = None) -> bool:
     """Whether the driver turns fully, goes the whole of its stroke, or from one end to the other."""
     way = results.driver_range
     if way is None:
@@ -141,24 +141,24 @@ def goes_its_way(results: Results, ends: Ends = None) -> bool:
     return way.full or (way.start <= ends[0] and ends[1] <= way.end if ends else way.inclusive)
 
 
-def crank_turns(results: Results, ends: Ends = None) -> float:
+def driver_completes_range(results: Results, ends: DriverEnds = None) -> float:
     """1 when it does, else 0."""
-    return float(goes_its_way(results, ends))
+    return float(completes_range(results, ends))
 
 
-def end_angle(results: Results, near: float) -> float:
+def stroke_end_angle(results: Results, near: float) -> float:
     """The angle (rad) of a swinging output from its hinge on the frame, at the end of a stroke nearest to `near`.
 
     It is that of the line from that hinge to the first other point of the link.
     """
     strokes, linkage = results.strokes, results.linkage
     if strokes is None or not strokes.strokes or strokes.kind != "swing":
-        return NONE
+        return NO_VALUE
     points = linkage.links[strokes.link].points
     fixed = next((h.point for h in linkage.hinges if {FRAME, strokes.link} <= set(h.links)), None)
     other = next((name for name in points if name != fixed), None)
     if fixed is None or other is None:
-        return NONE
+        return NO_VALUE
     arm = points[other] - points[fixed]
     turn = math.atan2(arm.imag, arm.real)
     ends = [turn + end - near for s in strokes.strokes for end in (s.low, s.low + s.run)]
@@ -186,25 +186,25 @@ class MeasuredDemand:
 
 
 @lru_cache(maxsize=1)
-def measured_on(results: Results) -> tuple[MeasuredDemand, ...]:
+def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
     """What a problem's synthesis asked and foretold, on its mechanism; nothing where there is none, or no motion."""
     synthesis = results.problem.synthesis
     if synthesis is None or results.of or results.motion is None:
         return ()
-    return measured(synthesis.outcome, results)
+    return measure_demands(synthesis.outcome, results)
 
 
-def measured(outcome: Outcome, results: Results) -> tuple[MeasuredDemand, ...]:
+def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[MeasuredDemand, ...]:
     """Every demand on the mechanism, of the link that the task is about, whatever the file's output is."""
-    results, found = _about(synthesised_link(outcome, results), results), []
+    results, found = _with_output(synthesised_link(outcome, results), results), []
     for demand in outcome.demands:
-        value = _settled(demand, float(demand.measure(results)))
+        value = _without_rounding(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
         found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > MET else 0.0))
     return tuple(found)
 
 
-def synthesised_link(outcome: Outcome, results: Results) -> str | None:
+def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
     """The link whose stroke or swing the task found: of those of its kind on the frame the nearest to the driver.
 
     The file's output if it is one of them, or the task says nothing of a kind.
@@ -220,7 +220,7 @@ def synthesised_link(outcome: Outcome, results: Results) -> str | None:
     return min(links, key=lambda link: (away[link], link != output), default=output)
 
 
-def _about(link: str | None, results: Results) -> Results:
+def _with_output(link: str | None, results: Results) -> Results:
     """The same with another link as the output."""
     mechanism = results.mechanism
     if link is None or link == mechanism.output:
@@ -230,6 +230,6 @@ def _about(link: str | None, results: Results) -> Results:
     return replace(results, inputs=inputs, mechanism=other)
 
 
-def _settled(demand: Demand, value: float) -> float:
+def _without_rounding(demand: Demand, value: float) -> float:
     """The same; zero where it is nothing but rounding beside what counts."""
     return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

@@ -41,28 +41,31 @@ from tmm_cli.problem import (
     unknown_name,
     validated,
 )
-from tmm_cli.synthesis.blocks import Bounded, OfTheFile, SynthesisFile, checked
-from tmm_cli.synthesis.record import Infeasible, Outcome, sound
-from tmm_cli.synthesis.tasks import block, solver
+from tmm_cli.synthesis.blocks import BoundedReader, SynthesisFile, TriedFileError, check_block
+from tmm_cli.synthesis.record import Infeasible, SynthesisOutcome, refuse_nonfinite
+from tmm_cli.synthesis.tasks import block_module, solver_module
 
 DIGITS: Final = 6
 GROWING: Final = np.geomspace(1e-3, 1e4, 40)
 STEPS: Final = np.concatenate([GROWING, -GROWING])  # changes that are tried, over the given value
 SHARES: Final = np.concatenate([np.geomspace(1e-6, 1, 24), -np.geomspace(1e-6, 1, 24)])
-BESIDE: Final = {NUMBER: (0.0, 1.0), ANGLE: (0.0, np.pi / 2)}  # and places near these, over the distance from them
+SPECIAL_VALUES: Final = {
+    NUMBER: (0.0, 1.0),
+    ANGLE: (0.0, np.pi / 2),
+}  # and places near these, over the distance from them
 HALVINGS: Final = 30
 INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
 ALONE: Final = 1e-3
-NONE: Final = N_("another task: no other value of it was found to help")
+NO_NEAREST: Final = N_("another task: no other value of it was found to help")
 
 
-def refusal(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
+def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
     """The reason, and what could be met: what the task knows of it, else what was searched. given: the file's block."""
     told = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
         value, kind, side = error.nearest
         dimension = KINDS[kind].dimension
-        told = _told(error.path, rounded(units, value, dimension, side), dimension, units)
+        told = _nearest_message(error.path, round_to_side(units, value, dimension, side), dimension, units)
     for step in error.path:
         inside = isinstance(given, list) or (isinstance(given, dict) and step in given)
         given = given[step] if inside else None
@@ -70,7 +73,7 @@ def refusal(error: Infeasible, given: Any, units: UnitSystem, searched: str | No
     return ProblemError(translated(error.reason), path=error.path, found=found, allowed=told)
 
 
-def nearest(
+def describe_nearest(
     given: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
 ) -> str:
     """The nearest feasible value of the first of these numbers (SI) that has one, as it is typed in.
@@ -78,24 +81,24 @@ def nearest(
     solved: whether the task is, with another value at a path.
     """
     for path, (value, want) in given.items():
-        found = _nearest(value, want, partial(solved, path))
+        found = _find_nearest(value, want, partial(solved, path))
         if found is not None:
-            number = rounded(units, found, want, 1 if found > value else -1)
+            number = round_to_side(units, found, want, 1 if found > value else -1)
             if not solved(path, units.si(number, want)):
                 number = float(units.from_si(found, want))
-            return _told(path, number, want, units)
-    return NONE
+            return _nearest_message(path, number, want, units)
+    return NO_NEAREST
 
 
-def _told(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
+def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
     value = f"{number:.15g} {units.symbol(want)}".rstrip()
     return _("the nearest is {name}: {value}").format(name=path_text(path), value=value)
 
 
-def _nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
+def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
     """The feasible value that is nearest to one that is not: changes are tried, the least first, and halved."""
     places = [value + (abs(value) or 1.0) * STEPS]
-    places += [fixed + abs(value - fixed) * SHARES for fixed in BESIDE.get(want, (0.0,))]
+    places += [fixed + abs(value - fixed) * SHARES for fixed in SPECIAL_VALUES.get(want, (0.0,))]
     reach = 2 * np.pi if want == ANGLE else np.inf
     last = {-1.0: np.array(value), 1.0: np.array(value)}
     for place in sorted(np.concatenate(places).tolist(), key=lambda place: abs(place - value)):
@@ -110,7 +113,7 @@ def _nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> 
     return None
 
 
-def rounded(units: UnitSystem, value: float, dimension: Dimension, side: int) -> float:
+def round_to_side(units: UnitSystem, value: float, dimension: Dimension, side: int) -> float:
     """A limit (SI) in the file's unit with as many digits as are printed, to its larger (1) or smaller (-1) side."""
     exact = Decimal(float(units.from_si(value, dimension)))
     if side == 0 or not exact.is_finite() or exact == 0:
@@ -126,7 +129,7 @@ def rounded(units: UnitSystem, value: float, dimension: Dimension, side: int) ->
 
 
 Parameters = dict[str, PhysicalValue]
-GOLDEN = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
+GOLDEN_RATIO = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
 
 
 def read(tree: Tree) -> TaskProblem:
@@ -144,23 +147,28 @@ def read(tree: Tree) -> TaskProblem:
             file.task  # noqa: B018  refuses what is wrong in it
     shape, name = file.shape, tree.name
     return TaskProblem(
-        name, shape.title or name, file.units, shape.description, partial(_found, file), partial(_draft, file)
+        name,
+        shape.title or name,
+        file.units,
+        shape.description,
+        partial(_solved_problem, file),
+        partial(_draft_problem, file),
     )
 
 
-def build(tree: Tree) -> Problem:
+def build_synthesised(tree: Tree) -> Problem:
     """A problem with all its numbers: those that its task finds too, if it has one. Raises ProblemError."""
     return read(tree).whole if "synthesis" in tree.data else build_linkage(tree)
 
 
-def alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
+def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
     """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
     file, name = TaskFile(tree), tree.name
     with placed_in(tree):
         return name, file.shape.title or name, file.synthesised(), file.units
 
 
-def task_of(tree: Tree) -> Any:
+def read_task(tree: Tree) -> Any:
     """What the task of a file asks, in SI, without its answer. Raises ProblemError."""
     file = TaskFile(tree)
     with placed_in(tree):
@@ -176,8 +184,8 @@ class TaskFile:
     def __init__(self, tree: Tree, *, extended: bool = False) -> None:
         self.tree = tree
         self.shape = checked_shape(tree) if "links" in tree.data else validated(SynthesisFile, tree)
-        self.block = checked(tree)
-        self.searches: bool = getattr(block(self.block.task), "SEARCH", False)
+        self.block = check_block(tree)
+        self.searches: bool = getattr(block_module(self.block.task), "SEARCH", False)
         with placed_in(tree):
             self.units = unit_system(self.shape.units, extended=extended)
             self.kinds = self._kinds()
@@ -190,8 +198,8 @@ class TaskFile:
 
     def _kinds(self) -> dict[str, str]:
         """Names and kinds of what the task finds; they may depend on what is asked."""
-        own = getattr(block(self.block.task), "parameters", None)
-        return dict(solver(self.block.task).PARAMETERS if own is None else own(self.block))
+        own = getattr(block_module(self.block.task), "parameters", None)
+        return dict(solver_module(self.block.task).PARAMETERS if own is None else own(self.block))
 
     def _names(self) -> dict[str, str]:
         """Standard names of what is found, and those that the file gives them."""
@@ -228,7 +236,7 @@ class TaskFile:
     def stand_ins(self) -> Parameters:
         """Values in place of those to be found, no two in a simple ratio. A search does not tell its kinds before."""
         return {
-            name: PhysicalValue(1 + k * GOLDEN % 1, None if self.searches else KINDS[self.kinds[own]].dimension)
+            name: PhysicalValue(1 + k * GOLDEN_RATIO % 1, None if self.searches else KINDS[self.kinds[own]].dimension)
             for k, (own, name) in enumerate(self.names.items())
         }
 
@@ -249,7 +257,7 @@ class TaskFile:
     def _not_on_what_is_found(self) -> None:
         """What is asked cannot rest on what is found; a search may ask for something of the linkage with it."""
         known = dict.fromkeys([*self.late, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
-        for path, text in _texts(self.block):
+        for path, text in _iterate_texts(self.block):
             used = Parser(plain_text(text[:200]), known, self.units).names()
             if path[0] not in ("task", "names") and used:
                 raise ProblemError(
@@ -262,11 +270,11 @@ class TaskFile:
     @cached_property
     def task(self) -> Any:
         """What is asked, in the record of the task."""
-        read = block(self.block.task).read
+        read = block_module(self.block.task).read
         try:
             with under("synthesis"):
                 if not self.searches:
-                    return read(self.block, Bounded(self.early, self.units))
+                    return read(self.block, BoundedReader(self.early, self.units))
                 if "links" not in self.tree.data:
                     raise ProblemError(
                         _("there is no linkage whose parameters could vary"), allowed=_("links and a driver")
@@ -274,7 +282,7 @@ class TaskFile:
                 return read(self.block, ValueReader(self.early, self.units), self.tried)
         except Infeasible as error:
             raise self._refusal(error) from None
-        except OfTheFile as error:
+        except TriedFileError as error:
             raise error.error from None
 
     def tried(self, found: Parameters, units: UnitSystem) -> Problem:
@@ -282,7 +290,7 @@ class TaskFile:
         try:
             return self.with_values(found, units)
         except ProblemError as error:
-            raise OfTheFile(error) from None
+            raise TriedFileError(error) from None
 
     def with_values(self, found: Parameters, units: UnitSystem) -> Problem:
         """The linkage with these values of what is to be found."""
@@ -296,67 +304,71 @@ class TaskFile:
         task = self.task
         try:
             with under("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
-                outcome = sound(solver(self.block.task).solve(task))
+                outcome = refuse_nonfinite(solver_module(self.block.task).solve(task))
         except Infeasible as error:
             searched = error.nearest is None and error.search and not self.searches
             raise self._refusal(error, self.nearest(error.path) if searched else None) from None
-        except OfTheFile as error:
+        except TriedFileError as error:
             raise error.error from None
         return Synthesised(self.block.task, outcome, self.names)
 
     def _refusal(self, error: Infeasible, searched: str | None = None) -> ProblemError:
-        return refusal(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
+        return refusal_error(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
     def nearest(self, at_fault: Path) -> str:
         """The nearest feasible value of one of the numbers at this path, the last of them first, in words."""
-        read, refuse, own = block(self.block.task).read, solver(self.block.task).refuse, Bounded(self.early, self.units)
+        read, refuse, own = (
+            block_module(self.block.task).read,
+            solver_module(self.block.task).refuse,
+            BoundedReader(self.early, self.units),
+        )
         read(self.block, own)
 
         def solved(path: Path, value: float) -> bool:
             try:
-                refuse(read(self.block, Bounded(self.early, self.units, {path: value})))
+                refuse(read(self.block, BoundedReader(self.early, self.units, {path: value})))
             except (ProblemError, Infeasible):
                 return False
             return True
 
         given = {path: own.given[path] for path in reversed(own.given) if path[: len(at_fault)] == at_fault}
         with np.errstate(all="ignore"):
-            return nearest(given, solved, self.units)
+            return describe_nearest(given, solved, self.units)
 
-    def values(self, outcome: Outcome) -> Parameters:
+    def values(self, outcome: SynthesisOutcome) -> Parameters:
         """The parameters that were found, under the names that the file gives them."""
         return {
-            self.names[name]: PhysicalValue(_plain(value.value), KINDS[value.kind].dimension)
+            self.names[name]: PhysicalValue(_plain_number(value.value), KINDS[value.kind].dimension)
             for name, value in outcome.parameters.items()
             if name in self.names
         }
 
 
-def _found(file: TaskFile) -> Problem:
+def _solved_problem(file: TaskFile) -> Problem:
     """The problem with what its task finds."""
     with placed_in(file.tree):
-        return _whole(file, file.synthesised())
+        return _with_solution(file, file.synthesised())
 
 
-def _whole(file: TaskFile, synthesised: Synthesised) -> Problem:
+def _with_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
     problem = file.with_values(file.values(synthesised.outcome), file.units)
     sketch = synthesised.outcome.sketch or problem.linkage.sketch
     return replace(
         problem,
         linkage=replace(problem.linkage, sketch=sketch),
         synthesis=synthesised,
-        extended=partial(_extended, file.tree, synthesised),
+        extended=partial(_extended_problem, file.tree, synthesised),
     )
 
 
-def _extended(tree: Tree, synthesised: Synthesised) -> Problem:
+def _extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
     """The same with the decimals of the file as double-doubles; what the task found stays as it is."""
     file = TaskFile(tree, extended=True)
     with placed_in(tree):
-        return _whole(file, synthesised)
+        return _with_solution(file, synthesised)
 
 
-def _draft(file: TaskFile) -> Problem | None:
+def _draft_problem(file: TaskFile) -> Problem | None:
     """Links and pairs with other numbers for what is to be found; None where the file refuses these."""
     try:
         return file.with_values(file.stand_ins(), file.units)
@@ -364,19 +376,19 @@ def _draft(file: TaskFile) -> Problem | None:
         return None
 
 
-def _texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
+def _iterate_texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
     """Every text of a block with its place in it."""
     if isinstance(value, str):
         yield path, value
     elif isinstance(value, list | tuple):
         for number, item in enumerate(value):
-            yield from _texts(item, (*path, number))
+            yield from _iterate_texts(item, (*path, number))
     elif isinstance(value, dict | BaseModel):
         for key, item in value.items() if isinstance(value, dict) else value:
-            yield from _texts(item, (*path, key))
+            yield from _iterate_texts(item, (*path, key))
 
 
-def _plain(value: Any) -> Any:
+def _plain_number(value: Any) -> Any:
     """A Python float, or a number of more digits as it is."""
     number = np.asarray(value)[()]
     return float(number) if number.dtype == np.float64 else number

@@ -12,7 +12,7 @@ from tmm_cli.language import _
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.linkage import Sketch
-    from tmm_cli.synthesis.construction import Construction, Diagram
+    from tmm_cli.synthesis.construction import Diagram, GeometricConstruction
 
 
 SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
@@ -20,7 +20,7 @@ Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word`
 
 
 @dataclass(frozen=True)
-class Value:
+class NamedValue:
     """A quantity of a task (SI, rad); text: what it is called. Of kind `word` the value is a text itself.
 
     name: of the parameter that it is, or of the key that gives it.
@@ -73,7 +73,7 @@ class Demand:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SynthesisOutcome:
     """What a task gives. parameters: what the linkage may use, by name; source: where the formula is from.
 
     asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
@@ -82,26 +82,26 @@ class Outcome:
     output is another; empty: they look for theirs.
     """
 
-    asked: tuple[Value, ...]
-    found: tuple[Value, ...]
+    asked: tuple[NamedValue, ...]
+    found: tuple[NamedValue, ...]
     source: str
     demands: tuple[Demand, ...] = ()
-    drawings: tuple[Construction | Diagram, ...] = ()
+    drawings: tuple[GeometricConstruction | Diagram, ...] = ()
     notes: tuple[str, ...] = field(default=())
     listings: tuple[Listing, ...] = ()
     sketch: Sketch | None = None
     output: Literal["slide", "swing", ""] = ""
 
     @property
-    def parameters(self) -> dict[str, Value]:
+    def parameters(self) -> dict[str, NamedValue]:
         """Found values by name."""
         return {value.name: value for value in self.found if value.name}
 
 
-def given(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[Value, ...]:
+def given_values(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[NamedValue, ...]:
     """Those of these quantities that a task has as fields, and not None, by their kinds and what they are called."""
     numbers = ((name, getattr(task, name, None)) for name in quantities)
-    return tuple(Value(name, value, *quantities[name]) for name, value in numbers if value is not None)
+    return tuple(NamedValue(name, value, *quantities[name]) for name, value in numbers if value is not None)
 
 
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
@@ -125,7 +125,7 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
         super().__init__(reason)
 
 
-def sound(outcome: Outcome) -> Outcome:
+def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:
     """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):

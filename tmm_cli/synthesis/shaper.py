@@ -11,20 +11,26 @@ from pydantic import Field
 from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import DEAD_SWING
 from tmm_cli.problem import Value as FileValue, ValueReader
-from tmm_cli.synthesis.blocks import Block, numbers, one_of
-from tmm_cli.synthesis.construction import Construction, Segment, Size, Spot
-from tmm_cli.synthesis.measures import crank_turns, pressure, ratio, stroke, theta_of
-from tmm_cli.synthesis.record import Demand, Infeasible, Outcome, Value, given
-from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, Found as Lever, lever_parts
+from tmm_cli.synthesis.blocks import TaskBlock, choose_key_set, read_numbers
+from tmm_cli.synthesis.construction import DimensionLine, GeometricConstruction, LetteredPoint, Segment
+from tmm_cli.synthesis.measures import (
+    driver_completes_range,
+    largest_pressure_angle,
+    output_stroke,
+    theta_of,
+    time_ratio,
+)
+from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
+from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, SlottedLeverSolution as Lever, lever_elements
 
 
-def construction(f: Found) -> Construction:
+def draw_construction(f: ShaperSolution) -> GeometricConstruction:
     """The lever in its extreme positions, the guide midway in D's arc, the ram at both ends of its stroke; O at 0."""
     middle, half = np.pi / 2, float(f.theta) / 2
     lever = Lever(
         f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
     )
-    segments, arcs, spots, angles = lever_parts(lever, "D")
+    segments, arcs, spots, angles = lever_elements(lever, "D")
     reach = float(f.rod * np.cos(f.pressure))
     d1, d2 = (spot.at for spot in spots[-2:])
     e1, e2 = (complex(d.real + reach, float(f.level)) for d in (d1, d2))
@@ -36,11 +42,11 @@ def construction(f: Found) -> Construction:
         Segment(d1, d2, "dashed"),
         Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "axis"),
     ]
-    spots += [Spot("E1", e1, "slider"), Spot("E2", e2, "slider")]
+    spots += [LetteredPoint("E1", e1, "slider"), LetteredPoint("E2", e2, "slider")]
     top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
-    sizes = (Size(e1, e2, "H", 1 + 0j), Size(lever.o, e2, "y", 1j))
+    sizes = (DimensionLine(e1, e2, "H", 1 + 0j), DimensionLine(lever.o, e2, "y", 1j))
     lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
-    return Construction(
+    return GeometricConstruction(
         N_("Extreme positions of the shaper"),
         tuple(segments),
         tuple(arcs),
@@ -73,8 +79,8 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "rod_ratio": ("number", N_("DE/CD")),
     "pressure": ("angle", N_("largest pressure angle of the ram")),
 }
-FRAMES: Final = ("OC", "frame_ratio", "OA")
-RODS: Final = ("DE", "rod_ratio", "pressure")
+FRAME_KEYS: Final = ("OC", "frame_ratio", "OA")
+ROD_KEYS: Final = ("DE", "rod_ratio", "pressure")
 
 
 @dataclass(frozen=True)
@@ -92,7 +98,7 @@ class ShaperTask:
 
 
 @dataclass(frozen=True)
-class Found:
+class ShaperSolution:
     """Lengths (m), level: of the guide over O (m), theta and the largest pressure angle of the ram (rad)."""
 
     crank: Any
@@ -104,7 +110,7 @@ class Found:
     pressure: Any
 
 
-def find(task: ShaperTask) -> Found:
+def find_shaper(task: ShaperTask) -> ShaperSolution:
     """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
@@ -119,7 +125,7 @@ def find(task: ShaperTask) -> Found:
     else:
         rod = lever * task.rod_ratio if task.DE is None else np.asarray(task.DE)
     level = lever * (1 - half_height) - frame
-    return Found(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
+    return ShaperSolution(frame * sine, frame, lever, rod, level, theta, np.arcsin(np.minimum(rise / rod, 1)))
 
 
 def refuse(task: ShaperTask) -> None:
@@ -129,51 +135,53 @@ def refuse(task: ShaperTask) -> None:
     half = float(theta_of(task.k)) / 2
     if not np.pi - 2 * half > DEAD_SWING:
         raise Infeasible("k", HALF_A_TURN)
-    f = find(task)
+    f = find_shaper(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
-        raise Infeasible(_given_of(task, FRAMES), _("the stone would pass the hinge D of the rod"))
+        raise Infeasible(_given_key(task, FRAME_KEYS), _("the stone would pass the hinge D of the rod"))
     steepest = f.pressure if task.pressure is None else task.pressure
     if not steepest < np.pi / 2 - half:  # where the lever turns back, half its swing from the middle
         reason = _("the ram would turn back before the lever does: the rod is too steep")
-        raise Infeasible(_given_of(task, RODS), reason)
+        raise Infeasible(_given_key(task, ROD_KEYS), reason)
 
 
-def _given_of(task: ShaperTask, keys: tuple[str, ...]) -> str:
+def _given_key(task: ShaperTask, keys: tuple[str, ...]) -> str:
     return next(key for key in keys if getattr(task, key) is not None)
 
 
-def solve(task: ShaperTask) -> Outcome:
+def solve(task: ShaperTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
-    f = find(task)
+    f = find_shaper(task)
     kind, text = QUANTITIES["pressure"]
     found = (
-        Value("OA", f.crank, "length", N_("crank OA")),
-        Value("OC", f.frame, "length", N_("frame OC, C below O")),
-        Value("CD", f.lever, "length", N_("slotted lever CD")),
-        Value("DE", f.rod, "length", N_("rod DE")),
-        Value("y", f.level, "length", N_("guide of the ram above O, y")),
-        Value("", f.theta, "angle", N_("theta = D1CD2")),
-        *((Value("", f.pressure, kind, text),) if task.pressure is None else ()),
-        Value("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
+        NamedValue("OA", f.crank, "length", N_("crank OA")),
+        NamedValue("OC", f.frame, "length", N_("frame OC, C below O")),
+        NamedValue("CD", f.lever, "length", N_("slotted lever CD")),
+        NamedValue("DE", f.rod, "length", N_("rod DE")),
+        NamedValue("y", f.level, "length", N_("guide of the ram above O, y")),
+        NamedValue("", f.theta, "angle", N_("theta = D1CD2")),
+        *((NamedValue("", f.pressure, kind, text),) if task.pressure is None else ()),
+        NamedValue("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
     )
     demands = (
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(N_("stroke H of the ram"), float(task.stroke), "length", stroke),
-        Demand(N_("k"), float(task.k), "number", ratio),
-        Demand(text, float(f.pressure), kind, pressure, task.pressure is not None, of="pressure"),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("stroke H of the ram"), float(task.stroke), "length", output_stroke),
+        Demand(N_("k"), float(task.k), "number", time_ratio),
+        Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),
     )
     source = N_(
         "D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
         "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc"
     )
-    return Outcome(given(task, QUANTITIES), found, source, demands, (construction(f),), output="slide")
+    return SynthesisOutcome(
+        given_values(task, QUANTITIES), found, source, demands, (draw_construction(f),), output="slide"
+    )
 
 
 # Crank shaper by its stroke and k: keys of the task.
 
 
-class Shape(Block):
+class ShaperBlock(TaskBlock):
     """A crank shaper by stroke, k, frame OC (its ratio, or the crank) and rod DE (its ratio, or a pressure angle)."""
 
     task: Literal["shaper"]
@@ -189,8 +197,11 @@ class Shape(Block):
     )
 
 
-def read(shape: Shape, values: ValueReader) -> ShaperTask:
+BLOCK = ShaperBlock
+
+
+def read(shape: ShaperBlock, values: ValueReader) -> ShaperTask:
     """The task in SI. Raises ProblemError."""
-    for ways in (FRAMES, RODS):
-        one_of(shape, [(key,) for key in ways])
-    return ShaperTask(**numbers(shape, values, QUANTITIES))
+    for ways in (FRAME_KEYS, ROD_KEYS):
+        choose_key_set(shape, [(key,) for key in ways])
+    return ShaperTask(**read_numbers(shape, values, QUANTITIES))

@@ -13,15 +13,34 @@ from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import DEAD_SWING, settled, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError, Value as FileValue, ValueReader, Vector
-from tmm_cli.synthesis.blocks import Block, Range, numbers, one_of
-from tmm_cli.synthesis.construction import Angle, Arc, Construction, Diagram, Line, Segment, Spot, box, circle
-from tmm_cli.synthesis.measures import crank_turns, end_angle, k_of, ratio, stroke, theta_of
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value, given
+from tmm_cli.synthesis.blocks import Range, TaskBlock, choose_key_set, read_numbers
+from tmm_cli.synthesis.construction import (
+    Angle,
+    Arc,
+    Diagram,
+    DiagramLine,
+    GeometricConstruction,
+    LetteredPoint,
+    Segment,
+    circle_extent,
+    full_circle,
+)
+from tmm_cli.synthesis.measures import (
+    driver_completes_range,
+    k_of,
+    output_stroke,
+    stroke_end_angle,
+    theta_of,
+    time_ratio,
+)
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
-FAMILY: Final = 61  # lengths of OC within bounds that are listed
+FAMILY_SIZE: Final = 61  # lengths of OC within bounds that are listed
 
 
-def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot], list[Angle]]:
+def lever_elements(
+    f: SlottedLeverSolution, end: str
+) -> tuple[list[Segment], list[Arc], list[LetteredPoint], list[Angle]]:
     """The lever in its extreme positions, the bisector, the pin's circle that touches both; end: letter of its end."""
     c, o = complex(f.c), complex(f.o)
     lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
@@ -39,25 +58,25 @@ def lever_parts(f: Found, end: str) -> tuple[list[Segment], list[Arc], list[Spot
         Segment(c, o, "axis", "OC"),
         Segment(o, top, "axis"),
     ]
-    arcs = [circle(o, crank), Arc(c, lever, first, last, "dashed")]
+    arcs = [full_circle(o, crank), Arc(c, lever, first, last, "dashed")]
     spots = [
-        Spot("C", c, "support"),
-        Spot("O", o, "support"),
-        Spot("A1", pins[0], "stone", ways[0]),
-        Spot("A2", pins[1], "stone", ways[1]),
-        Spot(f"{end}1", ends[0], "hinge"),
-        Spot(f"{end}2", ends[1], "hinge"),
+        LetteredPoint("C", c, "support"),
+        LetteredPoint("O", o, "support"),
+        LetteredPoint("A1", pins[0], "stone", ways[0]),
+        LetteredPoint("A2", pins[1], "stone", ways[1]),
+        LetteredPoint(f"{end}1", ends[0], "hinge"),
+        LetteredPoint(f"{end}2", ends[1], "hinge"),
     ]
     corners = [Angle(pin, o, c, right=True) for pin in pins]
     return segments, arcs, spots, [Angle(c, ends[0], ends[1], "θ"), *corners]
 
 
-def construction(f: Found) -> Construction:
+def draw_construction(f: SlottedLeverSolution) -> GeometricConstruction:
     """Both extreme positions, with C by the isosceles triangle on B1B2 and O on the bisector."""
-    segments, arcs, spots, angles = lever_parts(f, "B")
+    segments, arcs, spots, angles = lever_elements(f, "B")
     b1, b2 = spots[-2].at, spots[-1].at
     segments.append(Segment(b1, b2, "dashed"))
-    return Construction(
+    return GeometricConstruction(
         N_("Extreme positions of the slotted lever"),
         tuple(segments),
         tuple(arcs),
@@ -65,7 +84,7 @@ def construction(f: Found) -> Construction:
         (N_("{O}{A}1 ⊥ {C}{B}1, {O}{A}2 ⊥ {C}{B}2"),),
         angles=tuple(angles),
         chain="slotted-lever",
-        wishes=(box(complex(f.o), float(f.crank)),),
+        wishes=(circle_extent(complex(f.o), float(f.crank)),),
         values=(
             ("OA", float(f.crank), "length"),
             ("OC", float(f.frame), "length"),
@@ -75,11 +94,11 @@ def construction(f: Found) -> Construction:
     )
 
 
-def family(task: SlottedLeverTask, f: Found) -> tuple[Diagram, Listing]:
+def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Diagram, Listing]:
     """OA and the stone's distances from C over the free distance OC within its bounds, drawn and in numbers."""
     assert task.within is not None
     low, high = (float(x) for x in task.within)
-    frame = np.linspace(low, high, FAMILY)
+    frame = np.linspace(low, high, FAMILY_SIZE)
     crank = frame * float(np.sin(f.theta / 2))
     rows = (
         ("OA", N_("crank OA"), crank),
@@ -88,9 +107,9 @@ def family(task: SlottedLeverTask, f: Found) -> tuple[Diagram, Listing]:
     )
     own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
-        *(Line(text, frame, values) for __, text, values in rows),
-        Line(N_("lever CB"), frame, np.full(FAMILY, float(f.lever))),
-        Line(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
+        *(DiagramLine(text, frame, values) for __, text, values in rows),
+        DiagramLine(N_("lever CB"), frame, np.full(FAMILY_SIZE, float(f.lever))),
+        DiagramLine(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
     )
     title = N_("Crank OA and distance of the stone from C, over OC within its bounds")
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
@@ -150,7 +169,7 @@ class SlottedLeverTask:
 
 
 @dataclass(frozen=True)
-class Found:
+class SlottedLeverSolution:
     """Lengths (m), places O and C (m), angles of CB1 and CB2 (rad); longest: OC that leaves the stone on CB."""
 
     crank: Any
@@ -164,7 +183,7 @@ class Found:
     longest: Any
 
 
-def find(task: SlottedLeverTask) -> Found:
+def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
     """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
     theta = task.theta
     sine = np.sin(theta / 2)
@@ -189,7 +208,9 @@ def find(task: SlottedLeverTask) -> Found:
         frame = np.asarray(task.within[0])
     size = lever + frame + np.abs(c)
     along, c = settled(along, 1.0), settled(c, size)
-    return Found(frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest)
+    return SlottedLeverSolution(
+        frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest
+    )
 
 
 def refuse(task: SlottedLeverTask) -> None:
@@ -204,71 +225,73 @@ def refuse(task: SlottedLeverTask) -> None:
         raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
         raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
-    if task.within is not None and task.within[0] > find(task).longest:
+    if task.within is not None and task.within[0] > find_slotted_lever(task).longest:
         raise Infeasible(("within", 0), _("within these bounds the stone always passes B"))
 
 
-def solve(task: SlottedLeverTask) -> Outcome:
+def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
     refuse(task)
-    f = find(task)
+    f = find_slotted_lever(task)
     demands = (
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(N_("k"), float(k_of(f.theta)), "number", ratio, task.k is not None),
-        Demand(N_("swing of the lever"), float(f.theta), "angle", stroke, task.swing is not None),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
+        Demand(N_("swing of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
         *(
-            Demand(text, float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+            Demand(text, float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
             for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))
         ),
     )
     notes = (N_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
-    free = family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
-    drawings, listings = ((construction(f), free[0]), (free[1],)) if free else ((construction(f),), ())
+    free = tabulate_family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
+    drawings, listings = ((draw_construction(f), free[0]), (free[1],)) if free else ((draw_construction(f),), ())
     source = N_(
         "OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
         "on the bisector, OA = OC sin(theta/2)"
     )
-    return Outcome(_given(task), _found(task, f), source, demands, drawings, notes, listings, output="swing")
+    return SynthesisOutcome(
+        _given_values(task), _found_values(task, f), source, demands, drawings, notes, listings, output="swing"
+    )
 
 
-def _given(task: SlottedLeverTask) -> tuple[Value, ...]:
-    values: list[Value] = []
+def _given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
+    values: list[NamedValue] = []
     if task.CB is None:
         for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
-            values += [Value("", np.real(place), "length", x), Value("", np.imag(place), "length", y)]
-    values += given(task, QUANTITIES)
+            values += [NamedValue("", np.real(place), "length", x), NamedValue("", np.imag(place), "length", y)]
+    values += given_values(task, QUANTITIES)
     if task.within is not None:
         force = N_("least force: the longest that leaves the stone on CB")
         values += [
-            Value("", task.within[0], "length", N_("frame OC, at least")),
-            Value("", task.within[1], "length", N_("frame OC, at most")),
-            Value("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
+            NamedValue("", task.within[0], "length", N_("frame OC, at least")),
+            NamedValue("", task.within[1], "length", N_("frame OC, at most")),
+            NamedValue("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
         ]
     return tuple(values)
 
 
-def _found(task: SlottedLeverTask, f: Found) -> tuple[Value, ...]:
+def _found_values(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[NamedValue, ...]:
     away = f.o - f.c
     return (
-        Value("OA", f.crank, *QUANTITIES["OA"]),
-        Value("OC", f.frame, *QUANTITIES["OC"]),
-        Value("CB", f.lever, *QUANTITIES["CB"]),
-        Value("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
-        Value("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
-        Value("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
-        Value("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
-        Value(
+        NamedValue("OA", f.crank, *QUANTITIES["OA"]),
+        NamedValue("OC", f.frame, *QUANTITIES["OC"]),
+        NamedValue("CB", f.lever, *QUANTITIES["CB"]),
+        NamedValue("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
+        NamedValue("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
+        NamedValue("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
+        NamedValue("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
+        NamedValue(
             "phi",
             np.arctan2(np.imag(away), np.real(away)),
             "angle",
             N_("direction from C to O, of crank and lever when they are in line"),
         ),
-        Value("", f.theta, "angle", N_("theta = B1CB2")),
-        Value("", f.frame - f.crank, "length", N_("stone from C, at least")),
-        Value("", f.frame + f.crank, "length", N_("stone from C, at most")),
-        Value("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
+        NamedValue("", f.theta, "angle", N_("theta = B1CB2")),
+        NamedValue("", f.frame - f.crank, "length", N_("stone from C, at least")),
+        NamedValue("", f.frame + f.crank, "length", N_("stone from C, at most")),
+        NamedValue("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
         # in the slow stroke the crank turns as the lever does
-        Value(
+        NamedValue(
             "",
             N_("counterclockwise") if task.side > 0 else N_("clockwise"),
             "word",
@@ -280,12 +303,12 @@ def _found(task: SlottedLeverTask, f: Found) -> tuple[Value, ...]:
 # Slotted lever by k and its extreme positions: keys of the task.
 
 
-ENDS = (("B1", "B2"), ("CB",))
-SWINGS = (("k",), ("swing",))
-FRAMES = (("OC",), ("OA",), ("within",))
+END_KEYS = (("B1", "B2"), ("CB",))
+SWING_KEYS = (("k",), ("swing",))
+FRAME_KEYS = (("OC",), ("OA",), ("within",))
 
 
-class Shape(Block):
+class SlottedLeverBlock(TaskBlock):
     """A slotted lever by the extreme places of its end B (or its length) and k (or its swing)."""
 
     task: Literal["slotted-lever"]
@@ -308,11 +331,14 @@ class Shape(Block):
     )
 
 
-def read(shape: Shape, values: ValueReader) -> SlottedLeverTask:
+BLOCK = SlottedLeverBlock
+
+
+def read(shape: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
     """The task in SI. Raises ProblemError."""
-    ends, *__ = (one_of(shape, sets) for sets in (ENDS, SWINGS, FRAMES))
-    _only_with(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
-    found = numbers(shape, values, QUANTITIES)
+    ends, *__ = (choose_key_set(shape, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
+    _check_companions(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
+    found = read_numbers(shape, values, QUANTITIES)
     if ends == ("CB",):
         found["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
         found["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
@@ -325,7 +351,7 @@ def read(shape: Shape, values: ValueReader) -> SlottedLeverTask:
     return SlottedLeverTask(**found, side=1 if shape.C == "left" else -1, choose=choose)
 
 
-def _only_with(shape: Shape, needs: dict[str, tuple[str, ...]]) -> None:
+def _check_companions(shape: SlottedLeverBlock, needs: dict[str, tuple[str, ...]]) -> None:
     for key, others in needs.items():
         lacking = [other for other in others if getattr(shape, other) is None]
         if getattr(shape, key) is not None and lacking:

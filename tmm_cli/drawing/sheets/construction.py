@@ -28,7 +28,15 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import KINDS
 from tmm_cli.problem import UnitSystem
-from tmm_cli.synthesis import LETTERS, Arc, Centre, Chain, Construction, Size, Spot
+from tmm_cli.synthesis import (
+    CHAIN_LETTERS,
+    Arc,
+    Chain,
+    CircleCentre,
+    DimensionLine,
+    GeometricConstruction,
+    LetteredPoint,
+)
 
 FREE = "MNKQSTUVWXYZ"  # letters of centres of circles
 BARS = {"l1": "AB", "l2": "BC", "l3": "DC", "l4": "AD"}
@@ -36,10 +44,10 @@ NEAR = 1e-6  # relative: a link as long as that of the construction
 
 
 def rename(
-    drawn: Construction, linkage: Linkage | None, names: Mapping[str, str]
-) -> tuple[Construction, Mapping[str, str]]:
+    drawn: GeometricConstruction, linkage: Linkage | None, names: Mapping[str, str]
+) -> tuple[GeometricConstruction, Mapping[str, str]]:
     """The construction in the user's letters, and these letters by those of its words."""
-    own = {letter: letter for letter in LETTERS.get(drawn.chain, "")}
+    own = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
     if linkage is not None:
         own |= joints(linkage, drawn.chain, drawn)
     taken = set(own.values()) | {spot.name[:1] for spot in drawn.spots if spot.name[:1] not in own}
@@ -72,9 +80,9 @@ def rename(
     return named, {**own, "M": centre}
 
 
-def joints(linkage: Linkage, chain: Chain, drawn: Construction) -> dict[str, str]:
+def joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
     """Names of joints along the chain from the driver; none where the linkage is another one, or drives elsewhere."""
-    driver, letters = linkage.driver, LETTERS.get(chain, "")
+    driver, letters = linkage.driver, CHAIN_LETTERS.get(chain, "")
     if not letters or driver.kind != "turn":
         return {}
     link, found = driver.link, [driver.joint]
@@ -123,7 +131,7 @@ BOXES = {"slider": MEASURED.box, "stone": MEASURED.stone}
 
 def draw_construction(
     title: str,
-    drawn: Construction,
+    drawn: GeometricConstruction,
     units: UnitSystem,
     linkage: Linkage | None = None,
     names: Mapping[str, str] | None = None,
@@ -167,7 +175,7 @@ def draw_construction(
     return sheet
 
 
-def granted(drawn: Construction) -> list[complex]:
+def granted(drawn: GeometricConstruction) -> list[complex]:
     """Places (m) on the sheet: the mechanism, and wishes that do not make it too small."""
     points = drawn.places()
     most = SMALLER * sheet_scale(points, PAD)[1]
@@ -239,7 +247,7 @@ def _along(sheet: Sheet, arc: Arc) -> list[complex]:
     return [complex(centre + radius * z) for z in np.exp(1j * np.linspace(start, end, count))]
 
 
-def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
+def _centre(sheet: Sheet, centre: CircleCentre, units: UnitSystem) -> None:
     """The centre with lines to it; where it is off the sheet, arrows towards it with its distance."""
     at, (low, high) = sheet.on(centre.at), sheet.field
     legs = [sheet.on(leg) for leg in centre.legs]
@@ -262,7 +270,7 @@ def _centre(sheet: Sheet, centre: Centre, units: UnitSystem) -> None:
     sheet.labels.append(Label(text, (ahead[0] + ahead[1]) / 2, 9, DARK, line=ahead))
 
 
-def _spot(sheet: Sheet, spot: Spot, rods: Sequence[Line]) -> None:
+def _spot(sheet: Sheet, spot: LetteredPoint, rods: Sequence[Line]) -> None:
     at = sheet.on(spot.at)
     if spot.mark in BOXES:
         along = spot.along / abs(spot.along)
@@ -277,7 +285,7 @@ def _spot(sheet: Sheet, spot: Spot, rods: Sequence[Line]) -> None:
         sheet.circle(at, MEASURED.hinge)
 
 
-def _size(sheet: Sheet, size: Size, units: UnitSystem) -> None:
+def _size(sheet: Sheet, size: DimensionLine, units: UnitSystem) -> None:
     """A dimension line; its value has no unit."""
     way = size.end - size.start
     length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
@@ -294,7 +302,7 @@ def _value(name: str, value: float, kind: str, units: UnitSystem, *, symbol: boo
     return f"{name} = {text} {unit}".rstrip()
 
 
-def _notes(sheet: Sheet, drawn: Construction, letters: Mapping[str, str], units: UnitSystem) -> None:
+def _notes(sheet: Sheet, drawn: GeometricConstruction, letters: Mapping[str, str], units: UnitSystem) -> None:
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     values = [_value(*row, units) for row in drawn.values]
     for k in range(0, len(values), 3):

@@ -35,13 +35,17 @@ from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE, KINDS, Dimension
 from tmm_cli.problem import UnitSystem
-from tmm_cli.synthesis import Diagram, Line, Outcome
+from tmm_cli.synthesis import Diagram, DiagramLine, SynthesisOutcome
 
 ENDS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 
 
 def draw_synthesis(
-    title: str, outcome: Outcome, results: Results | None, units: UnitSystem, names: Mapping[str, str] | None = None
+    title: str,
+    outcome: SynthesisOutcome,
+    results: Results | None,
+    units: UnitSystem,
+    names: Mapping[str, str] | None = None,
 ) -> Iterable[tuple[str, Drawing]]:
     """What the task draws, and the extreme positions, if there is a mechanism with strokes.
 
@@ -80,7 +84,7 @@ def diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     return sheet.finish()
 
 
-def _plot(lines: Iterable[Line], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> Plot:
+def _plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> Plot:
     """Curves of a panel, those behind the others first."""
     words, kind = y
     high = KINDS[kind].dimension

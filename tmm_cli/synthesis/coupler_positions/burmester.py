@@ -19,14 +19,14 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.mechanics.numerics import DEAD_COSINE, NO_TURN
-from tmm_cli.synthesis.four_bar import sharpest
+from tmm_cli.synthesis.four_bar import extreme_cosine
 
 EXACT: Final = np.longdouble
 COMPLEX: Final = np.clongdouble
 
 
 @dataclass(frozen=True)
-class Poses:
+class CouplerPoses:
     """Places (m) and angles (rad), positions on the last axis."""
 
     places: Any
@@ -34,17 +34,17 @@ class Poses:
 
     def on_frame(self, local: Any) -> Any:
         """Places of points of the plane, positions on a last axis more."""
-        return self.places + np.asarray(local, COMPLEX)[..., None] * unit(self.angles)
+        return self.places + np.asarray(local, COMPLEX)[..., None] * unit_vector(self.angles)
 
     def in_plane(self, fixed: Any) -> Any:
         """Points of the frame in the plane's axes, in every position."""
-        return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit(-np.asarray(self.angles))
+        return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit_vector(-np.asarray(self.angles))
 
     @cached_property
     def loop(self) -> tuple[Any, ...]:
         """Of the closed four-bar of four positions: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4."""
         places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
-        d, a = places[..., 1:] - places[..., :1], unit(angles[..., 1:] - angles[..., :1]) - 1
+        d, a = places[..., 1:] - places[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
         d2, d3, d4 = (
             a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1],
             a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
@@ -64,7 +64,7 @@ class Dyads:
         return Dyads(np.asarray(self.pivot)[at], np.asarray(self.pin)[at])
 
 
-def unit(angle: Any) -> Any:
+def unit_vector(angle: Any) -> Any:
     """e^(i angle) in extended precision."""
     angle = np.asarray(angle, EXACT)
     return np.cos(angle) + 1j * np.sin(angle)
@@ -72,10 +72,10 @@ def unit(angle: Any) -> Any:
 
 def equal_angles(angles: Any) -> bool:
     """Whether the plane does not turn between positions of these angles (rad)."""
-    return bool(np.all(np.abs(unit(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
+    return bool(np.all(np.abs(unit_vector(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
 
 
-def centre(places: Any) -> Any:
+def circle_centre(places: Any) -> Any:
     """Centre of the circle through three places (last axis); infinite or nan where they lie on a line."""
     first, second = places[..., 1] - places[..., 0], places[..., 2] - places[..., 0]
     with np.errstate(all="ignore"):
@@ -84,7 +84,7 @@ def centre(places: Any) -> Any:
         return places[..., 0] - 1j * square / (2 * area)
 
 
-def beside(places: Any, radius: Any, side: float) -> Any:
+def point_at_distance(places: Any, radius: Any, side: float) -> Any:
     """The point at a distance from two places (last axis), to the left (1) or right (-1) of the way between them."""
     way = places[..., 1] - places[..., 0]
     half = np.abs(way) / 2
@@ -93,13 +93,13 @@ def beside(places: Any, radius: Any, side: float) -> Any:
     return (places[..., 0] + places[..., 1]) / 2 + 1j * side * height * way / (2 * half)
 
 
-def by_turn(poses: Poses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
+def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
     """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none.
 
     ends: turns are known to have dyads, and are not outside the last ones but for rounding.
     """
     places, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
-    second = unit(turn)
+    second = unit_vector(turn)
     rest = total - d2 * second
     with np.errstate(all="ignore"):
         length = np.abs(rest)
@@ -110,12 +110,12 @@ def by_turn(poses: Poses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
         least = (second - 1) * a[..., 1] - (third - 1) * a[..., 0]
         w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least
         z = ((second - 1) * d[..., 1] - (third - 1) * d[..., 0]) / least
-    pin = -z * unit(-np.asarray(poses.angles, EXACT)[..., 0])
+    pin = -z * unit_vector(-np.asarray(poses.angles, EXACT)[..., 0])
     return Dyads(places[..., 0] - z - w, pin)
 
 
 @dataclass(frozen=True)
-class Marks:
+class GuidanceQuality:
     """Of four-bars ABCD driven by AB from the first to the last position.
 
     defect: 0 none, 1 positions on two assemblies, 2 not in order, 3 AB locks; least: transmission angle (rad); turn: of
@@ -128,7 +128,7 @@ class Marks:
     worst: Any
 
 
-def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
+def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQuality:
     """Marks of the four-bars of dyads AB and DC (broadcast together)."""
     b, c = poses.on_frame(first.pin), poses.on_frame(second.pin)
     a, d = np.asarray(first.pivot)[..., None], np.asarray(second.pivot)[..., None]
@@ -144,14 +144,14 @@ def marks(poses: Poses, first: Dyads, second: Dyads) -> Marks:
     for turn in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
         low, high = phi[..., 0] + np.minimum(turn, 0), phi[..., 0] + np.maximum(turn, 0)
         with np.errstate(all="ignore"):
-            largest, where = sharpest((l1, l2, l3, l4), low, high)
+            largest, where = extreme_cosine((l1, l2, l3, l4), low, high)
         locks = ~(largest < dead)
         back = np.abs(turn) >= 2 * np.pi
         defect = np.where(branch, 1, np.where(back, 2, np.where(locks, 3, 0)))
         found.append((defect, np.arccos(np.clip(largest, 0, 1)), turn, where))
     one, other = found
     better = (one[0] < other[0]) | ((one[0] == other[0]) & (one[1] >= other[1]))
-    return Marks(*(np.where(better, x, y) for x, y in zip(one, other, strict=True)))
+    return GuidanceQuality(*(np.where(better, x, y) for x, y in zip(one, other, strict=True)))
 
 
 # What is asked of a four-bar whose coupler takes given positions.
@@ -161,7 +161,7 @@ SIDES: Final = {"left": 1.0, "right": -1.0}
 
 
 @dataclass(frozen=True)
-class Side:
+class DyadData:
     """What is given of a dyad: its pin (coupler's axes) or its pivot (m); length (m) and side with two positions; with
     four the turn from position 1 to 2 (rad) and branch (0 or 1), or a place (m) that its pivot shall be near to."""
 
@@ -183,13 +183,13 @@ class CouplerPositionsTask:
 
     places: tuple[Any, ...]
     angles: tuple[Any, ...]
-    sides: Mapping[str, Side] = field(default_factory=dict)
+    sides: Mapping[str, DyadData] = field(default_factory=dict)
     keep: bool = False
     within: tuple[complex, complex] | None = None
 
     @property
-    def poses(self) -> Poses:
-        return Poses(np.asarray(self.places, np.clongdouble), np.asarray(self.angles, np.longdouble))
+    def poses(self) -> CouplerPoses:
+        return CouplerPoses(np.asarray(self.places, np.clongdouble), np.asarray(self.angles, np.longdouble))
 
     @property
     def still(self) -> bool:

@@ -14,7 +14,15 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.mechanics.numerics import bisect
-from tmm_cli.synthesis.coupler_positions.burmester import EXACT, Dyads, Poses, by_turn, centre, equal_angles, unit
+from tmm_cli.synthesis.coupler_positions.burmester import (
+    EXACT,
+    CouplerPoses,
+    Dyads,
+    circle_centre,
+    dyads_by_rotation,
+    equal_angles,
+    unit_vector,
+)
 
 APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between
 FIRST, ROUNDS = 512, 9  # places of a loop that are looked at first, then rounds between those that are far apart
@@ -24,10 +32,10 @@ FULL: Final = 4 * HALF
 
 
 @dataclass(frozen=True)
-class Loops:
+class RotationLoops:
     """Loops of b2 (rad): its middle, half its way (nan: it turns fully) and the branch of those that turn fully."""
 
-    poses: Poses
+    poses: CouplerPoses
     middle: Any
     half: Any
     branch: Any
@@ -38,32 +46,32 @@ class Loops:
         middle, half, branch = (np.asarray(x)[loop] for x in (self.middle, self.half, self.branch))
         turns = np.isnan(half)
         turn = np.where(turns, t, middle + np.where(turns, 0, half) * np.cos(t))
-        return by_turn(self.poses, turn, np.where(turns, branch, np.sin(t) < 0), ends=True)
+        return dyads_by_rotation(self.poses, turn, np.where(turns, branch, np.sin(t) < 0), ends=True)
 
     def __len__(self) -> int:
         return len(self.middle)
 
 
 @dataclass(frozen=True)
-class Circle:
+class PinCircle:
     """Pins on a circle, all with the same arm (complex, m) in the position `of`: three positions of one angle."""
 
-    poses: Poses
+    poses: CouplerPoses
     of: int
     arm: Any
     middle: Any
     radius: Any
 
     def at(self, _: Any, t: Any) -> Dyads:
-        pin = self.middle + self.radius * unit(t)
-        return Dyads(self.poses.places[self.of] + pin * unit(self.poses.angles[self.of]) - self.arm, pin)
+        pin = self.middle + self.radius * unit_vector(t)
+        return Dyads(self.poses.places[self.of] + pin * unit_vector(self.poses.angles[self.of]) - self.arm, pin)
 
     def __len__(self) -> int:
         return 1
 
 
 @dataclass(frozen=True)
-class One:
+class GivenDyad:
     """A dyad that is given."""
 
     dyad: Dyads
@@ -75,14 +83,14 @@ class One:
         return 1
 
 
-Curve = Loops | Circle | One
+DyadCurve = RotationLoops | PinCircle | GivenDyad
 
 
 @dataclass(frozen=True)
-class Rows:
+class CurveSamples:
     """Parts of a curve end to end: places t of all, about evenly apart, loops of each, ends of its part as numbers."""
 
-    curve: Curve
+    curve: DyadCurve
     t: Any
     loop: Any
     low: Any
@@ -95,12 +103,12 @@ class Rows:
         return self.curve.at(self.loop[here], self.t[here] + (x - here) * (self.t[beyond] - self.t[here]))
 
 
-def curve(poses: Poses) -> Curve:
+def burmester_curve(poses: CouplerPoses) -> DyadCurve:
     """Burmester's curve of four positions that do not all have one angle."""
     for odd in range(4):
         rest = [k for k in range(4) if k != odd]
         if equal_angles(poses.angles[rest]):
-            return _circle(poses, rest, odd)
+            return _pin_circle(poses, rest, odd)
     *__, d2, _, size3, size4, total = poses.loop
     over, about = 2 * np.abs(total * d2), np.abs(total) ** 2 + np.abs(d2) ** 2
     toward = np.angle(total * np.conj(d2))
@@ -116,27 +124,29 @@ def curve(poses: Poses) -> Curve:
         near, far = np.arccos(high), np.arccos(low)
         rows = [(toward + side * (near + far) / 2, (far - near) / 2, 0) for side in (-1, 1)]
     middle, half, branch = (np.array(x) for x in zip(*rows, strict=True))
-    return Loops(poses, middle.astype(EXACT), half.astype(EXACT), branch)
+    return RotationLoops(poses, middle.astype(EXACT), half.astype(EXACT), branch)
 
 
-def _circle(poses: Poses, equal: list[int], odd: int) -> Circle:
+def _pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
     """|B - A| is the same in the odd position: |c + m g| = |arm| for the pin m."""
     first = equal[0]
-    arm = poses.places[first] - centre(poses.places[equal])
-    turned = unit(poses.angles[[first, odd]])
+    arm = poses.places[first] - circle_centre(poses.places[equal])
+    turned = unit_vector(poses.angles[[first, odd]])
     g = turned[1] - turned[0]
-    return Circle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
+    return PinCircle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
 
 
-def scanned(found: Curve, size: float) -> list[Any]:
+def scan_curve(found: DyadCurve, size: float) -> list[Any]:
     """Parameters all round every loop, nearer to each other where dyads of a sensible place change fast."""
-    return [] if isinstance(found, One) else [_scanned(found, loop, size) for loop in range(len(found))]
+    return [] if isinstance(found, GivenDyad) else [_scan_loop(found, loop, size) for loop in range(len(found))]
 
 
-def parts(found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int) -> Rows | None:
+def sample_parts(
+    found: DyadCurve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int
+) -> CurveSamples | None:
     """The parts where dyads are good, with about `count` places in all; their ends are exact but for few halvings."""
-    if isinstance(found, One):
-        return Rows(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
+    if isinstance(found, GivenDyad):
+        return CurveSamples(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
     rows = []
     for loop, t in enumerate(scans):
         here = good(found.at(loop, t))
@@ -148,7 +158,7 @@ def parts(found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: fl
         high = np.concatenate([high, t[-1:] if here[-1] else t[:0]])
         for a, b in zip(low, high, strict=True):
             inner = np.concatenate([[a], t[(t > a) & (t < b)], [b]])
-            way = np.cumsum(np.concatenate([[0], _gaps(found.at(loop, inner), size)]))
+            way = np.cumsum(np.concatenate([[0], _relative_gaps(found.at(loop, inner), size)]))
             rows.append((loop, inner, np.asarray(way, float)))
     total = sum(way[-1] for _, _, way in rows)
     made = []
@@ -164,19 +174,19 @@ def parts(found: Curve, scans: list[Any], good: Callable[[Dyads], Any], size: fl
     ends = np.cumsum(counts)
     loops = np.repeat([loop for loop, __ in made], counts)
     first, last = np.repeat(ends - counts, counts), np.repeat(ends - 1, counts)
-    return Rows(found, np.concatenate([t for __, t in made]), loops, first, last)
+    return CurveSamples(found, np.concatenate([t for __, t in made]), loops, first, last)
 
 
-def _scanned(found: Loops | Circle, loop: int, size: float) -> Any:
+def _scan_loop(found: RotationLoops | PinCircle, loop: int, size: float) -> Any:
     def wide(t: Any) -> Any:
         dyads = found.at(loop, t)
         near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size
-        return (near[1:] | near[:-1]) & ~(_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
+        return (near[1:] | near[:-1]) & ~(_relative_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
 
-    return denser(wide, FIRST, ROUNDS)
+    return refine_parameters(wide, FIRST, ROUNDS)
 
 
-def denser(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
+def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
     """Parameters all round a loop: so many steps first, then more in the middle of those that are too wide."""
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
@@ -187,7 +197,7 @@ def denser(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
     return t
 
 
-def _gaps(dyads: Dyads, size: float) -> Any:
+def _relative_gaps(dyads: Dyads, size: float) -> Any:
     """How far neighbours are from each other, over the size of the task."""
     with np.errstate(all="ignore"):
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
@@ -210,11 +220,11 @@ RETURN: Final = 1.5  # in the same: a curve that comes back from no farther off 
 Places = tuple[complex, ...]
 
 
-def lines(poses: Poses, about: Sequence[complex]) -> tuple[list[Places], list[Places]]:
+def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list[Places], list[Places]]:
     """Centre points and circle points in position 1 (m), near places of a mechanism; none where all angles are one."""
     if equal_angles(poses.angles):
         return [], []
-    found, box = curve(poses), np.array(about)
+    found, box = burmester_curve(poses), np.array(about)
     middle = complex(box.real.max() + box.real.min(), box.imag.max() + box.imag.min()) / 2
     size = float(max(np.ptp(box.real), np.ptp(box.imag)))
 
@@ -225,24 +235,24 @@ def lines(poses: Poses, about: Sequence[complex]) -> tuple[list[Places], list[Pl
         return (np.asarray(poses.on_frame(found.at(loop, t).pin)[..., 0], complex) - middle) / size
 
     kinds = pivots, pins
-    rows = [[tuple((middle + size * part).tolist()) for part in _parts(found, at)] for at in kinds]
+    rows = [[tuple((middle + size * part).tolist()) for part in _split_pieces(found, at)] for at in kinds]
     return rows[0], rows[1]
 
 
-def _parts(found: Curve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
+def _split_pieces(found: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
     """Pieces of a curve (sizes of the mechanism, its middle at 0): from edge to edge, or whole loops."""
     for loop in range(len(found)):
         with np.errstate(all="ignore"):
-            places = _dense(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
+            places = _sample_densely(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
             broken = ~(np.abs(np.diff(places)) < BREAK * np.maximum(1, np.abs(places[1:])))
-            broken |= ~(_near(places[1:]) | _near(places[:-1]))
+            broken |= ~(_is_near(places[1:]) | _is_near(places[:-1]))
         parts = [part for part in np.split(places, np.flatnonzero(broken) + 1) if len(part) > 1]
         if len(parts) > 1 and not (broken[0] or broken[-1]):  # the loop starts in the middle of a piece
             parts = [np.concatenate([parts[-1], parts[0][1:]]), *parts[1:-1]]
         yield from parts
 
 
-def _dense(at: Callable[[Any], Any]) -> Any:
+def _sample_densely(at: Callable[[Any], Any]) -> Any:
     """Places all round a loop, as near to each other as a drawing needs."""
 
     def wide(t: Any) -> Any:
@@ -253,17 +263,17 @@ def _dense(at: Callable[[Any], Any]) -> Any:
         seen = np.abs(steps) > SHORT
         found[1:] |= bends & seen[1:]
         found[:-1] |= bends & seen[:-1]
-        return found & (_near(places[1:]) | _near(places[:-1])) & (np.diff(t) > CLOSE * FULL)
+        return found & (_is_near(places[1:]) | _is_near(places[:-1])) & (np.diff(t) > CLOSE * FULL)
 
-    places = at(denser(wide, FIRST_STEPS, BENDING_ROUNDS))
+    places = at(refine_parameters(wide, FIRST_STEPS, BENDING_ROUNDS))
     return places[np.isfinite(places)]
 
 
-def _near(places: Any) -> Any:
+def _is_near(places: Any) -> Any:
     return np.isfinite(places) & (np.abs(places.real) < FAR) & (np.abs(places.imag) < FAR)
 
 
-def frame(bar: Sequence[complex], found: Sequence[Places]) -> Places:
+def sheet_extent(bar: Sequence[complex], found: Sequence[Places]) -> Places:
     """Places (m) that the sheet of the curves holds: a four-bar, curves beside it, and ways of these that come back."""
     places = np.array(bar)
     low, high = (complex(f(places.real), f(places.imag)) for f in (np.min, np.max))

@@ -20,19 +20,26 @@ from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import SAME_PLACES, least
 from tmm_cli.synthesis.coupler_positions.burmester import (
     SIDES,
+    CouplerPoses,
     CouplerPositionsTask,
+    DyadData,
     Dyads,
-    Marks,
-    Poses,
-    Side,
-    beside,
-    by_turn,
-    centre,
-    marks,
-    unit,
+    GuidanceQuality,
+    circle_centre,
+    dyads_by_rotation,
+    point_at_distance,
+    rate_guidance,
+    unit_vector,
 )
-from tmm_cli.synthesis.coupler_positions.curve import Curve, One, Rows, curve, parts, scanned
-from tmm_cli.synthesis.four_bar import sharpest
+from tmm_cli.synthesis.coupler_positions.curve import (
+    CurveSamples,
+    DyadCurve,
+    GivenDyad,
+    burmester_curve,
+    sample_parts,
+    scan_curve,
+)
+from tmm_cli.synthesis.four_bar import extreme_cosine
 from tmm_cli.synthesis.record import Infeasible
 
 COUNT: Final = 400  # places on a curve, about
@@ -42,7 +49,7 @@ APART, REACH = 0.05, 2.0  # steps between places: what differs; how far from the
 
 
 @dataclass(frozen=True)
-class Limits:
+class LinkLimits:
     """Shortest and longest of the links, of the frame and of the coupler (m); how far pivots are outside a box (m)."""
 
     shortest: float
@@ -53,17 +60,17 @@ class Limits:
 
 
 def best_on_curves(
-    poses: Poses, size: float, limits: Limits, given: dict[str, Dyads], loose: bool = False
+    poses: CouplerPoses, size: float, limits: LinkLimits, given: dict[str, Dyads], loose: bool = False
 ) -> tuple[Dyads, Dyads, float] | None:
     """Dyads AB and DC and how good they are: the least transmission angle (rad), or less than zero where there is a
     defect, or the coupler or frame is not sensible. None where no link is sensible. loose: branches are not asked for.
     """
-    whole = curve(poses)
-    scans = scanned(whole, size)
+    whole = burmester_curve(poses)
+    scans = scan_curve(whole, size)
 
-    def rows(name: str, order: Poses | None) -> Rows | None:
-        found = One(given[name]) if name in given else whole
-        return _rows(poses, found, scans, size, limits, order)
+    def rows(name: str, order: CouplerPoses | None) -> CurveSamples | None:
+        found = GivenDyad(given[name]) if name in given else whole
+        return _sample_sensible(poses, found, scans, size, limits, order)
 
     one, other = rows("AB", None if loose else poses), rows("DC", None)
     if one is None and not loose:
@@ -72,19 +79,19 @@ def best_on_curves(
         return None
 
     def score(x: Any, y: Any) -> Any:
-        return scored(poses, one.at(x), other.at(y), limits, loose)
+        return rate_pairs(poses, one.at(x), other.at(y), limits, loose)
 
     table = score(np.arange(len(one.t))[:, None], np.arange(len(other.t))[None, :])
-    x, y = _starts(table, one, other)
-    x, y, value = _climbed(score, x, y, one, other)
-    x, y, value = _finished(score, x, y, value, one, other)
+    x, y = _local_peaks(table, one, other)
+    x, y, value = _climb(score, x, y, one, other)
+    x, y, value = _refine_best(score, x, y, value, one, other)
     at = int(np.argmax(value))
     return one.at(x[at : at + 1])[0], other.at(y[at : at + 1])[0], float(value[at])
 
 
-def _rows(
-    poses: Poses, found: Curve, scans: list[Any], size: float, limits: Limits, order: Poses | None
-) -> Rows | None:
+def _sample_sensible(
+    poses: CouplerPoses, found: DyadCurve, scans: list[Any], size: float, limits: LinkLimits, order: CouplerPoses | None
+) -> CurveSamples | None:
     def good(dyads: Dyads) -> Any:
         with np.errstate(all="ignore"):
             b = poses.on_frame(dyads.pin)
@@ -98,10 +105,10 @@ def _rows(
             turn = steps.sum(-1)
             return sound & ((turn < 2 * np.pi) | (turn > 2 * np.pi * (steps.shape[-1] - 1)))
 
-    return parts(found, scans, good, size, COUNT)
+    return sample_parts(found, scans, good, size, COUNT)
 
 
-def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool = False) -> Any:
+def rate_pairs(poses: CouplerPoses, one: Dyads, other: Dyads, limits: LinkLimits, loose: bool = False) -> Any:
     """Least transmission angles (rad) of four-bars (broadcast together) on the way through the positions; less than
     zero where that cannot be, and the less the farther it is from what can.
     """
@@ -117,7 +124,7 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
         value: Any = -np.inf
         for steps in (turned, turned - 2 * np.pi):
             way = steps.sum(-1)
-            worst, __ = sharpest((l1, l2, l3, l4), start + np.minimum(way, 0), start + np.maximum(way, 0))
+            worst, __ = extreme_cosine((l1, l2, l3, l4), start + np.minimum(way, 0), start + np.maximum(way, 0))
             back = np.maximum(0, np.abs(way) - 2 * np.pi + 1e-12)
             wrong = branch + np.maximum(0, worst - 1) + (0 if loose else back)
             value = np.maximum(value, np.where(wrong > 0, -wrong, np.arccos(np.minimum(worst, 1))))
@@ -128,7 +135,7 @@ def scored(poses: Poses, one: Dyads, other: Dyads, limits: Limits, loose: bool =
     return np.where(np.isfinite(value), value, -99.0)
 
 
-def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
+def _local_peaks(table: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any]:
     """Places (numbers) of pairs that are not worse than their neighbours on the same parts, the best first."""
     top = np.ones(table.shape, bool)
     for axis, rows in enumerate((one, other)):
@@ -141,7 +148,7 @@ def _starts(table: Any, one: Rows, other: Rows) -> tuple[Any, Any]:
     return x[order].astype(float), y[order].astype(float)
 
 
-def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
+def _climb(score: Any, x: Any, y: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any, Any]:
     """Starts improved together: a small table round each, smaller where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((one, x), (other, y))]
@@ -161,13 +168,15 @@ def _climbed(score: Any, x: Any, y: Any, one: Rows, other: Rows) -> tuple[Any, A
     return x, y, value
 
 
-def _finished(score: Any, x: Any, y: Any, value: Any, one: Rows, other: Rows) -> tuple[Any, Any, Any]:
+def _refine_best(
+    score: Any, x: Any, y: Any, value: Any, one: CurveSamples, other: CurveSamples
+) -> tuple[Any, Any, Any]:
     """The best places that differ, improved: of the best place of DC for every place of AB the best."""
     kept: list[int] = []
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
             kept.append(k)
-    (low, high), (first, last) = (_about(rows, at[kept]) for rows, at in ((one, x), (other, y)))
+    (low, high), (first, last) = (_search_interval(rows, at[kept]) for rows, at in ((one, x), (other, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
         """The best places of DC for places of AB, those of all starts again and again; how bad they are."""
@@ -178,7 +187,7 @@ def _finished(score: Any, x: Any, y: Any, value: Any, one: Rows, other: Rows) ->
     return x, of_best(x)[0], -bad
 
 
-def _about(rows: Rows, at: Any) -> tuple[Any, Any]:
+def _search_interval(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
     """Ends of the ways to both sides of places within which their peak is looked for."""
     here = at.astype(int)
     return np.maximum(at - REACH, rows.low[here]), np.minimum(at + REACH, rows.high[here])
@@ -198,44 +207,44 @@ DEFECTS: Final = (  # by their numbers in Marks
     N_("order defect: AB does not reach the positions in order by turning one way"),
     N_("circuit defect: AB locks on the way between the positions"),
 )
-POLE: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
+POLE_REASON: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
 NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
 
 
-def guiding(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, Marks]:
+def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
     """Dyads AB and DC, and what they are worth. Raises Infeasible."""
-    one, other = both(task)
+    one, other = solve_both_dyads(task)
     if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_PLACES * task.size:
-        raise Infeasible(_key_of(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
-    mark = marks(task.poses, one, other)
+        raise Infeasible(_given_key(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
+    mark = rate_guidance(task.poses, one, other)
     if mark.defect and not task.keep:
-        raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_quick(task))
+        raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_search_is_quick(task))
     return one, other, mark
 
 
-def _quick(task: CouplerPositionsTask) -> bool:
+def _search_is_quick(task: CouplerPositionsTask) -> bool:
     """Whether other values can be tried: not where a link is free on Burmester's curves, which takes long."""
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
-def _key_of(task: CouplerPositionsTask, name: str) -> str:
+def _given_key(task: CouplerPositionsTask, name: str) -> str:
     """What is given of a link."""
-    side = task.sides.get(name, Side())
+    side = task.sides.get(name, DyadData())
     keys = {name[1]: side.pin, name[0]: side.pivot, f"{name}_turn": side.turn, f"{name[0]}_near": side.near}
     return next((key for key, value in keys.items() if value is not None), "positions")
 
 
-def both(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
+def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     """Dyads AB and DC. Raises Infeasible."""
     if len(task.places) < 4:
-        return dyad(task, "AB"), dyad(task, "DC")
+        return solve_dyad(task, "AB"), solve_dyad(task, "DC")
     if task.still:
-        return parallel(task)
-    given = given_on_curves(task)
-    return (given["AB"], given["DC"]) if len(given) == 2 else best(task, given)
+        return parallelogram_dyads(task)
+    given = given_dyads(task)
+    return (given["AB"], given["DC"]) if len(given) == 2 else best_dyads(task, given)
 
 
-def dyad(task: CouplerPositionsTask, name: str) -> Dyads:
+def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     """The dyad of two or three positions. Raises Infeasible."""
     side, poses = task.sides[name], task.poses
     pin_given = side.pin is not None
@@ -243,46 +252,46 @@ def dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
     if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_PLACES * task.size:
-        raise Infeasible(point, _(POLE).format(point=point))
+        raise Infeasible(point, _(POLE_REASON).format(point=point))
     if len(places) == 3:
-        found = centre(places)
+        found = circle_centre(places)
         if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_PLACES:
             reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
             raise Infeasible(point, reason.format(point=point))
     else:
         if not side.length > abs(places[1] - places[0]) / 2:
             raise Infeasible(name, _("{name} does not reach both places").format(name=name))
-        found = beside(places, side.length, SIDES[side.side])
+        found = point_at_distance(places, side.length, SIDES[side.side])
     fixed = np.asarray(given, np.clongdouble)
     return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
 
 
-def given_on_curves(task: CouplerPositionsTask) -> dict[str, Dyads]:
+def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
     """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
     found = {
-        name: by_turn(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
+        name: dyads_by_rotation(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
         if side.near is None
-        else of_near(task, name)
+        else nearest_dyad(task, name)
         for name, side in task.sides.items()
     }
     for name, own in found.items():
-        if not exists(task, own):
+        if not are_sensible(task, own):
             reason = _(
                 "no link of sensible length turns by this angle from the first position to the second: near the turn "
                 "of the coupler itself links grow beyond all bounds"
             )
-            raise Infeasible(f"{name}_turn", reason, search=_quick(task))
+            raise Infeasible(f"{name}_turn", reason, search=_search_is_quick(task))
     return found
 
 
-def of_near(task: CouplerPositionsTask, name: str) -> Dyads:
+def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     """The dyad of four positions whose pivot is the place of the centre-point curve nearest to the wanted one."""
     wanted = complex(task.sides[name].near)
 
     def away(turns: Any, branch: int) -> Any:
-        found = by_turn(task.poses, np.asarray(turns, np.longdouble), branch)
+        found = dyads_by_rotation(task.poses, np.asarray(turns, np.longdouble), branch)
         distance = np.abs(np.asarray(found.pivot, complex) - wanted)
-        return np.where(exists(task, found) & np.isfinite(distance), distance, np.inf)
+        return np.where(are_sensible(task, found) & np.isfinite(distance), distance, np.inf)
 
     grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
     step, found = grid[1] - grid[0], []
@@ -292,11 +301,11 @@ def of_near(task: CouplerPositionsTask, name: str) -> Dyads:
         found.append((distance, turn, branch))
     distance, turn, branch = min(found)
     if not np.isfinite(distance):
-        raise Infeasible(f"{name[0]}_near", NO_LINKS, search=_quick(task))
-    return by_turn(task.poses, np.asarray(turn, np.longdouble), branch)
+        raise Infeasible(f"{name[0]}_near", NO_LINKS, search=_search_is_quick(task))
+    return dyads_by_rotation(task.poses, np.asarray(turn, np.longdouble), branch)
 
 
-def exists(task: CouplerPositionsTask, found: Dyads) -> Any:
+def are_sensible(task: CouplerPositionsTask, found: Dyads) -> Any:
     """Whether there are such dyads, with ends that are not far from place 1 and links of some length."""
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
@@ -304,13 +313,13 @@ def exists(task: CouplerPositionsTask, found: Dyads) -> Any:
         return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_PLACES * task.size)
 
 
-def best(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
+def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
     first, size = task.poses.places[0], task.size
     frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
     box = None if task.within is None else task.outside
-    bounds = Limits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
+    bounds = LinkLimits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
     for loose in (False, True):  # at last one whose branches are not the same
         found = best_on_curves(task.poses, size, bounds, given, loose)
         if found is None or found[2] > SURE:
@@ -322,16 +331,16 @@ def best(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dy
     if task.within is not None:
         reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
         raise Infeasible("pivots_within", reason, search=False)
-    raise Infeasible("positions", NO_LINKS, search=_quick(task))
+    raise Infeasible("positions", NO_LINKS, search=_search_is_quick(task))
 
 
-def parallel(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
+def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
 
     AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
     """
     places, angles = task.poses.places, task.poses.angles
-    centres = [centre(np.delete(places, out)) for out in range(4)]
+    centres = [circle_centre(np.delete(places, out)) for out in range(4)]
     middle = min(centres, key=lambda z: float(np.nan_to_num(abs(z), nan=np.inf)))
     arms = places - middle
     radius = abs(arms[0])
@@ -362,5 +371,7 @@ def parallel(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
         task.sides[name].near if name in task.sides and task.sides[name].near is not None else at
         for name, at in zip(("AB", "DC"), middles, strict=True)
     ]
-    one, other = (Dyads(a, (a - middle) * unit(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots))
+    one, other = (
+        Dyads(a, (a - middle) * unit_vector(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots)
+    )
     return one, other

@@ -18,14 +18,14 @@ import numpy as np
 from tmm_cli.mechanics.numerics import PI, DoubleDouble, unit
 
 EXACT: Final = np.longdouble
-POLISHES: Final = 4
+NEWTON_STEPS: Final = 4
 SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
 REFINEMENTS: Final = 6
 ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
 REAL: Final = 5e-7  # rad: so near to a real angle a root is one
 
 
-class Bars(NamedTuple):
+class FourBarRatios(NamedTuple):
     """Lengths over l4 (positive) and zero angles (rad), arrays of one shape: a four-bar each."""
 
     l1: Any
@@ -34,9 +34,9 @@ class Bars(NamedTuple):
     phi0: Any
     psi0: Any
 
-    def at(self, index: Any) -> Bars:
+    def at(self, index: Any) -> FourBarRatios:
         """The four-bars at an index of the arrays."""
-        return Bars(*(np.asarray(value)[index] for value in self))
+        return FourBarRatios(*(np.asarray(value)[index] for value in self))
 
     @property
     def size(self) -> int:
@@ -48,7 +48,7 @@ class Bars(NamedTuple):
         return self.l1 * unit(self.phi0 + phi), 1 + self.l3 * unit(self.psi0 + psi)
 
 
-def inverse(rows: Any) -> Any:
+def pseudo_inverse(rows: Any) -> Any:
     """Inverses (..., m, n) of rows (..., n, m) in ordinary precision, for corrections; of least squares where there are
     more rows than columns, of least length where there are fewer; nan where rows are singular, whatever their size.
 
@@ -65,7 +65,7 @@ def inverse(rows: Any) -> Any:
 
 def solve_linear(rows: Any, right: Any) -> Any:
     """Linear systems (..., n, m), (..., n), refined in extended precision; nan where they are singular."""
-    back = inverse(rows)
+    back = pseudo_inverse(rows)
     found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
     for _ in range(REFINEMENTS):
         rest = np.asarray(right - (rows * found[..., None, :]).sum(-1), dtype=float)
@@ -75,7 +75,7 @@ def solve_linear(rows: Any, right: Any) -> Any:
 
 def solve_homogeneous(rows: Any) -> Any:
     """Two vectors (..., m, 2) that span what rows (..., m - 2, m) send to zero, in extended precision."""
-    near, back = np.asarray(rows, dtype=float), inverse(rows)
+    near, back = np.asarray(rows, dtype=float), pseudo_inverse(rows)
     near = np.where(np.isfinite(near), near, 0.0)
     found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
     for _ in range(REFINEMENTS):
@@ -84,19 +84,19 @@ def solve_homogeneous(rows: Any) -> Any:
     return found
 
 
-def of_zeros(phi: Any, psi: Any) -> Any:
+def solve_pqs(phi: Any, psi: Any) -> Any:
     """p, q, s (tasks, 3) of three or more pairs with their zero angles in them."""
-    return solve_linear(_rows(phi, psi), np.cos(phi - psi))
+    return solve_linear(_equation_rows(phi, psi), np.cos(phi - psi))
 
 
-def two(phi: Any, psi: Any, known: Any, value: Any) -> Any:
+def solve_two_pairs(phi: Any, psi: Any, known: Any, value: Any) -> Any:
     """p, q, s (tasks, 3) of two pairs and a linear condition known . (p, q, s) = value."""
-    rows = np.concatenate([_rows(phi, psi), np.asarray(known, dtype=EXACT)[..., None, :]], axis=-2)
+    rows = np.concatenate([_equation_rows(phi, psi), np.asarray(known, dtype=EXACT)[..., None, :]], axis=-2)
     right = np.concatenate([np.cos(phi - psi), np.asarray(value, dtype=EXACT)[..., None]], axis=-1)
     return solve_linear(rows, right)
 
 
-def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
+def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
     """Both zero angles (tasks, 2), nan where not real; phi and psi of four pairs, of which `free` still lacks its own.
 
     Angles half a turn away are the same four-bars.
@@ -121,7 +121,7 @@ def four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
     return (angles, zero) if free == "phi0" else (zero, angles)
 
 
-def five(phi: Any, psi: Any) -> tuple[Any, Any]:
+def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
     """Both zero angles (tasks, 3), nan where not real, of five pairs.
 
     The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), all times a number: two vectors
@@ -132,7 +132,7 @@ def five(phi: Any, psi: Any) -> tuple[Any, Any]:
     a, b, turn = (span[:, k] + 1j * span[:, k + 1] for k in (0, 2, 5))  # (tasks, 2) over both vectors
     (b0, b1), (a0, a1), (t0, t1) = b.T, a.conj().T, turn.T
     form = [b1 * a1 * t1, b0 * a1 * t1 + b1 * a0 * t1 + b1 * a1 * t0, b0 * a0 * t1 + b0 * a1 * t0 + b1 * a0 * t0]
-    angles = angles_of_forms(np.stack([*form, b0 * a0 * t0], axis=-1).imag)
+    angles = roots_of_cubic_forms(np.stack([*form, b0 * a0 * t0], axis=-1).imag)
     with np.errstate(all="ignore"):
         cosines, sines = np.cos(angles), np.sin(angles)
         side, delta = (x[:, :1] * cosines + x[:, 1:] * sines for x in (a, turn))
@@ -141,7 +141,7 @@ def five(phi: Any, psi: Any) -> tuple[Any, Any]:
         return psi0 + np.angle(delta), psi0
 
 
-def angles_of_forms(forms: Any) -> Any:
+def roots_of_cubic_forms(forms: Any) -> Any:
     """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
     and sine vanish; nan where there is no more.
 
@@ -158,36 +158,38 @@ def angles_of_forms(forms: Any) -> Any:
     return found
 
 
-def polished(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
+def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
     """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals of 31 digits: near pairs take ten of them."""
     columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
-    values, phi, psi = (_wide(numbers) for numbers in (values, phi, psi))
-    for _ in range(POLISHES):
+    values, phi, psi = (_to_double_double(numbers) for numbers in (values, phi, psi))
+    for _ in range(NEWTON_STEPS):
         p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
         one, other = phi + phi0, psi + psi0
         rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
         p, q, one, other = (numbers.astype(float) for numbers in (p, q, one, other))
-        step = (inverse(slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(-1)
+        step = (pseudo_inverse(equation_slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(
+            -1
+        )
         step = np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
         values[:, columns] = values[:, columns] - step
     return values.hi.astype(EXACT) + values.lo
 
 
-def _wide(numbers: Any) -> DoubleDouble:
+def _to_double_double(numbers: Any) -> DoubleDouble:
     """Numbers with all their digits as double-doubles."""
     numbers = np.asarray(numbers, dtype=EXACT)
     near = numbers.astype(float)
     return DoubleDouble(near, (numbers - near).astype(float))
 
 
-def slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
+def equation_slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
     """Of the equation over p, q, s, phi0, psi0 (last axis), angles with their zeros; those over psi are the last."""
     turn = np.sin(phi - psi)
     columns = np.cos(psi), -np.cos(phi), np.ones_like(phi), q * np.sin(phi) + turn, -p * np.sin(psi) - turn
     return np.stack(columns, -1)
 
 
-def outputs(one: Bars, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
+def output_angles(one: FourBarRatios, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
     """Output angles (without psi0) of a four-bar at input angles phi; side: the sign of (BC x DC).
 
     open_: what stands where it does not close; None: the angle where it is nearest to that.
@@ -201,18 +203,18 @@ def outputs(one: Bars, phi: Any, near: Any, side: float, open_: float | None = N
     return found if open_ is None else np.where(np.abs(cosine) <= 1, found, open_)
 
 
-def bars(values: Any, phi: Any, psi: Any) -> Bars:
+def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
     """Positive lengths from p, q, s, phi0, psi0 (tasks, 5); the coupler is measured at the first pair."""
     p, q, _, phi0, psi0 = (values[..., k] for k in range(5))
     half = EXACT(PI)
     with np.errstate(all="ignore"):
         l1, l3 = 1 / np.abs(p), 1 / np.abs(q)
-        phi0, psi0 = _wrapped(phi0 + half * (p < 0)), _wrapped(psi0 + half * (q < 0))
-        b, c = Bars(l1, l1, l3, phi0, psi0).pins(phi[..., 0], psi[..., 0])
-        return Bars(l1, np.abs(c - b), l3, phi0, psi0)
+        phi0, psi0 = _wrap_angle(phi0 + half * (p < 0)), _wrap_angle(psi0 + half * (q < 0))
+        b, c = FourBarRatios(l1, l1, l3, phi0, psi0).pins(phi[..., 0], psi[..., 0])
+        return FourBarRatios(l1, np.abs(c - b), l3, phi0, psi0)
 
 
-def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
+def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> FourBarRatios:
     """All real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where there is no more root.
 
     A zero angle (one, or one a task) of None is to be found: none for 3 pairs, one for 4, both for 5.
@@ -223,22 +225,22 @@ def solutions(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> Bars:
     if not free:
         one, other = np.zeros((len(phi), 1)), np.zeros((len(phi), 1))
     elif len(free) == 1:
-        one, other = four(phi + given_phi, psi + given_psi, free[0])
+        one, other = zero_angles_of_four(phi + given_phi, psi + given_psi, free[0])
     else:
-        one, other = five(phi, psi)
+        one, other = zero_angles_of_five(phi, psi)
     shape = one.shape
     a, b = (one + given_phi).reshape(-1, 1), (other + given_psi).reshape(-1, 1)
     phi, psi = (np.repeat(row, shape[1], axis=0) for row in (phi, psi))
-    values = np.concatenate([of_zeros(phi + a, psi + b), a, b], axis=-1)
-    values = polished(values, phi, psi, free) if free else values
-    return Bars(*(numbers.reshape(shape) for numbers in bars(values, phi, psi)))
+    values = np.concatenate([solve_pqs(phi + a, psi + b), a, b], axis=-1)
+    values = refine_by_newton(values, phi, psi, free) if free else values
+    return FourBarRatios(*(numbers.reshape(shape) for numbers in lengths_from_pqs(values, phi, psi)))
 
 
-def _rows(phi: Any, psi: Any) -> Any:
+def _equation_rows(phi: Any, psi: Any) -> Any:
     return np.stack([np.cos(psi), -np.cos(phi), np.ones_like(np.asarray(phi, dtype=EXACT))], axis=-1)
 
 
-def _wrapped(angle: Any) -> Any:
+def _wrap_angle(angle: Any) -> Any:
     """Within half a turn, in the angle's precision."""
     full = 2 * EXACT(PI)
     return angle - full * np.round(np.asarray(angle / full, dtype=float))
@@ -255,7 +257,7 @@ SAME: Final = 1e-11  # rad: angles that are equal but for rounding
 SHARE: Final = 0.5  # l1/l4 of the parallelogram that is taken
 
 
-def parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> Bars | None:
+def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
     """The one that is taken for three to five pairs (rad; a zero angle of None is to be found); None where the angles
     from the zeros do not stay equal. Angles that stay half a turn apart are equal ones of a link drawn the other way.
     """
@@ -273,7 +275,7 @@ def parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> Bars | None:
         return None
     elif np.cos(psi0 + gap - phi0) < 0:
         phi0 = math.remainder(phi0 + np.pi, math.tau)
-    return Bars(SHARE, 1.0, SHARE, phi0, psi0)
+    return FourBarRatios(SHARE, 1.0, SHARE, phi0, psi0)
 
 
 # Four-bars by more pairs of angles than they can pass: least squares of the errors of the output angle.
@@ -292,48 +294,48 @@ ROUNDING: Final = 1e-28  # rad^2: rounding
 GAIN: Final = 1e-15  # of the sum of squares: what a step must bring
 
 
-def minima(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[Bars, Any]:
+def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBarRatios, Any]:
     """Four-bars (n,), the best first, and their root mean square errors (rad); a zero angle of None is to be found."""
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     count = round(GRID ** (0.5 if phi0 is None and psi0 is None else 1))
     half = np.pi * np.arange(count) / count
     zeros = np.stack(np.meshgrid(*(half if z is None else [float(z)] for z in (phi0, psi0))), -1).reshape(-1, 2)
-    linear = of_zeros(phi + zeros[:, :1], psi + zeros[:, 1:])
+    linear = solve_pqs(phi + zeros[:, :1], psi + zeros[:, 1:])
     starts = np.concatenate([np.asarray(linear, dtype=float), zeros], axis=-1)
     free = [0, 1, 2, *(3 + k for k, z in enumerate((phi0, psi0)) if z is None)]
-    squares = np.array([min(_off(x, phi, psi, side)[1] for side in (1.0, -1.0)) for x in starts])
+    squares = np.array([min(_squared_errors(x, phi, psi, side)[1] for side in (1.0, -1.0)) for x in starts])
     best = [k for k in np.argsort(squares)[:STARTS] if np.isfinite(squares[k])]
     ends = [
         end for k in best if (end := _descend(starts[k], phi, psi, free)) and np.abs(end[0][:2]).min() > ENDLESS_LINK
     ]
     ends.sort(key=lambda end: end[1])
     values = np.array([end[0] for end in ends]).reshape(-1, 5)
-    return signed_bars(values), np.sqrt([end[1] / len(phi) for end in ends])
+    return fitted_lengths(values), np.sqrt([end[1] / len(phi) for end in ends])
 
 
-def signed_bars(values: Any) -> Bars:
+def fitted_lengths(values: Any) -> FourBarRatios:
     """Positive lengths from p, q, s, phi0, psi0 (..., 5), the coupler from s, as no pair is passed exactly."""
-    found, (p, q, s) = bars(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
+    found, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
     with np.errstate(all="ignore"):
         return found._replace(l2=np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q)))
 
 
-def _off(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
+def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
     """Errors of the output angle, and their sum of squares: inf where the four-bar does not close."""
     p, q, s, phi0, psi0 = x
     with np.errstate(all="ignore"):  # outputs take a link drawn the other way as one of negative length
         l2 = np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q))
-        off = outputs(Bars(1 / p, l2, 1 / q, phi0, psi0), phi, psi, side, np.nan) - psi
+        off = output_angles(FourBarRatios(1 / p, l2, 1 / q, phi0, psi0), phi, psi, side, np.nan) - psi
     total = float(off @ off)
     return off, total if np.isfinite(total) else np.inf
 
 
 def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
     """Where damped steps lead on the better one of both assemblies, and the sum of squares there; None: to no end."""
-    side = min((1.0, -1.0), key=lambda side: _off(x, phi, psi, side)[1])
-    (off, least), damping = _off(x, phi, psi, side), FIRST
+    side = min((1.0, -1.0), key=lambda side: _squared_errors(x, phi, psi, side)[1])
+    (off, least), damping = _squared_errors(x, phi, psi, side), FIRST
     for _ in range(STEPS):
-        rows = slopes(x[0], x[1], phi + x[3], psi + off + x[4])
+        rows = equation_slopes(x[0], x[1], phi + x[3], psi + off + x[4])
         with np.errstate(all="ignore"):
             rows = (-rows / rows[:, 4:])[:, free]  # of the error: as the equation holds at the angle that is reached
         sizes = np.linalg.norm(rows, axis=0)
@@ -343,7 +345,7 @@ def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] |
         step = np.linalg.lstsq(damped, np.concatenate([-off, np.zeros(len(free))]), rcond=None)[0] / sizes
         tried = x.copy()
         tried[free] += step
-        there, total = _off(tried, phi, psi, side)
+        there, total = _squared_errors(tried, phi, psi, side)
         if total < least * (1 - GAIN):
             x, off, least, damping = tried, there, total, damping / 9
         elif damping > LARGEST or total <= least * (1 + GAIN):

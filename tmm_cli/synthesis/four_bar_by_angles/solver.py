@@ -11,41 +11,49 @@ import numpy as np
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.mechanics.numerics import least, settled
 from tmm_cli.synthesis import four_bar
-from tmm_cli.synthesis.construction import Arc, Construction, Diagram, Line, Segment, Spot, swept
-from tmm_cli.synthesis.four_bar_by_angles.freudenstein import Bars, outputs, parallelogram
-from tmm_cli.synthesis.four_bar_by_angles.pairs import (
+from tmm_cli.synthesis.construction import (
+    Arc,
+    Diagram,
+    DiagramLine,
+    GeometricConstruction,
+    LetteredPoint,
+    Segment,
+    swept_arc,
+)
+from tmm_cli.synthesis.four_bar_by_angles.angle_pairs import (
     ANGLES,
     LENGTHS,
     LONGEST,
     ZEROS,
     AnglePairsTask,
-    Function,
-    Quality,
-    chosen,
-    of_ratios,
-    quality,
-    real,
-    through,
+    FourBarQuality,
+    GeneratedFunction,
+    are_real,
+    choose_four_bar,
+    four_bars_of_ratios,
+    four_bars_through,
+    rate_four_bars,
 )
-from tmm_cli.synthesis.measures import crank_turns
-from tmm_cli.synthesis.record import Demand, Infeasible, Listing, Outcome, Value, given
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import FourBarRatios, find_parallelogram, output_angles
+from tmm_cli.synthesis.measures import driver_completes_range
+from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
 ERRORS: Final = 721  # places of the curve
 NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
 
 
-def _scan(function: Function) -> Any:
+def _scan_angles(function: GeneratedFunction) -> Any:
     """Input angles (rad) that are looked at: even, and where the table has rows."""
     even = np.linspace(min(function.phi), max(function.phi), ERRORS)
     return np.unique(np.concatenate((even, function.corners())))
 
 
-def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, float]:
+def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> tuple[Any, float]:
     """Input angles (rad) of the largest peaks of an error, and its largest size, to the last digits.
 
     Where a table has a corner an extreme may be there; between the places of the scan the error has one extreme.
     """
-    phi = _scan(function)
+    phi = _scan_angles(function)
     size = np.abs(error(phi))
     inner = (size[1:-1] >= size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > NEAR * np.max(size))
     peaks = [least(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
@@ -53,27 +61,27 @@ def extremes(error: Callable[[Any], Any], function: Function) -> tuple[Any, floa
     return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
 
 
-def side_of(one: Bars, task: AnglePairsTask) -> float:
+def assembly_of(one: FourBarRatios, task: AnglePairsTask) -> float:
     """The assembly of the pairs: the sign of (BC x DC)."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return min((1.0, -1.0), key=lambda side: float(np.sum((outputs(one, phi, psi, side) - psi) ** 2)))
+    return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(one, phi, psi, side) - psi) ** 2)))
 
 
-def off(one: Bars, task: AnglePairsTask) -> Any:
+def output_errors(one: FourBarRatios, task: AnglePairsTask) -> Any:
     """Errors of the output angle (rad) at the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return outputs(one, phi, psi, side_of(one, task)) - psi
+    return output_angles(one, phi, psi, assembly_of(one, task)) - psi
 
 
-def reached(one: Bars, task: AnglePairsTask) -> Diagram:
+def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
     """Output angles over the input, and the pairs they are to be near."""
-    side, (start, end) = side_of(one, task), task.span
+    side, (start, end) = assembly_of(one, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
     psi = np.asarray(task.psi, dtype=float)
     order = np.argsort(at_pairs)
     lines = (
-        Line(N_("reached"), phi, outputs(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
-        Line(N_("wanted"), at_pairs, psi, dots=True),
+        DiagramLine(N_("reached"), phi, output_angles(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
+        DiagramLine(N_("wanted"), at_pairs, psi, dots=True),
     )
     return Diagram(
         "pairs",
@@ -84,22 +92,24 @@ def reached(one: Bars, task: AnglePairsTask) -> Diagram:
     )
 
 
-def errors(one: Bars, task: AnglePairsTask) -> tuple[Diagram, float]:
+def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Diagram, float]:
     """The curve of structural error over the input angle, with the points of the task, and its largest size."""
     assert task.function
     function = task.function
-    side = side_of(one, task)
+    side = assembly_of(one, task)
 
     def error(phi: Any) -> Any:
         wanted = function.wanted(phi)
-        return outputs(one, phi, wanted, side) - wanted
+        return output_angles(one, phi, wanted, side) - wanted
 
-    places, largest = extremes(error, function)
-    phi = np.unique(np.concatenate((_scan(function), places)))
+    places, largest = error_extremes(error, function)
+    phi = np.unique(np.concatenate((_scan_angles(function), places)))
     at_points = np.asarray(task.phi, dtype=float)
     lines = (
-        Line(N_("structural error of the output angle"), phi, error(phi)),
-        Line(N_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True),
+        DiagramLine(N_("structural error of the output angle"), phi, error(phi)),
+        DiagramLine(
+            N_("precision points"), at_points, error(at_points) if task.approximate else 0 * at_points, dots=True
+        ),
     )
     axes = (N_("input angle phi"), "angle"), (N_("structural error of the output angle"), "angle")
     return Diagram("error", N_("Structural error over the range"), *axes, lines), largest
@@ -108,7 +118,7 @@ def errors(one: Bars, task: AnglePairsTask) -> tuple[Diagram, float]:
 # The construction of a four-bar by pairs of angles: all positions turned back to the first input.
 
 
-def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Construction:
+def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: float) -> GeometricConstruction:
     """All positions turned back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
     phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
     b, c = (np.asarray(x, dtype=complex) * size for x in one.pins(phi, psi))
@@ -121,24 +131,24 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
         Segment(d, complex(c[0]), "link", "l3"),
     ]
     spots = [
-        Spot("A", a, "support"),
-        Spot("D", d, "support"),
-        Spot("B1", complex(b[0]), "hinge"),
-        Spot("C1", complex(c[0]), "hinge"),
+        LetteredPoint("A", a, "support"),
+        LetteredPoint("D", d, "support"),
+        LetteredPoint("B1", complex(b[0]), "hinge"),
+        LetteredPoint("C1", complex(c[0]), "hinge"),
     ]
-    arcs = [swept(complex(b[0]), back, "dashed", beyond=0.3)]
+    arcs = [swept_arc(complex(b[0]), back, "dashed", beyond=0.3)]
     for name, row, centre in (("C", c, d), ("B", b, a)):
-        arcs.append(swept(centre, row))
+        arcs.append(swept_arc(centre, row))
         for k in range(1, len(row)):
             segments.append(Segment(centre, complex(row[k]), "thin"))
-            spots.append(Spot(f"{name}{k + 1}", complex(row[k]), "dot"))
+            spots.append(LetteredPoint(f"{name}{k + 1}", complex(row[k]), "dot"))
     before = complex(c[0])
     for k in range(1, len(back)):
         here = complex(back[k])
         arc = sorted((float(np.angle(c[k])), float(np.angle(c[k]) - phi[k] + phi[0])))
         arcs.append(Arc(a, float(abs(c[k])), arc[0], arc[1], "dashed"))
         segments += [Segment(before, here, "thin"), Segment((before + here) / 2, complex(b[0]), "dashed")]
-        spots.append(Spot(f"C{k + 1}′", here, "dot"))
+        spots.append(LetteredPoint(f"C{k + 1}′", here, "dot"))
         before = here
     lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
     values = tuple((name, value, "length") for name, value in lengths)
@@ -146,7 +156,9 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
         "Pairs turned back about {A} to the first input: {B}1 is the centre of the circle through {C}1, {C}2′ ..."
     )
     note = N_("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
-    return Construction(title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values)
+    return GeometricConstruction(
+        title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
+    )
 
 
 # Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
@@ -156,7 +168,6 @@ def construction(one: Bars, given_phi: Any, given_psi: Any, size: float) -> Cons
 # locks. More pairs than a four-bar can pass are met with the least squares of errors.
 
 
-__all__ = ["PARAMETERS", "AnglePairsTask", "solve"]
 FOUND: Final = {
     **LENGTHS,
     **ZEROS,
@@ -175,7 +186,7 @@ NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs")
 NONE_NEAR: Final = N_(
     "no four-bar is the nearest to these pairs: errors get less as links grow, or as the input locks on the way"
 )
-EVERY_ONE_HAS: Final = {
+DEFECTS_OF_ALL: Final = {
     "branch": N_("branch defect: every four-bar through these pairs has some of them on its other assembly"),
     "locks": N_("order defect: the input of every four-bar through these pairs locks on the way"),
     "branch and locks": N_("every four-bar through these pairs has a branch defect, or its input locks on the way"),
@@ -188,30 +199,32 @@ SHOWN: Final = 40  # pairs in a table
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
 
 
-def solve(task: AnglePairsTask) -> Outcome:
+def solve(task: AnglePairsTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
-    found, at = take(task)
-    one, mark = found.at(at), quality(found.at(at), task)
-    any_one = parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
-    values, demands = _values(task, one, mark), _demands(task, one, mark)
+    found, at = choose_solution(task)
+    one, mark = found.at(at), rate_four_bars(found.at(at), task)
+    any_one = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
+    values, demands = _found_values(task, one, mark), _demands(task, one, mark)
     if not any_one:  # it has change points
-        demands.append(Demand(N_("input turns fully (1: yes)"), float(mark.crank), "number", crank_turns, asked=False))
+        demands.append(
+            Demand(N_("input turns fully (1: yes)"), float(mark.crank), "number", driver_completes_range, asked=False)
+        )
     drawings: list[Any] = []
     if not task.approximate:
-        drawings.append(construction(one, task.phi, task.psi, float(_size(task, one))))
+        drawings.append(draw_construction(one, task.phi, task.psi, float(_frame_length(task, one))))
     elif not task.function:
-        drawings.append(reached(one, task))
-    listings = [_pairs(task, one)] if task.approximate else []
+        drawings.append(draw_reached(one, task))
+    listings = [_tabulate_pairs(task, one)] if task.approximate else []
     if found.size > 1:
-        values.append(Value("", f"{at + 1} / {found.size}", "word", N_("solution, of those below")))
-        listings.append(_solutions(task, found, at))
+        values.append(NamedValue("", f"{at + 1} / {found.size}", "word", N_("solution, of those below")))
+        listings.append(_tabulate_solutions(task, found, at))
     if task.free:
-        values.append(Value("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs")))
-        listings.append(_family(task))
+        values.append(NamedValue("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs")))
+        listings.append(_tabulate_family(task))
     if task.function and not mark.defect:
-        curve, error = errors(one, task)
-        values.append(Value("", error, "angle", N_("largest structural error")))
-        largest = partial(_largest, one, task)
+        curve, error = draw_structural_error(one, task)
+        values.append(NamedValue("", error, "angle", N_("largest structural error")))
+        largest = partial(_measured_largest_error, one, task)
         demands.append(Demand(N_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
         drawings.append(curve)
     source = N_(
@@ -219,29 +232,31 @@ def solve(task: AnglePairsTask) -> Outcome:
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
     notes = _notes(task, one, mark, any_one)
-    return Outcome(_given(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings))
+    return SynthesisOutcome(
+        _given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
+    )
 
 
-def take(task: AnglePairsTask) -> tuple[Bars, int]:
+def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
     """All four-bars of the task, and the number of the one that is taken. Raises Infeasible."""
     _refuse_inputs(task)
-    found = through(task)
-    defects = quality(found, task).defect
+    found = four_bars_through(task)
+    defects = rate_four_bars(found, task).defect
     fair = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
     if not fair and task.approximate:
         raise Infeasible("output" if task.function else "pairs", NONE_NEAR, search=False)
     if not fair:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
-        raise Infeasible(key, NO_FOUR_BAR if not found.size else EVERY_ONE_HAS[" and ".join(sorted(set(defects)))])
+        raise Infeasible(key, NO_FOUR_BAR if not found.size else DEFECTS_OF_ALL[" and ".join(sorted(set(defects)))])
     if task.choose.isdigit() and task.choose not in fair:
         reason = _("there is no solution of this number, or it has a defect")
         raise Infeasible("choose", reason, ", ".join(fair))
-    return found, chosen(task, found)
+    return found, choose_four_bar(task, found)
 
 
 def refuse(task: AnglePairsTask) -> None:
     """Raises Infeasible with the reason where there is no such four-bar."""
-    take(task)
+    choose_solution(task)
 
 
 def _refuse_inputs(task: AnglePairsTask) -> None:
@@ -256,74 +271,77 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
         raise Infeasible(key, _("the input has come round before the last pair"))
 
 
-def _size(task: AnglePairsTask, one: Bars) -> Any:
+def _frame_length(task: AnglePairsTask, one: FourBarRatios) -> Any:
     """l4 (m) of a four-bar, by the length that is given."""
     name = next(iter(task.lengths))
     return task.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
 
 
-def _values(task: AnglePairsTask, one: Bars, mark: Quality) -> list[Value]:
-    size = _size(task, one)
+def _found_values(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> list[NamedValue]:
+    size = _frame_length(task, one)
     numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
-    first = task.psi[0] + (off(one, task)[0] if task.approximate else 0.0)
+    first = task.psi[0] + (output_errors(one, task)[0] if task.approximate else 0.0)
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
     numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
     return [
-        *(Value(key, float(numbers[key]), *what) for key, what in FOUND.items()),
-        Value("", mark.least, "angle", N_("least transmission angle over the range")),
-        Value("", DEFECTS[str(mark.defect)], "word", N_("defects")),
-        *([Value("", _mean(one, task), "angle", MEAN)] if task.approximate else []),
+        *(NamedValue(key, float(numbers[key]), *what) for key, what in FOUND.items()),
+        NamedValue("", mark.least, "angle", N_("least transmission angle over the range")),
+        NamedValue("", DEFECTS[str(mark.defect)], "word", N_("defects")),
+        *([NamedValue("", _mean_error(one, task), "angle", MEAN)] if task.approximate else []),
     ]
 
 
-def _demands(task: AnglePairsTask, one: Bars, mark: Quality) -> list[Demand]:
+def _demands(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> list[Demand]:
     if task.approximate:
         mean = partial(_measured_mean, one, task)
-        demands = [Demand(MEAN, _mean(one, task), "angle", mean, asked=False, at=1.0)]
+        demands = [Demand(MEAN, _mean_error(one, task), "angle", mean, asked=False, at=1.0)]
     else:
         demands = [
-            Demand(_output_name(k), float(b), "angle", partial(_output, one, a, b), at=1.0)
+            Demand(_output_name(k), float(b), "angle", partial(_measured_output, one, a, b), at=1.0)
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
-    name, measure = N_("least transmission angle over the range"), partial(four_bar.transmission, float(mark.worst))
+    name, measure = (
+        N_("least transmission angle over the range"),
+        partial(four_bar.transmission_angle, float(mark.worst)),
+    )
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
 
 
-def _mean(one: Bars, task: AnglePairsTask) -> float:
-    return float(np.sqrt(np.mean(off(one, task) ** 2)))
+def _mean_error(one: FourBarRatios, task: AnglePairsTask) -> float:
+    return float(np.sqrt(np.mean(output_errors(one, task) ** 2)))
 
 
-def _there(one: Bars, results: Any, phi: Any, near: Any) -> Any:
+def _measured_outputs(one: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
     """Output angles of the mechanism, from their zero, at input angles; of all whole turns those nearest to `near`."""
     return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
 
 
-def _measured_mean(one: Bars, task: AnglePairsTask, results: Any) -> float:
+def _measured_mean(one: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return float(np.sqrt(np.mean((_there(one, results, phi, psi + off(one, task)) - psi) ** 2)))
+    return float(np.sqrt(np.mean((_measured_outputs(one, results, phi, psi + output_errors(one, task)) - psi) ** 2)))
 
 
 def _output_name(k: int) -> str:
     return Phrase("output angle {number}", number=k + 1)
 
 
-def _output(one: Bars, phi: float, psi: float, results: Any) -> float:
-    return float(_there(one, results, np.array([phi]), np.array([psi]))[0])
+def _measured_output(one: FourBarRatios, phi: float, psi: float, results: Any) -> float:
+    return float(_measured_outputs(one, results, np.array([phi]), np.array([psi]))[0])
 
 
-def _largest(one: Bars, task: AnglePairsTask, results: Any) -> float:
+def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     """The largest structural error on the mechanism."""
     assert task.function
     function = task.function
 
     def error(phi: Any) -> Any:
         wanted = function.wanted(phi)
-        return _there(one, results, phi, wanted) - wanted
+        return _measured_outputs(one, results, phi, wanted) - wanted
 
-    return extremes(error, function)[1]
+    return error_extremes(error, function)[1]
 
 
-def _notes(task: AnglePairsTask, one: Bars, mark: Quality, any_one: bool) -> Iterable[str]:
+def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_one: bool) -> Iterable[str]:
     if task.approximate and not any_one:
         yield N_(
             "more pairs than a four-bar can pass: the sum of squares of the errors of the output angle is the least"
@@ -349,7 +367,7 @@ def _notes(task: AnglePairsTask, one: Bars, mark: Quality, any_one: bool) -> Ite
         )
 
 
-def _solutions(task: AnglePairsTask, found: Bars, at: int) -> Listing:
+def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> Listing:
     """Every four-bar that was found, by the number by which it can be chosen."""
     columns = (
         ("number_of", N_("choose"), "name"),
@@ -360,13 +378,15 @@ def _solutions(task: AnglePairsTask, found: Bars, at: int) -> Listing:
     )
     rows = []
     for k in range(found.size):
-        mark = quality(found.at(k), task)
+        mark = rate_four_bars(found.at(k), task)
         taken, crank = N_("yes") if k == at else None, N_("yes") if mark.crank else N_("no")
-        rows.append((str(k + 1), taken, *_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)]))
+        rows.append(
+            (str(k + 1), taken, *_solution_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)])
+        )
     return Listing("solutions", N_("Solutions; another is taken by choose: its number"), columns, tuple(rows))
 
 
-def _pairs(task: AnglePairsTask, one: Bars) -> Listing:
+def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
     """Every pair, and by how much the output is off."""
     columns = (
         ("phi", N_("input angle"), "angle"),
@@ -374,48 +394,48 @@ def _pairs(task: AnglePairsTask, one: Bars) -> Listing:
         ("reached", N_("reached"), "angle"),
         ("error", N_("error"), "angle"),
     )
-    error = off(one, task)
+    error = output_errors(one, task)
     rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
     return Listing(
         "pairs", N_("Pairs, and by how much the output is off"), columns, tuple(rows), long=len(rows) > SHOWN
     )
 
 
-def _family(task: AnglePairsTask) -> Listing:
+def _tabulate_family(task: AnglePairsTask) -> Listing:
     """Four-bars through two pairs for the ratios l1/l4 that are compared."""
     columns = (("free", N_("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", N_("defects"), "word"))
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
     ratios = np.concatenate([ratios, -ratios])
-    found = of_ratios(task, ratios)
+    found = four_bars_of_ratios(task, ratios)
     rows = []
-    for k in np.flatnonzero(real(found)):
-        mark = quality(found.at(k), task)
-        rows.append((abs(float(ratios[k])), *_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
+    for k in np.flatnonzero(are_real(found)):
+        mark = rate_four_bars(found.at(k), task)
+        rows.append((abs(float(ratios[k])), *_solution_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
     return Listing("family", N_("Four-bars through both pairs"), columns, tuple(rows), long=True)
 
 
-def _row(task: AnglePairsTask, one: Bars, mark: Quality) -> tuple[float, ...]:
+def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> tuple[float, ...]:
     """Lengths (m), zero angles and least transmission angle of a four-bar."""
-    size = _size(task, one)
+    size = _frame_length(task, one)
     return (*(float(x * size) for x in one[:3]), float(size), float(one.phi0), float(one.psi0), float(mark.least))
 
 
-def _given(task: AnglePairsTask) -> tuple[Value, ...]:
-    values = [Value(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
+def _given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
+    values = [NamedValue(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
     if task.function:
         text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table, straight between its rows")
         of_x = "angle" if task.function.name in ANGLES else "number"
         (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
         values += [
-            Value("", text, "word", N_("y")),
-            Value("", x0, of_x, N_("x, from")),
-            Value("", x1, of_x, N_("x, to")),
-            Value("", phi0, "angle", N_("input angle, from")),
-            Value("", phi1, "angle", N_("input angle, to")),
-            Value("", psi0, "angle", N_("output angle, from")),
-            Value("", psi1, "angle", N_("output angle, to")),
+            NamedValue("", text, "word", N_("y")),
+            NamedValue("", x0, of_x, N_("x, from")),
+            NamedValue("", x1, of_x, N_("x, to")),
+            NamedValue("", phi0, "angle", N_("input angle, from")),
+            NamedValue("", phi1, "angle", N_("input angle, to")),
+            NamedValue("", psi0, "angle", N_("output angle, from")),
+            NamedValue("", psi1, "angle", N_("output angle, to")),
         ]
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)
-        values += [Value("", a, "angle", name), Value("", b, "angle", _output_name(k))]
-    return *values, *given(task, ZEROS)
+        values += [NamedValue("", a, "angle", name), NamedValue("", b, "angle", _output_name(k))]
+    return *values, *given_values(task, ZEROS)

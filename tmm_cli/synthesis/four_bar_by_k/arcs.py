@@ -19,12 +19,12 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.mechanics.numerics import settled, unit
-from tmm_cli.synthesis.four_bar import cosine as cosine_of
+from tmm_cli.synthesis.four_bar import cosine_bcd as cosine_of
 from tmm_cli.synthesis.measures import theta_of
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
-END: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
-ARC: Final = 2e-3  # rad: a shorter arc has the rocker so nearly dead that k is not determined to 1e-9
+END_MARGIN: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
+SHORTEST_ARC: Final = 2e-3  # rad: a shorter arc has the rocker so nearly dead that k is not determined to 1e-9
 SLACK: Final = 1 - 1e-9  # of that, for rounding
 LINE: Final = 50.0  # l2 over half C1C2 to which the straight line of k = 1 is told
 STRAIGHT: Final = 1e-9  # rad of theta: places along an arc are told by w alone
@@ -65,7 +65,7 @@ class FourBarByKTask:
 
 
 @dataclass(frozen=True)
-class Found:
+class FourBarByKSolution:
     """Lengths (m), the pivot a (complex, m), the slope of a over w, the largest pressure angle and beta (rad).
 
     side: -1 on D's side of C1C2, 1 beyond; sense: of the crank whose slow stroke leads from psi1 to psi2.
@@ -83,20 +83,20 @@ class Found:
     sense: Any
 
 
-def widest(task: FourBarByKTask, side: Any) -> Any:
+def largest_beta(task: FourBarByKTask, side: Any) -> Any:
     """The bound of beta on an arc; negative where the arc has no pivot."""
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
-def bound(task: FourBarByKTask, side: Any) -> Any:
+def largest_w(task: FourBarByKTask, side: Any) -> Any:
     """The bound of w on an arc that has pivots."""
     sine = np.sin(task.theta / 2)
-    most = np.sin(widest(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
+    most = np.sin(largest_beta(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
     return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
 
 
-def at(task: FourBarByKTask, w: Any, side: Any) -> Found:
+def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
     """The four-bar whose pivot A stands at a place of an arc."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
@@ -113,7 +113,7 @@ def at(task: FourBarByKTask, w: Any, side: Any) -> Found:
     frame = unit(middle)
     a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
     a = settled(task.support + a, l4 + np.abs(task.support))
-    return Found(
+    return FourBarByKSolution(
         w,
         side,
         l1,
@@ -127,40 +127,42 @@ def at(task: FourBarByKTask, w: Any, side: Any) -> Found:
     )
 
 
-def arcs(task: FourBarByKTask) -> list[int]:
+def admissible_arcs(task: FourBarByKTask) -> list[int]:
     """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
     if task.k == 1:
         return [-1]
     way = 1 if task.psi2 > task.psi1 else -1
-    return [side for side in SIDES if widest(task, side) >= ARC * SLACK and task.sense in (0, -side * way)]
+    return [
+        side for side in SIDES if largest_beta(task, side) >= SHORTEST_ARC * SLACK and task.sense in (0, -side * way)
+    ]
 
 
-def places(task: FourBarByKTask, side: int, count: int = 400) -> Any:
+def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
     """Places w along an arc, close together where the mechanism changes fast, from end to end."""
-    theta, most = float(task.theta), float(bound(task, side))
-    first = END * min(1.0, most - 1)
+    theta, most = float(task.theta), float(largest_w(task, side))
+    first = END_MARGIN * min(1.0, most - 1)
     found = 1 + np.geomspace(first, most - 1, count)
     if theta > STRAIGHT:
-        beta = float(widest(task, side)) * np.linspace(END, 1 - END, count)
+        beta = float(largest_beta(task, side)) * np.linspace(END_MARGIN, 1 - END_MARGIN, count)
         by_angle = np.sin(beta + theta / 2) / np.sin(theta / 2)
-        found = np.unique(np.clip(np.concatenate((found, by_angle)), 1 + first, most - END * (most - 1)))
+        found = np.unique(np.clip(np.concatenate((found, by_angle)), 1 + first, most - END_MARGIN * (most - 1)))
     return found
 
 
-def whole(task: FourBarByKTask, side: int, count: int = 121) -> Any:
+def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
     """Places w of an arc with both its ends, closer together towards them, where the pressure angle changes fast.
 
     Even in the angle at C2 and in the logarithm of w alike: on arcs that are nearly straight the first says little.
     """
     share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
-    theta, most = float(task.theta), float(bound(task, side))
+    theta, most = float(task.theta), float(largest_w(task, side))
     if theta < STRAIGHT:
         return np.exp(share * np.log(LINE))
-    by_angle = np.sin(share * float(widest(task, side)) + theta / 2) / np.sin(theta / 2)
+    by_angle = np.sin(share * float(largest_beta(task, side)) + theta / 2) / np.sin(theta / 2)
     return np.unique(np.clip(np.concatenate((by_angle, np.exp(share * np.log(most)))), 1.0, most))
 
 
-def line_places(task: FourBarByKTask) -> list[Any]:
+def pivots_on_line(task: FourBarByKTask) -> list[Any]:
     """Places w of the pivots A = t + i height, t real, from which C1C2 is seen under theta; D is the origin.
 
     z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line cuts each of both circles
@@ -169,7 +171,7 @@ def line_places(task: FourBarByKTask) -> list[Any]:
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
-    way, height = unit(middle) * (1j if task.choose == "xA" else 1), line(task)
+    way, height = unit(middle) * (1j if task.choose == "xA" else 1), line_offset(task)
     both, apart = 2 * l3 * np.cos(half) * way, 2j * l3 * np.sin(half) * way  # C1 + C2, C2 - C1
     real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # of z where t = 0
     imag = l3 * l3 * np.sin(2 * half) + height * apart.real
@@ -185,6 +187,6 @@ def line_places(task: FourBarByKTask) -> list[Any]:
     return list(sum(np.abs(end - np.array(found)) for end in ends) / (2 * l3 * np.abs(np.sin(half))))
 
 
-def line(task: FourBarByKTask) -> Any:
+def line_offset(task: FourBarByKTask) -> Any:
     """The height of A, or its x, over that of D in the origin."""
     return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

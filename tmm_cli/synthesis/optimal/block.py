@@ -31,26 +31,28 @@ from tmm_cli.problem import (
     mobility,
     quote,
 )
-from tmm_cli.synthesis.blocks import Block, OfTheFile
+from tmm_cli.synthesis.blocks import TaskBlock, TriedFileError
 from tmm_cli.synthesis.optimal import task
-from tmm_cli.synthesis.optimal.block_ranges import FileWith, asked_over, driven, place_of, read_ranges
 from tmm_cli.synthesis.optimal.quantities import QUANTITIES
-from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.task import Parameter, Task, near
+from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
+from tmm_cli.synthesis.optimal.ranges import FileWith, read_over, read_position, read_ranges, with_driver_range
+from tmm_cli.synthesis.optimal.task import OptimalTask, Parameter, nearest_allowed
 
 SEARCH = True  # it wants the linkage for other parameters, and takes long
-MOST = 20  # parameters
-Asked = tuple[tuple[Any, ...], tuple[Any, ...]]  # places of the driver, and what is wanted of a link there
+MOST_PARAMETERS = 20  # parameters
+DriverTargets = tuple[tuple[Any, ...], tuple[Any, ...]]  # places of the driver, and what is wanted of a link there
 if TYPE_CHECKING:
-    Of = str
+    QuantityName = str
 else:
-    Of = Literal[tuple(QUANTITIES)]
+    QuantityName = Literal[tuple(QUANTITIES)]
 
 
-class Quality(Strict):
+class QuantityKeys(Strict):
     """A quantity of the mechanism over its cycle."""
 
-    of: Of = Field(description="length: sum of link lengths; box: width + height; margin: from dead positions")
+    of: QuantityName = Field(
+        description="length: sum of link lengths; box: width + height; margin: from dead positions"
+    )
     pair: Name | None = Field(default=None, description="whose reaction")
     point: Name | None = Field(default=None, description="whose path")
     link: Name | None = Field(default=None, description="whose law of motion")
@@ -66,13 +68,13 @@ class Quality(Strict):
     norm: Literal["least squares", "largest"] = "least squares"
 
 
-class Objective(Quality):
+class ObjectiveKeys(QuantityKeys):
     """What is made least (a margin: largest), or brought near to a target."""
 
     target: Value | None = Field(default=None, description="come near to this instead")
 
 
-class Constraint(Quality):
+class ConstraintKeys(QuantityKeys):
     """What must be kept."""
 
     least: Value | None = None
@@ -80,22 +82,22 @@ class Constraint(Quality):
     equal: Value | None = None
 
 
-def _short(found: Any) -> Any:
+def _expand_short(found: Any) -> Any:
     return {"of": found} if isinstance(found, str) else found
 
 
-class Shape(Block):
+class OptimalBlock(TaskBlock):
     """Parameters within bounds that make an objective least and keep constraints; the driver goes its whole way."""
 
     task: Literal["optimal"]
     vary: dict[Name, Range] = Field(
         min_length=1,
-        max_length=MOST,
+        max_length=MOST_PARAMETERS,
         description="by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; bare numbers are lengths "
         "where the file takes them for such",
     )
-    objective: Annotated[Objective, BeforeValidator(_short)]
-    constraints: list[Constraint] = Field(default_factory=list, max_length=30)
+    objective: Annotated[ObjectiveKeys, BeforeValidator(_expand_short)]
+    constraints: list[ConstraintKeys] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
         default=None,
         description="the driver's way: cycle, stroke (its own), positions (through the file's), [from, to]",
@@ -108,31 +110,34 @@ class Shape(Block):
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
 
-def parameters(shape: Shape) -> dict[str, str]:
+BLOCK = OptimalBlock
+
+
+def parameters(shape: OptimalBlock) -> dict[str, str]:
     """Names of what is found; their kinds follow from the bounds."""
     return dict.fromkeys(shape.vary, "length")
 
 
-def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
+def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> OptimalTask:
     """The task in SI. Raises ProblemError."""
     parameters = read_ranges(shape.vary, sense, shape.names, file_with)
-    files = _Files(parameters, shape, sense, file_with)
-    middles = near([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
-    files.over = asked_over(shape.over, files.plain(middles).linkage.driver, sense)
-    middle = driven(files.plain(middles), files.over)
+    files = _FileVariants(parameters, shape, sense, file_with)
+    middles = nearest_allowed([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
+    files.over = read_over(shape.over, files.plain(middles).linkage.driver, sense)
+    middle = with_driver_range(files.plain(middles), files.over)
     _check_mobility(middle)
     for k, parameter in enumerate(parameters):
         for end in (parameter.low, parameter.high):
             files.variant([*middles[:k], end, *middles[k + 1 :]])
     constraints = tuple(
-        _constraint(given, middle, sense, n, files.asked(given, ("constraints", n), middles, middle))
+        _read_constraint(given, middle, sense, n, files.asked(given, ("constraints", n), middles, middle))
         for n, given in enumerate(shape.constraints)
     )
     asked = files.asked(shape.objective, ("objective",), middles, middle)
-    objective, target = _quantity(shape.objective, middle, sense, ("objective",), asked), shape.objective.target
+    objective, target = _read_quantity(shape.objective, middle, sense, ("objective",), asked), shape.objective.target
     if target is not None:
-        target = sense.number(target, KINDS[_kind(objective, middle)].dimension, ("objective", "target"))
-    return Task(
+        target = sense.number(target, KINDS[_kind_of(objective, middle)].dimension, ("objective", "target"))
+    return OptimalTask(
         parameters,
         files.variant,
         objective,
@@ -143,19 +148,21 @@ def read(shape: Shape, sense: ValueReader, file_with: FileWith) -> Task:
         shape.generations,
         shape.seed,
         files.accepts,
-        _bar(),
+        _progress_bar(),
     )
 
 
-class _Files:
+class _FileVariants:
     """The file with other numbers (SI, or TracedNumbers) of what varies."""
 
-    def __init__(self, parameters: Sequence[Parameter], shape: Shape, sense: ValueReader, file_with: FileWith) -> None:
+    def __init__(
+        self, parameters: Sequence[Parameter], shape: OptimalBlock, sense: ValueReader, file_with: FileWith
+    ) -> None:
         self.parameters, self.names, self.file_with = parameters, shape.names, file_with
         self.units, self.varied = sense.units, VariedUnits(sense.units)
         self.own = sense.parameters
         self.over: Any = None
-        self.goals: list[tuple[Path, Quality]] = [(("objective",), shape.objective)]
+        self.goals: list[tuple[Path, QuantityKeys]] = [(("objective",), shape.objective)]
         self.goals += [(("constraints", n), given) for n, given in enumerate(shape.constraints)]
 
     def plain(self, numbers: Sequence[Any]) -> Problem:
@@ -169,13 +176,13 @@ class _Files:
         }
         return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
-    def asked(self, given: Quality, path: Path, numbers: Sequence[Any], variant: Variant) -> Asked:
+    def asked(self, given: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
         """Places of the driver that a quantity is asked at, and what is wanted of a link there; both may rest on what
         varies. Raises ProblemError.
         """
         found, units = self._given(numbers)
         sense, linkage = ValueReader({**self.own, **found}, units), variant.linkage
-        places = tuple(place_of(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
+        places = tuple(read_position(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
         if not given.values or given.link not in linkage.moving:
             return places, (0.0,) * len(places)
         dimension = ANGLE if linkage.output_swings(given.link) else LENGTH
@@ -184,11 +191,11 @@ class _Files:
     def variant(self, numbers: Sequence[Any]) -> Variant:
         """Raises OfTheFile, which tells the numbers that the file is refused with, and ProblemError."""
         try:
-            variant = driven(self.plain(numbers), self.over)
+            variant = with_driver_range(self.plain(numbers), self.over)
             asked = [self.asked(given, path, numbers, variant) for path, given in self.goals]
             places, wanted = (tuple(chain.from_iterable(part)) for part in zip(*asked, strict=True))
             return replace(variant, asked=places, wanted=wanted)
-        except OfTheFile as error:
+        except TriedFileError as error:
             refused, told = copy(error.error), []
             for p, number in zip(self.parameters, numbers, strict=True):
                 value, dimension = getattr(number, "value", number), KINDS[p.kind].dimension
@@ -197,13 +204,13 @@ class _Files:
             refused.message = _("with {numbers} the file is refused: {reason}").format(
                 numbers=", ".join(told), reason=refused.message
             )
-            raise OfTheFile(refused) from None
+            raise TriedFileError(refused) from None
 
     def accepts(self, numbers: Sequence[float]) -> bool:
         """Whether the file takes them."""
         try:
             self.variant(numbers)
-        except (OfTheFile, ProblemError):
+        except (TriedFileError, ProblemError):
             return False
         return True
 
@@ -222,10 +229,12 @@ def _check_mobility(variant: Variant) -> None:
         ) from None
 
 
-def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int, asked: Asked) -> task.Constraint:
+def _read_constraint(
+    given: ConstraintKeys, variant: Variant, sense: ValueReader, n: int, asked: DriverTargets
+) -> task.QuantityConstraint:
     path: Path = ("constraints", n)
-    quantity = _quantity(given, variant, sense, path, asked)
-    dimension = KINDS[_kind(quantity, variant)].dimension
+    quantity = _read_quantity(given, variant, sense, path, asked)
+    dimension = KINDS[_kind_of(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
         for key in ("least", "most", "equal")
@@ -238,14 +247,16 @@ def _constraint(given: Constraint, variant: Variant, sense: ValueReader, n: int,
     least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
     if least is not None and most is not None and least > most:
         raise ProblemError(_("the least is more than the most"), path=path, found=two(given.least, given.most))
-    return task.Constraint(quantity, least, most, (*path, list(sides)[-1]))
+    return task.QuantityConstraint(quantity, least, most, (*path, list(sides)[-1]))
 
 
-def _kind(quantity: Goal, variant: Variant) -> str:
+def _kind_of(quantity: MechanismQuantity, variant: Variant) -> str:
     return quantity.kind(variant.linkage, mobile(variant.linkage).solved)
 
 
-def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, asked: Asked) -> Goal:
+def _read_quantity(
+    given: QuantityKeys, variant: Variant, sense: ValueReader, path: Path, asked: DriverTargets
+) -> MechanismQuantity:
     linkage, kind, name = variant.linkage, QUANTITIES[given.of], ""
     places, values = asked
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
@@ -281,7 +292,7 @@ def _quantity(given: Quality, variant: Variant, sense: ValueReader, path: Path, 
     return kind(name, tuple(given.links), places, tuple(wanted), given.norm, given.relative)
 
 
-def _bar() -> Callable[[int, int], None]:
+def _progress_bar() -> Callable[[int, int], None]:
     """Progress on a terminal."""
     if not sys.stderr.isatty():
         return lambda at, of: None

@@ -16,9 +16,16 @@ from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Sketch
 from tmm_cli.mechanics.numerics import Real
-from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, Goal, Over, Read
-from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, Assembles
-from tmm_cli.synthesis.optimal.task import Constraint, Task, check, first_of, near, one_sense
+from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MechanismQuantity, QuantityRange, Read
+from tmm_cli.synthesis.optimal.quantities.transmission import SIDE, AssemblyReserve
+from tmm_cli.synthesis.optimal.task import (
+    OptimalTask,
+    QuantityConstraint,
+    check_task,
+    find_first,
+    has_one_sense,
+    nearest_allowed,
+)
 
 ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
 EACH = 24  # positions of the search in each turn of a cycle of many, at least
@@ -38,13 +45,13 @@ class Candidates:
     Raises Infeasible.
     """
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: OptimalTask) -> None:
         self.task = task
         self.low, self.high = (np.array([getattr(p, end) for p in task.parameters]) for end in ("low", "high"))
-        self.constraints = (Constraint(Assembles(), least=ROOM), *task.constraints)
+        self.constraints = (QuantityConstraint(AssemblyReserve(), least=ROOM), *task.constraints)
         self.quantities = (task.objective, *(constraint.quantity for constraint in self.constraints))
-        self.first = first_of(task)
-        check(task, self.first)
+        self.first = find_first(task)
+        check_task(task, self.first)
         self.variant = task.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = mobile(self.linkage).solved
@@ -58,7 +65,7 @@ class Candidates:
             self.first,
             self.outputs,
             forces=any(quantity.forces for quantity in self.quantities),
-            one_sense=one_sense(self.task, self.first),
+            one_sense=has_one_sense(self.task, self.first),
         )
         self.taped = isinstance(self.program, Taped)
         self.coarse = self.program.without(CLOSELY)
@@ -75,7 +82,7 @@ class Candidates:
         rough = bool(self.linkage.friction) or self.linkage.by_strokes
         self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
         self.overs = tuple(
-            Over(
+            QuantityRange(
                 self.linkage,
                 not quantity.slides(self.linkage, self.groups),
                 self.closed and not (self.jumps and quantity.forces),
@@ -109,7 +116,7 @@ class Candidates:
 
     def numbers(self, x: Real) -> Real:
         """SI numbers of shares of the ranges."""
-        return near(self.low + x * (self.high - self.low), self.task.parameters)
+        return nearest_allowed(self.low + x * (self.high - self.low), self.task.parameters)
 
     def shares(self, numbers: Real) -> Real:
         """Shares of the ranges at which numbers lie."""
@@ -130,7 +137,7 @@ class Candidates:
         ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
 
-    def quantity(self, n: int, numbers: Real) -> Goal:
+    def quantity(self, n: int, numbers: Real) -> MechanismQuantity:
         """A quantity with its places in the candidate of these numbers (SI), and what it wants of the link there."""
         first, own = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
         variant, last = self.task.make(numbers.tolist()), first + len(own.places)
@@ -162,11 +169,11 @@ class Candidates:
             wanted = self.wanted(values[0])
             return np.where(np.isnan(wanted), np.inf, wanted), violation
 
-    def coarsely(self, x: Real) -> tuple[Mapping[str, Real], list[tuple[Goal, Read, Over]]]:
+    def coarsely(self, x: Real) -> tuple[Mapping[str, Real], list[tuple[MechanismQuantity, Read, QuantityRange]]]:
         """Outputs at the places of the search, and of every quantity what reads its own of them."""
         found = self.coarse(self.numbers(x), self.places)
         own = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
-        return found, [(quantity, reader(found, n, where), over) for n, (quantity, where, over) in own]
+        return found, [(quantity, quantity_reader(found, n, where), over) for n, (quantity, where, over) in own]
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
@@ -201,6 +208,6 @@ class Candidates:
         return None if alike(own, shown) else own
 
 
-def reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
+def quantity_reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
     """Outputs of a quantity by name, at some of the places."""
     return lambda name: found[name if name == WANTED else f"{n}.{name}"][:, where]

@@ -24,7 +24,7 @@ FORBIDDEN = 1e30  # times a violation: above every objective
 
 
 @dataclass(frozen=True)
-class Evolved:
+class EvolutionResult:
     """population (variants, n): the first candidates and the best of each generation, best first, with objective and
     violation; history: objective and violation of the one that led in each generation.
 
@@ -81,7 +81,7 @@ def evolve(
     seed: int,
     equalities: bool = False,
     progress: Callable[[int, int], None] = lambda at, of: None,
-) -> Evolved:
+) -> EvolutionResult:
     """Search 0..1 in `size` dimensions; the same seed gives the same answer. One that gathers early is begun anew."""
     from scipy.optimize import differential_evolution
 
@@ -125,7 +125,7 @@ def evolve(
         raise KeyboardInterrupt
     x, f, v = (np.concatenate(parts) for parts in zip(*watched.kept, strict=True))
     order = np.argsort(watched.judged(f, v), kind="stable")
-    return Evolved(x[order], f[order], v[order], np.array(watched.history), stopped)
+    return EvolutionResult(x[order], f[order], v[order], np.array(watched.history), stopped)
 
 
 # Parameters that have some values only: the best of each choice is kept; where these are few, all are tried.
@@ -139,7 +139,7 @@ POLISHED, FEW = 24, 6  # choices that are looked at closely: where candidates mo
 NEAR = 0.3  # a violation that the polish may take away
 
 
-class Choices:
+class DiscreteChoices:
     """Called as candidates.evaluate is; keeps the best candidate of each choice that it has seen.
 
     Evolution gathers about one choice early, and another may lead farther once the others' numbers are polished.
@@ -164,7 +164,7 @@ class Choices:
                 self.best[tuple(key)] = violation, objective, own.copy()
         return f, v
 
-    def every(self) -> Evolved:
+    def every(self) -> EvolutionResult:
         """Every candidate, best first."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
@@ -181,7 +181,7 @@ class Choices:
             task.progress(self.count, self.count)
         order = np.lexsort(found)
         f, v = found[:, order]
-        return Evolved(x[order], f, v, found.T, stopped, every=True)
+        return EvolutionResult(x[order], f, v, found.T, stopped, every=True)
 
     def starts(self) -> list[Real]:
         """Of the choices that are nearest to keep all constraints, and of those with the least objectives beside."""

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.mechanics.numerics import Real, solve
-from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, reader
-from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, corners
+from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, quantity_reader
+from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, nearest_corners
 
 STEP = 1e-6  # of a difference, in shares of the ranges
 WEIGHT = 1e3  # of what is broken beside the residuals
@@ -28,7 +28,7 @@ GAIN = 1e-14  # of the sum of squares: what a step must bring
 
 
 @dataclass(frozen=True)
-class Rows:
+class ResidualRows:
     """Of variants: residuals (v, n), and what is to stay above zero (v, m)."""
 
     off: Real
@@ -40,10 +40,10 @@ class Rows:
         return np.where(np.isfinite(total), total, np.inf)
 
 
-Evaluate = Callable[[Real, int], Rows]  # variants (v, n) in 0..1, in sets of so many: the first leads
+Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, in sets of so many: the first leads
 
 
-def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
+def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
     """Places (starts, n) to which starts lead, and their sums of squares."""
     n = x.shape[1]
     x, damping = x.copy(), np.full(len(x), FIRST)
@@ -53,9 +53,9 @@ def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
         if not len(going):
             break
         at = x[going]
-        rows, slopes = _differences(evaluate, at)
+        rows, slopes = _difference_slopes(evaluate, at)
         tried = np.clip(damping[going, None] * np.array(DAMPINGS), LEAST, LARGEST)
-        ends = _ends(evaluate, rows, slopes, at, tried)
+        ends = _step_ends(evaluate, rows, slopes, at, tried)
         costs = evaluate(ends.reshape(-1, n), 1).cost().reshape(len(going), -1)
         each, best = np.arange(len(going)), np.argmin(costs, axis=1)
         better = costs[each, best] < cost[going] * (1 - GAIN)
@@ -65,20 +65,20 @@ def descend(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
     return x, cost
 
 
-def _ends(evaluate: Evaluate, rows: Rows, slopes: Rows, x: Real, dampings: Real) -> Real:
+def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
     """Where steps lead, (s, 2 d, n): one of each damping (s, d), and the same with what residuals bend along it."""
-    rows, slopes = (Rows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
+    rows, slopes = (ResidualRows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
     x = x[:, None]
-    step = step_of(rows, slopes, x, dampings)
+    step = damped_step(rows, slopes, x, dampings)
     ahead = evaluate((x + AHEAD * step).reshape(-1, x.shape[-1]), 1).off.reshape(*dampings.shape, -1)
     bend = ((ahead - rows.off) / AHEAD - (slopes.off @ step[..., None])[..., 0]) / AHEAD
     known = np.all(np.isfinite(bend), axis=-1, keepdims=True)
-    bent = step_of(Rows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
+    bent = damped_step(ResidualRows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
     ends: Real = np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
     return ends
 
 
-def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
+def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
     """Rows at places (s, n), and their slopes: (s, rows, n). A slope that is not known counts as none."""
     s, n = x.shape
     run = np.where(x > 0.5, -STEP, STEP)
@@ -91,10 +91,10 @@ def _differences(evaluate: Evaluate, x: Real) -> tuple[Rows, Rows]:
         slope = (y[:, 1:] - y[:, :1]) / run[:, :, None]
         values.append(y[:, 0])
         slopes.append(np.where(np.isfinite(slope), slope, 0.0).transpose(0, 2, 1))
-    return Rows(*values), Rows(*slopes)
+    return ResidualRows(*values), ResidualRows(*slopes)
 
 
-def step_of(rows: Rows, slopes: Rows, x: Real, damping: Any) -> Real:
+def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any) -> Real:
     """The step of each start, (..., n), within bounds 0..1."""
     n = x.shape[-1]
     square = slopes.off.mT @ slopes.off
@@ -131,7 +131,7 @@ DAMPING = 1e-9  # keeps what is not determined where it was
 SETTLED_AT_ONCE = 250  # candidates at once
 
 
-class Settling:
+class LinearParameters:
     """Called with candidates (variants, n) in 0..1, that can be assembled; gives better ones."""
 
     def __init__(self, candidates: Candidates) -> None:
@@ -158,11 +158,13 @@ class Settling:
         for __ in range(1 if self.objective.places else TURNS):
             off, own = first + np.einsum("vpk,vk->vp", slopes, found), slopes
             if not self.objective.places:
-                near = corners(off.real.copy(), off.imag.copy(), wanted).T
+                near = nearest_corners(off.real.copy(), off.imag.copy(), wanted).T
                 off = np.take_along_axis(off, near, axis=1)
                 own = np.take_along_axis(slopes, near[..., None], axis=1)
-            rows = Rows(_real(off - wanted), np.zeros((len(x), 0)))
-            step = step_of(rows, Rows(_real(own), np.zeros((len(x), 0, len(self.linear)))), found, DAMPING)
+            rows = ResidualRows(_as_real(off - wanted), np.zeros((len(x), 0)))
+            step = damped_step(
+                rows, ResidualRows(_as_real(own), np.zeros((len(x), 0, len(self.linear)))), found, DAMPING
+            )
             found = np.clip(found + step, 0, 1)
         settled = x.copy()
         settled[:, self.linear] = found
@@ -172,7 +174,7 @@ class Settling:
         """What is compared with what is wanted, (variants, places)."""
         one = self.candidates
         found = one.coarse(one.numbers(x), one.places)
-        return self.objective.curve(reader(found, 0, one.exact[0]))
+        return self.objective.curve(quantity_reader(found, 0, one.exact[0]))
 
     def _linear(self) -> list[int]:
         """Those whose changes add up, with one another and with themselves."""
@@ -196,7 +198,7 @@ class Settling:
         return found
 
 
-def _real(rows: Any) -> Real:
+def _as_real(rows: Any) -> Real:
     """Complex rows as two real ones each, (variants, rows, ...)."""
     return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
@@ -221,7 +223,7 @@ BLOCK = 400  # variants at once
 
 
 @dataclass(frozen=True)
-class Ends:
+class IndependentEnds:
     """Where independent starts ended: how many, at the least, and within NEAR of it; met: nothing is less than it."""
 
     count: int
@@ -230,7 +232,7 @@ class Ends:
     met: bool
 
     @classmethod
-    def of(cls, won: Sequence[tuple[float, Real]]) -> Ends:
+    def of(cls, won: Sequence[tuple[float, Real]]) -> IndependentEnds:
         costs = np.array([cost for cost, __ in won])
         least = np.min(costs)
         same, near = (int(np.sum(costs <= least * (1 + share) ** 2)) for share in (SAME, NEAR))
@@ -243,53 +245,53 @@ class Ends:
 
 
 @dataclass(frozen=True)
-class Found:
+class ManyStartsResult:
     """starts: best first; ends: None where nothing was assembled; stopped: by hand."""
 
     starts: list[Real]
-    ends: Ends | None
+    ends: IndependentEnds | None
     stopped: bool
 
 
-def fits(candidates: Candidates) -> bool:
+def is_applicable(candidates: Candidates) -> bool:
     """Whether the objective is a sum of squares, and all numbers may have all values."""
     task = candidates.task
     squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
     return squares and task.target is None and candidates.taped and len(task.free) == len(task.parameters)
 
 
-def from_many(candidates: Candidates, evolved: Sequence[Real]) -> Found:
+def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManyStartsResult:
     """Where the search from many starts ends; evolved: starts of the first round beside the random ones."""
     chance = np.random.default_rng(candidates.task.seed)
-    evaluate, settle = residuals(candidates), Settling(candidates)
+    evaluate, settle = residual_function(candidates), LinearParameters(candidates)
     won: list[tuple[float, Real]] = []
     near: list[tuple[float, Real]] = []
     stopped, progress = False, candidates.task.progress
     try:
         for k in range(ROUNDS):
             progress(k, ROUNDS)
-            x = _drawn(candidates, chance)
+            x = _random_starts(candidates, chance)
             x = np.vstack([*(evolved if k == 0 else ()), x[candidates.evaluate(x)[1] < LOST]])
-            won += _round(candidates, evaluate, settle, x)
-            ends = Ends.of(won)
+            won += _run_tournament(candidates, evaluate, settle, x)
+            ends = IndependentEnds.of(won)
             if ends.met or (k and ends.agree):
                 break
         else:
-            near = _shaken(evaluate, won, chance)
+            near = _shake_best(evaluate, won, chance)
     except KeyboardInterrupt:
         stopped = True
     finally:
         progress(ROUNDS, ROUNDS)
     if not won:
-        return Found([], None, stopped)
+        return ManyStartsResult([], None, stopped)
     won.sort(key=lambda one: one[0])
     best = sorted([*won[:WINNERS], *near], key=lambda one: one[0])[:WINNERS]
-    closer = residuals(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
-    last = _sorted(*descend(closer, np.array([x for __, x in best]), LAST))
-    return Found([x for __, x in last], Ends.of([*last, *won[WINNERS:]]), stopped)
+    closer = residual_function(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
+    last = _best_first(*minimize_squares(closer, np.array([x for __, x in best]), LAST))
+    return ManyStartsResult([x for __, x in last], IndependentEnds.of([*last, *won[WINNERS:]]), stopped)
 
 
-def _drawn(candidates: Candidates, chance: np.random.Generator) -> Real:
+def _random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
     """Starts at random; every second one by the ratios of its numbers, as bounds far apart leave the size open."""
     x = chance.random((SAMPLES, len(candidates.low)))
     ratio = candidates.low > 0
@@ -298,7 +300,9 @@ def _drawn(candidates: Candidates, chance: np.random.Generator) -> Real:
     return x
 
 
-def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real) -> list[tuple[float, Real]]:
+def _run_tournament(
+    candidates: Candidates, evaluate: Evaluate, settle: LinearParameters, x: Real
+) -> list[tuple[float, Real]]:
     """The sums of squares to which a tournament leads, and where."""
 
     def settled(x: Real) -> Real:
@@ -310,12 +314,14 @@ def _round(candidates: Candidates, evaluate: Evaluate, settle: Settling, x: Real
     f, violation = candidates.evaluate(x)
     x = x[np.lexsort((f, violation))]
     for count, steps in TOURNAMENT:
-        last = _sorted(*descend(evaluate, settled(x[:count]), steps))
+        last = _best_first(*minimize_squares(evaluate, settled(x[:count]), steps))
         x = np.array([own for __, own in last])
     return last
 
 
-def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator) -> list[tuple[float, Real]]:
+def _shake_best(
+    evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator
+) -> list[tuple[float, Real]]:
     """Where the best end that are shaken, a little or a lot, again and again."""
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
     found = sorted(won, key=lambda one: one[0])[:last]
@@ -323,7 +329,7 @@ def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random
         x = np.repeat([x for __, x in found], count // last, axis=0)
         x = np.clip(x + 10 ** chance.uniform(*DECADES, (len(x), 1)) * chance.standard_normal(x.shape), 0, 1)
         for some, steps in SHAKEN:
-            new = _sorted(*descend(evaluate, x[:some], steps))
+            new = _best_first(*minimize_squares(evaluate, x[:some], steps))
             x = np.array([own for __, own in new])
         before, found = found[0][0], sorted([*found, *new], key=lambda one: one[0])[:last]
         if found[0][0] > before * (1 - SHAKE_GAIN):
@@ -331,18 +337,18 @@ def _shaken(evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random
     return found
 
 
-def _sorted(x: Real, cost: Real) -> list[tuple[float, Real]]:
+def _best_first(x: Real, cost: Real) -> list[tuple[float, Real]]:
     """Best first."""
     return sorted(zip(cost.tolist(), x, strict=True), key=lambda one: one[0])
 
 
-def residuals(candidates: Candidates) -> Evaluate:
+def residual_function(candidates: Candidates) -> Evaluate:
     """What is made least in squares; equalities stand beside it with a weight."""
     objective, constraints = candidates.task.objective, candidates.constraints
     assert isinstance(objective, Deviation)
     unit = objective.spread * np.sqrt(len(objective.wanted))
 
-    def block(x: Real, each: int) -> Rows:
+    def block(x: Real, each: int) -> ResidualRows:
         (__, read, over), *others = candidates.coarsely(x)[1]
         off, least = [objective.residuals(read, over, each) / unit], []
         for constraint, (quantity, read, over) in zip(constraints, others, strict=True):
@@ -350,12 +356,12 @@ def residuals(candidates: Candidates) -> Evaluate:
             above, even = constraint.rows(value, value)
             least += above
             off += [WEIGHT * row for row in even]
-        return Rows(np.hstack(off), np.hstack(least))
+        return ResidualRows(np.hstack(off), np.hstack(least))
 
-    def evaluate(x: Real, each: int) -> Rows:
+    def evaluate(x: Real, each: int) -> ResidualRows:
         size = max(1, BLOCK // each) * each
         with np.errstate(all="ignore"):
             rows = [block(x[at : at + size], each) for at in range(0, len(x), size)]
-        return Rows(np.concatenate([r.off for r in rows]), np.concatenate([r.least for r in rows]))
+        return ResidualRows(np.concatenate([r.off for r in rows]), np.concatenate([r.least for r in rows]))
 
     return evaluate

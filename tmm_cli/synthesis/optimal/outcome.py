@@ -13,15 +13,15 @@ import numpy as np
 from tmm_cli.batch import Places
 from tmm_cli.language import N_, Phrase
 from tmm_cli.mechanics.numerics import NO_VIOLATION, Real, Vector, least
-from tmm_cli.synthesis.construction import Diagram, Line
-from tmm_cli.synthesis.measures import crank_turns
+from tmm_cli.synthesis.construction import Diagram, DiagramLine
+from tmm_cli.synthesis.measures import driver_completes_range
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import Candidates
-from tmm_cli.synthesis.optimal.evolution import Evolved
-from tmm_cli.synthesis.optimal.polish import Best
-from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.quantities.transmission import Assembles
-from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
+from tmm_cli.synthesis.optimal.evolution import EvolutionResult
+from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
+from tmm_cli.synthesis.optimal.quantities.transmission import AssemblyReserve
+from tmm_cli.synthesis.optimal.refinement import BestCandidate
+from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
 
 CURVE = 361  # places of a path or a law that is drawn
 NONE = np.zeros(0)
@@ -29,7 +29,9 @@ NONE = np.zeros(0)
 Read = Callable[[Places, str], Real]
 
 
-def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, quantity: str, kind: str) -> Diagram:
+def draw_history(
+    evolved: EvolutionResult, shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
+) -> Diagram:
     """shown: an objective as users read it; polished: the one that was found; quantity: what it is called.
 
     Above: the best so far of those that keep the constraints, and behind it the candidate that led in each generation
@@ -46,12 +48,12 @@ def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, qu
     number = np.arange(len(objective))
     there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
     kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
-    lines = [Line(leading, number, shown(there), faint=True)]
+    lines = [DiagramLine(leading, number, shown(there), faint=True)]
     if np.any(np.isfinite(kept)):
-        lines.append(Line(N_("best so far that keeps the constraints"), number, shown(kept)))
-    lines.append(Line(found, np.array([len(number)]), np.array([polished]), dots=True))
+        lines.append(DiagramLine(N_("best so far that keeps the constraints"), number, shown(kept)))
+    lines.append(DiagramLine(found, np.array([len(number)]), np.array([polished]), dots=True))
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
-    violated = Line(N_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
+    violated = DiagramLine(N_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
     return Diagram(
         "history",
         title,
@@ -63,7 +65,7 @@ def history(evolved: Evolved, shown: Callable[[Real], Real], polished: float, qu
     )
 
 
-def reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
+def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
     """Of the n-th quantity, for shares x of the ranges."""
     two = x[None]
 
@@ -72,14 +74,14 @@ def reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
         return found
 
     quantity = candidates.quantity(n, candidates.numbers(x))
-    return (_law if quantity.of == "law" else _path)(candidates, n, quantity, read)
+    return (_compare_law if quantity.of == "law" else _compare_path)(candidates, n, quantity, read)
 
 
-def _name(candidates: Candidates, n: int) -> str:
+def _table_name(candidates: Candidates, n: int) -> str:
     return f"{candidates.quantities[n].of}-{n}" if n else candidates.quantities[n].of
 
 
-def _law(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Listing, Diagram]:
+def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
     swings = candidates.overs[n].swings
     at, wanted = np.array(quantity.places), np.array(quantity.wanted)
     low, high = float(np.min(at)), float(np.max(at))
@@ -105,17 +107,17 @@ def _law(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Li
     )
     rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
     lines = (
-        Line(N_("found mechanism"), q, run),
-        Line(N_("wanted"), at, wanted, dots=True),
-        Line(N_("reached"), at, there, dots=True),
+        DiagramLine(N_("found mechanism"), q, run),
+        DiagramLine(N_("wanted"), at, wanted, dots=True),
+        DiagramLine(N_("reached"), at, there, dots=True),
     )
     up = (N_("angle of the link") if swings else N_("run of the link"), kind)
     title = N_("Law of motion over the whole way of the driver")
-    drawn = Diagram(_name(candidates, n), title, (N_("driver"), place), up, lines)
-    return Listing(_name(candidates, n), N_("Wanted law and what is reached"), columns, rows), drawn
+    drawn = Diagram(_table_name(candidates, n), title, (N_("driver"), place), up, lines)
+    return Listing(_table_name(candidates, n), N_("Wanted law and what is reached"), columns, rows), drawn
 
 
-def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[Listing, Diagram]:
+def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
     wanted = np.array(quantity.wanted)
 
     def spots(places: Places) -> Vector:
@@ -125,7 +127,9 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
     if quantity.places:
         there = spots(Places(NONE, np.array(quantity.places)))
     else:
-        there = spots(Places(_closest(lambda shares: spots(Places(shares, NONE)), wanted, candidates.closed), NONE))
+        there = spots(
+            Places(_closest_shares(lambda shares: spots(Places(shares, NONE)), wanted, candidates.closed), NONE)
+        )
     rows: tuple[tuple[float, ...], ...] = tuple(
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
     )
@@ -140,12 +144,12 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
         columns = (("at", N_("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
-        Line(N_("path"), path.real, path.imag),
-        Line(N_("wanted"), wanted.real, wanted.imag, dots=True),
-        Line(N_("reached"), there.real, there.imag, dots=True),
+        DiagramLine(N_("path"), path.real, path.imag),
+        DiagramLine(N_("wanted"), wanted.real, wanted.imag, dots=True),
+        DiagramLine(N_("reached"), there.real, there.imag, dots=True),
     )
     drawn = Diagram(
-        _name(candidates, n),
+        _table_name(candidates, n),
         N_("Path of the point over the whole way of the driver"),
         (N_("x"), "length"),
         (N_("y"), "length"),
@@ -157,10 +161,10 @@ def _path(candidates: Candidates, n: int, quantity: Goal, read: Read) -> tuple[L
         if quantity.places
         else N_("Wanted points and the nearest that are reached")
     )
-    return Listing(_name(candidates, n), title, columns, rows), drawn
+    return Listing(_table_name(candidates, n), title, columns, rows), drawn
 
 
-def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
+def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
     """Shares of the way at which a path comes nearest to points."""
     shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
     near = shares[np.argmin(np.abs(path(shares) - wanted[:, None]), axis=1)]
@@ -176,13 +180,13 @@ def _closest(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Re
 ACTIVE = 1e-6  # of its scale: a constraint this near to its bound holds the optimum
 
 
-def outcome_of(candidates: Candidates, found: Best) -> Outcome:
+def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome:
     """The outcome of a search whose constraints are kept."""
     task, evolved, linkage = candidates.task, found.evolved, candidates.linkage
     kinds = [quantity.kind(linkage, candidates.groups) for quantity in candidates.quantities]
     ends = task.make(found.numbers.tolist()).ends
     ends = None if ends is None else (float(ends[0]), float(ends[1]))
-    demands = [Demand(Assembles.text, 1.0, "number", partial(crank_turns, ends=ends), asked=False)]
+    demands = [Demand(AssemblyReserve.text, 1.0, "number", partial(driver_completes_range, ends=ends), asked=False)]
     for n in range(len(candidates.quantities)):
         if n == 1:  # it goes its way
             continue
@@ -203,12 +207,12 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
                 of=quantity.of,
             )
         )
-    listings = [_constraints(candidates, found, kinds)]
+    listings = [_tabulate_constraints(candidates, found, kinds)]
     title = candidates.quantities[0].title(linkage)
-    drawings = [history(evolved, partial(_in_its_unit, candidates), found.values[0], title, kinds[0])]
+    drawings = [draw_history(evolved, partial(_in_objective_unit, candidates), found.values[0], title, kinds[0])]
     for n, quantity in enumerate(candidates.quantities):
         if quantity.wanted:
-            listing, drawn = reached(candidates, found.x, n)
+            listing, drawn = compare_reached(candidates, found.x, n)
             listings.append(listing)
             drawings.insert(0, drawn)
     sketch = candidates.sketch(found.x)
@@ -238,9 +242,9 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
                 "that the sketch does show"
             )
         )
-    return Outcome(
-        _given(candidates, ends),
-        _found(candidates, found),
+    return SynthesisOutcome(
+        _given_values(candidates, ends),
+        _found_values(candidates, found),
         _source(candidates, found),
         tuple(demands),
         tuple(drawings),
@@ -250,25 +254,25 @@ def outcome_of(candidates: Candidates, found: Best) -> Outcome:
     )
 
 
-def _given(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[Value, ...]:
+def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
     """Bounds of what varies, and of the driver."""
     given = []
     for p in candidates.task.parameters:
-        given.append(Value(p.name, p.low, p.kind, N_("varies from")))
-        given.append(Value(p.name, p.high, p.kind, N_("varies to")))
+        given.append(NamedValue(p.name, p.low, p.kind, N_("varies from")))
+        given.append(NamedValue(p.name, p.high, p.kind, N_("varies to")))
     given += [
-        Value(p.name, len(p.values), "number", N_("number of values to choose from"))
+        NamedValue(p.name, len(p.values), "number", N_("number of values to choose from"))
         for p in candidates.task.parameters
         if p.values
     ]
     if ends is not None:
         kind = "length" if candidates.linkage.driver.kind == "slide" else "angle"
-        given.append(Value("from", ends[0], kind, N_("the driver goes from")))
-        given.append(Value("to", ends[1], kind, N_("the driver goes to")))
+        given.append(NamedValue("from", ends[0], kind, N_("the driver goes from")))
+        given.append(NamedValue("to", ends[1], kind, N_("the driver goes to")))
     return tuple(given)
 
 
-def _found(candidates: Candidates, found: Best) -> tuple[Value, ...]:
+def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedValue, ...]:
     """The parameters, and whether they lie at a bound."""
     numbers = []
     for p, number, share in zip(candidates.task.parameters, found.numbers.tolist(), found.x.tolist(), strict=True):
@@ -278,12 +282,12 @@ def _found(candidates: Candidates, found: Best) -> tuple[Value, ...]:
             text = N_("found at its upper bound")
         else:
             text = N_("found among its values") if p.values else N_("found within its bounds")
-        numbers.append(Value(p.name, number, p.kind, text))
+        numbers.append(NamedValue(p.name, number, p.kind, text))
     return tuple(numbers)
 
 
-def _source(candidates: Candidates, found: Best) -> str:
-    if many_starts.fits(candidates):
+def _source(candidates: Candidates, found: BestCandidate) -> str:
+    if many_starts.is_applicable(candidates):
         return N_(
             "differential evolution (R. Storn, K. Price 1997) and random starts, then least squares (K. Levenberg "
             "1944, D. Marquardt 1963)"
@@ -298,11 +302,20 @@ def _source(candidates: Candidates, found: Best) -> str:
     return N_("all candidates, one after another")
 
 
-def _constraints(candidates: Candidates, found: Best, kinds: list[str]) -> Listing:
+def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: list[str]) -> Listing:
     """The objective and every constraint: bound, value, margin, whether it is active."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
     side = N_("near") if target is not None else N_("largest") if objective.lowest else N_("least")
-    first = objective.title(linkage), _of(objective), side, target, found.values[0], None, kinds[0], N_("objective")
+    first = (
+        objective.title(linkage),
+        _subject(objective),
+        side,
+        target,
+        found.values[0],
+        None,
+        kinds[0],
+        N_("objective"),
+    )
     rows: list[tuple[Any, ...]] = [first]
     for n, constraint in enumerate(candidates.constraints[1:], 2):
         value, quantity = found.values[n], constraint.quantity
@@ -317,7 +330,7 @@ def _constraints(candidates: Candidates, found: Best, kinds: list[str]) -> Listi
             if constraint.equal:
                 words = state = N_("equality, met")
                 left = None
-            rows.append((quantity.title(linkage), _of(quantity), words, bound, value, left, kinds[n], state))
+            rows.append((quantity.title(linkage), _subject(quantity), words, bound, value, left, kinds[n], state))
     columns = (
         ("quantity", N_("quantity"), "word"),
         ("of", N_("of"), "name"),
@@ -331,11 +344,11 @@ def _constraints(candidates: Candidates, found: Best, kinds: list[str]) -> Listi
     return Listing("constraints", N_("Objective and constraints"), columns, tuple(rows))
 
 
-def _of(quantity: Goal) -> str:
+def _subject(quantity: MechanismQuantity) -> str:
     return quantity.name or ", ".join(quantity.links)
 
 
-def _in_its_unit(candidates: Candidates, f: Real) -> Real:
+def _in_objective_unit(candidates: Candidates, f: Real) -> Real:
     """The history of the objective in its own unit; of a target as far above it as the best candidate is from it."""
     target = candidates.task.target
     if target is not None:

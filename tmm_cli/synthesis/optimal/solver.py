@@ -12,39 +12,39 @@ from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal import many_starts
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates
-from tmm_cli.synthesis.optimal.evolution import Choices, Evolved, evolve
+from tmm_cli.synthesis.optimal.evolution import DiscreteChoices, EvolutionResult, evolve
 from tmm_cli.synthesis.optimal.outcome import outcome_of
-from tmm_cli.synthesis.optimal.polish import Best, exactly, polished
-from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.task import Task
-from tmm_cli.synthesis.record import Infeasible, Outcome
+from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
+from tmm_cli.synthesis.optimal.refinement import BestCandidate, evaluate_exactly, refine_candidate
+from tmm_cli.synthesis.optimal.task import OptimalTask
+from tmm_cli.synthesis.record import Infeasible, SynthesisOutcome
 
 PARAMETERS: Final[dict[str, str]] = {}
 SHORTER = 20  # times, where starts beside it lead farther
 STARTS = 3  # of the polish: the best that differ; one where candidates are moved one by one
 HOPE = 1.0  # a start that is worse than the best by more of it is not polished
 APART = 0.02  # in shares of the ranges: what counts as different
-KEPT = 1e-7  # by so much of its scale a constraint may be missed
+MISS_TOLERANCE = 1e-7  # by so much of its scale a constraint may be missed
 NEVER: Final = N_("no mechanism within these bounds can go the whole way of its driver; over: tells another way")
 
 
-def solve(task: Task) -> Outcome:
+def solve(task: OptimalTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
     candidates = Candidates(task)
-    found = best(candidates)
+    found = find_best(candidates)
     if found.missed:
-        raise _missed(candidates, found)
+        raise _missed_constraint(candidates, found)
     return outcome_of(candidates, found)
 
 
-def best(candidates: Candidates) -> Best:
+def find_best(candidates: Candidates) -> BestCandidate:
     """Search and polish. Raises Infeasible."""
     task = candidates.task
-    choices = Choices(candidates) if len(task.free) < len(task.parameters) else None
+    choices = DiscreteChoices(candidates) if len(task.free) < len(task.parameters) else None
     if choices is not None and choices.few:
         evolved = choices.every()
-        return _best_of(candidates, choices.starts(), evolved)
-    many = many_starts.fits(candidates)
+        return _refine_starts(candidates, choices.starts(), evolved)
+    many = many_starts.is_applicable(candidates)
     evolved = evolve(
         choices or candidates.evaluate,
         len(task.parameters),
@@ -54,15 +54,15 @@ def best(candidates: Candidates) -> Best:
         equalities=any(constraint.equal for constraint in candidates.constraints),
         progress=task.progress,
     )
-    starts = _apart(candidates, evolved)
+    starts = _distinct_starts(candidates, evolved)
     if many and not evolved.stopped:
-        found = many_starts.from_many(candidates, starts)
-        led = _best_of(candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=found.stopped))
+        found = many_starts.search_from_many(candidates, starts)
+        led = _refine_starts(candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=found.stopped))
         return replace(led, ends=found.ends)
-    return _best_of(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
+    return _refine_starts(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
 
 
-def _apart(candidates: Candidates, evolved: Evolved) -> list[Real]:
+def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[Real]:
     """The best candidates that differ, in the values that they may have."""
     starts: list[Real] = []
     first = evolved.objective[0]
@@ -76,40 +76,42 @@ def _apart(candidates: Candidates, evolved: Evolved) -> list[Real]:
     return starts
 
 
-def _best_of(candidates: Candidates, starts: Iterable[Real], evolved: Evolved) -> Best:
+def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: EvolutionResult) -> BestCandidate:
     """The best of what the polish leads to from some starts, and of themselves."""
     found: list[tuple[float, float, Real, list[float]]] = []
 
     def take(x: Real) -> None:
         try:
-            values = exactly(candidates, x)
+            values = evaluate_exactly(candidates, x)
         except ValueError:
             return
         both = zip(candidates.constraints, values[1:], strict=True)
         missed = float(sum(constraint.missed(value) for constraint, value in both))
-        missed += LOST * (candidates.constraints[0].missed(values[1]) > KEPT)
-        found.append((missed if missed > KEPT else 0.0, float(candidates.wanted(np.array(values[0]))), x, values))
+        missed += LOST * (candidates.constraints[0].missed(values[1]) > MISS_TOLERANCE)
+        found.append(
+            (missed if missed > MISS_TOLERANCE else 0.0, float(candidates.wanted(np.array(values[0]))), x, values)
+        )
 
     try:
         for start in starts:
             take(start)
             if candidates.task.free:
-                take(polished(candidates, start))
+                take(refine_candidate(candidates, start))
     except KeyboardInterrupt:
         if not found:
             raise
         evolved = replace(evolved, stopped=True)
-    goes = any(candidates.constraints[0].missed(values[1]) <= KEPT for *__, values in found)
+    goes = any(candidates.constraints[0].missed(values[1]) <= MISS_TOLERANCE for *__, values in found)
     found = [one for one in found if not np.isnan(one[0] + one[1])]
     if not found:
         if goes or evolved.violation[0] == 0.0:
-            raise Infeasible("objective", _none(candidates, candidates.task.objective))
+            raise Infeasible("objective", _no_quantity_reason(candidates, candidates.task.objective))
         raise Infeasible("vary", NEVER)
     missed, __, x, values = min(found, key=lambda one: one[:2])
-    return Best(x, candidates.numbers(x), values, missed, evolved)
+    return BestCandidate(x, candidates.numbers(x), values, missed, evolved)
 
 
-def _none(candidates: Candidates, quantity: Goal) -> str:
+def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> str:
     """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
     if quantity.forces and candidates.variant.accelerated:
         return N_(
@@ -119,19 +121,19 @@ def _none(candidates: Candidates, quantity: Goal) -> str:
     return N_("no mechanism within the bounds was found that has this quantity")
 
 
-def _missed(candidates: Candidates, found: Best) -> Infeasible:
+def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasible:
     """The constraint that is farthest from being met, and how near to it the polish comes while the others are kept."""
     misses = [float(c.missed(value)) for c, value in zip(candidates.constraints, found.values[1:], strict=True)]
     n = int(np.argmax(misses))
     constraint, value = candidates.constraints[n], found.values[n + 1]
-    if misses[0] > KEPT:
+    if misses[0] > MISS_TOLERANCE:
         return Infeasible("vary", NEVER)
     if np.isnan(value):
-        return Infeasible(constraint.at, _none(candidates, constraint.quantity))
+        return Infeasible(constraint.at, _no_quantity_reason(candidates, constraint.quantity))
     bound, at = constraint.broken(value)
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
-    near = _best_of(Candidates(task), [found.x], found.evolved)
+    near = _refine_starts(Candidates(task), [found.x], found.evolved)
     reason = _("no mechanism within the bounds was found that meets this and the other constraints")
     if near.missed:
         return Infeasible(at, reason)

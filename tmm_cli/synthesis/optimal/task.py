@@ -15,7 +15,7 @@ from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.kinematics import cycle_of
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
-from tmm_cli.synthesis.optimal.quantities.base import Goal
+from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
 from tmm_cli.synthesis.record import Infeasible
 
 Keys = tuple[str | int, ...]  # of the block, down to what stands there
@@ -33,10 +33,10 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Constraint:
+class QuantityConstraint:
     """least <= quantity <= most (SI); equal where they are the same. at: its place among those asked for."""
 
-    quantity: Goal
+    quantity: MechanismQuantity
     least: float | None = None
     most: float | None = None
     at: Keys = ()
@@ -78,7 +78,7 @@ class Constraint:
 
 
 @dataclass(frozen=True)
-class Task:
+class OptimalTask:
     """make: the linkage for numbers of the parameters (SI), with its driver range. target: the objective is to come
     near to this. positions: round the cycle, in the search. accepts: whether the file takes such numbers. population,
     generations: 0 for as many as the number of parameters wants.
@@ -86,8 +86,8 @@ class Task:
 
     parameters: tuple[Parameter, ...]
     make: Make = field(compare=False)
-    objective: Goal
-    constraints: tuple[Constraint, ...] = ()
+    objective: MechanismQuantity
+    constraints: tuple[QuantityConstraint, ...] = ()
     target: float | None = None
     positions: int = 72
     population: int = 0
@@ -107,7 +107,7 @@ class Task:
         return [one for one in tried if self.accepts(one)]
 
 
-def near(numbers: Any, parameters: Sequence[Parameter]) -> Real:
+def nearest_allowed(numbers: Any, parameters: Sequence[Parameter]) -> Real:
     """The nearest numbers (..., n) that parameters may have."""
     found = np.array(numbers, dtype=float)
     for k, parameter in enumerate(parameters):
@@ -125,7 +125,7 @@ SHARES = (0.0, 0.137, 0.382, 0.618, 0.871, 1.0)  # of its range: where a paramet
 MOST_LOOKED = 100  # of its values, where it has some only
 
 
-def first_of(task: Task) -> list[float]:
+def find_first(task: OptimalTask) -> list[float]:
     """Numbers (SI) of a linkage that can be assembled as the file sketches it: the middle of the bounds, or others.
 
     Raises Infeasible.
@@ -133,7 +133,7 @@ def first_of(task: Task) -> list[float]:
     low, high = (np.array([getattr(p, end) for p in task.parameters]) for end in ("low", "high"))
     chance = np.random.default_rng(0)
     for share in (np.full(len(low), 0.5), *chance.random((TRIES, len(low)))):
-        numbers: list[float] = near(low + share * (high - low), task.parameters).tolist()
+        numbers: list[float] = nearest_allowed(low + share * (high - low), task.parameters).tolist()
         linkage = task.make(numbers).linkage
         try:
             assemble(linkage, mobile(linkage))
@@ -143,7 +143,7 @@ def first_of(task: Task) -> list[float]:
     raise Infeasible("vary", _("no linkage within these bounds can be assembled as it is sketched"))
 
 
-def check(task: Task, first: Sequence[float]) -> None:
+def check_task(task: OptimalTask, first: Sequence[float]) -> None:
     """Every parameter changes something, the linkage has what is asked of it, its cycle is that of all candidates.
 
     Raises Infeasible.
@@ -164,7 +164,7 @@ def check(task: Task, first: Sequence[float]) -> None:
         _check_cycle(task, first, variant.linkage)
 
 
-def _check_cycle(task: Task, first: Sequence[float], linkage: Linkage) -> None:
+def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) -> None:
     """All candidates come round again after as many turns of the crank. Raises Infeasible.
 
     Toothed wheels and further drivers come round together only where their ratios are those of whole numbers.
@@ -179,19 +179,19 @@ def _check_cycle(task: Task, first: Sequence[float], linkage: Linkage) -> None:
         turns: set[Any] = set()  # or ratios with which all never comes round again
         for numbers in task.with_one(first, k, own[:: -(-len(own) // MOST_LOOKED)]):
             other = task.make(numbers).linkage
-            turns.add(cycle_of(other, kernels) or _ratios(other))
+            turns.add(cycle_of(other, kernels) or _speed_ratios(other))
         if len(turns) > 1:
             reason = _("after how many turns all comes round again rests on this parameter")
             raise Infeasible(("vary", p.name), reason)
 
 
-def _ratios(linkage: Linkage) -> tuple[str, ...]:
+def _speed_ratios(linkage: Linkage) -> tuple[str, ...]:
     """Of speeds of wheels and drivers, to 12 digits: what they come round together hangs on."""
     wheels = [mesh.ratio for mesh in linkage.meshes if mesh.kind == "gear"]
     return tuple(f"{ratio:.12g}" for ratio in (*wheels, *(o.rate / linkage.driver.rate for o in linkage.others)))
 
 
-def one_sense(task: Task, first: Sequence[float]) -> bool:
+def has_one_sense(task: OptimalTask, first: Sequence[float]) -> bool:
     """Whether no driver goes forth in some candidates and back in others."""
     senses = set()
     for k, p in enumerate(task.parameters):

@@ -15,11 +15,11 @@ from itertools import combinations, pairwise, permutations
 
 from tmm_cli.mechanics.structure import reach
 
-Form = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
+GraphForm = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 """Colours of the vertices in canonical order, and the edges (i, j, kind), i < j, in that numbering."""
 
 
-def canonical(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> Form:
+def canonical_form(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> GraphForm:
     """The form of a simple graph on the vertices 0 .. len(colours) - 1; an edge joins two of them and has a kind."""
     beyond = 2 * max(len(colours), *colours) + 2  # all colours that there can be: one number tells kind and colour
     beside: list[list[tuple[int, int]]] = [[] for _ in colours]
@@ -34,8 +34,8 @@ def _forms(
     colours: Sequence[int],
     beside: list[list[tuple[int, int]]],
     edges: Mapping[tuple[int, int], int],
-) -> list[Form]:
-    refined = _refine(refined, beside)
+) -> list[GraphForm]:
+    refined = _refine_colours(refined, beside)
     cells: dict[int, list[int]] = {}
     for vertex, colour in enumerate(refined):
         cells.setdefault(colour, []).append(vertex)
@@ -54,7 +54,7 @@ def _forms(
     return [min(found)]
 
 
-def _refine(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
+def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
     """Colours 0, 1, ... that tell apart what the neighbours, their neighbours, ... tell apart."""
     count = 0
     while True:
@@ -110,33 +110,33 @@ class KinematicChain:
     @cached_property
     def fractionated(self) -> bool:
         """Whether taking away one link separates the rest (a pair whose removal does so has such a link beside it)."""
-        return any(not _connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
+        return any(not _is_connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
 
     @cached_property
-    def form(self) -> Form:
+    def form(self) -> GraphForm:
         """Canonical form: equal for isomorphic chains and for no others."""
-        return canonical([0] * self.links, dict.fromkeys(self.pairs, 0))
+        return canonical_form([0] * self.links, dict.fromkeys(self.pairs, 0))
 
 
-def contours(links: int, mobility: int) -> int | None:
+def independent_contours(links: int, mobility: int) -> int | None:
     """Independent contours of a closed chain; None when there is no such chain."""
     twice = links - mobility - 1
     return twice // 2 if mobility >= 1 and twice >= 2 and twice % 2 == 0 else None
 
 
-def chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
+def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
     """All chains of so many links, no two isomorphic, by assortment of links; links are at most MOST_LINKS."""
     if links > MOST_LINKS_OF_CHAIN:
         raise ValueError(f"chains of at most {MOST_LINKS_OF_CHAIN} links are listed")
-    loops = contours(links, mobility)
+    loops = independent_contours(links, mobility)
     if loops is None:
         return ()
     if loops == 1:
         return (KinematicChain(links, tuple(sorted(tuple(sorted((k, (k + 1) % links))) for k in range(links)))),)  # type: ignore[misc]
     found = [
-        _grown(bundles, binaries, links)
+        _insert_binary_links(bundles, binaries, links)
         for vertices, bundles in _multigraphs(loops)
-        for binaries in _distributions(vertices, bundles, links - vertices)
+        for binaries in _distribute_binary_links(vertices, bundles, links - vertices)
     ]
     return tuple(sorted(found, key=lambda chain: (tuple(-k for k in chain.assortment), chain.pairs)))
 
@@ -146,12 +146,12 @@ def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
     seen = set()
     for extra in _partitions(2 * (loops - 1)):
         degrees = [2 + k for k in extra]
-        for bundles in _filled(degrees, 0, 0):
-            if not _connected(set(range(len(degrees))), [(i, j) for i, j, _ in bundles]):
+        for bundles in _fill_degrees(degrees, 0, 0):
+            if not _is_connected(set(range(len(degrees))), [(i, j) for i, j, _ in bundles]):
                 continue
             at = {i: count for i, j, count in bundles if i == j}
             colours = [degree * 10 + at.get(v, 0) for v, degree in enumerate(degrees)]
-            form = canonical(colours, {(i, j): count for i, j, count in bundles if i != j})
+            form = canonical_form(colours, {(i, j): count for i, j, count in bundles if i != j})
             if form not in seen:
                 seen.add(form)
                 yield len(degrees), tuple(bundles)
@@ -165,25 +165,27 @@ def _partitions(total: int, most: int | None = None) -> Iterator[list[int]]:
             yield [first, *rest]
 
 
-def _filled(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
+def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
     """All ways to use up the degrees that are left, from the bundle (i, j) on."""
     if i == len(left):
         yield []
         return
     if j == len(left):
         if left[i] == 0:
-            yield from _filled(left, i + 1, i + 1)
+            yield from _fill_degrees(left, i + 1, i + 1)
         return
     most = left[i] // 2 if i == j else min(left[i], left[j])
     for count in range(most + 1):
         after = list(left)
         after[i] -= count
         after[j] -= count
-        for rest in _filled(after, i, j + 1):
+        for rest in _fill_degrees(after, i, j + 1):
             yield [(i, j, count), *rest] if count else rest
 
 
-def _distributions(vertices: int, bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+def _distribute_binary_links(
+    vertices: int, bundles: Sequence[Bundle], binary: int
+) -> Iterator[tuple[tuple[int, ...], ...]]:
     """Ways to put binary links on the edges, one of each isomorphism class: their numbers, bundle by bundle.
 
     A part with the vertices S, all its edges that carry fewer than two binary links (each such edge with m of them
@@ -196,7 +198,7 @@ def _distributions(vertices: int, bundles: Sequence[Bundle], binary: int) -> Ite
     ]
     same = _automorphisms(vertices, bundles)
     seen = set()
-    for binaries in _spread(bundles, binary):
+    for binaries in _spread_binary_links(bundles, binary):
         taken = [sum(max(0, 2 - m) for m in numbers) for numbers in binaries]
         if any(free - sum(taken[k] for k in part) < 1 for free, part in inside):
             continue
@@ -206,34 +208,34 @@ def _distributions(vertices: int, bundles: Sequence[Bundle], binary: int) -> Ite
             yield binaries
 
 
-def _spread(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
     """Binary links on the edges of each bundle, so that no contour of one bundle is rigid."""
     if not bundles:
         if binary == 0:
             yield ()
         return
     (i, j, count), rest = bundles[0], bundles[1:]
-    least = sum(_least(i == j, count) for i, j, count in rest)
-    for numbers in _ascending(count, binary - least, 3 if i == j else 0):
+    least = sum(_fewest_binary_links(i == j, count) for i, j, count in rest)
+    for numbers in _ascending_tuples(count, binary - least, 3 if i == j else 0):
         # two edges of one bundle close a contour of their binary links and two others
         if i != j and count > 1 and numbers[0] + numbers[1] < 2:
             continue
-        for others in _spread(rest, binary - sum(numbers)):
+        for others in _spread_binary_links(rest, binary - sum(numbers)):
             yield (numbers, *others)
 
 
-def _least(loop: bool, count: int) -> int:
+def _fewest_binary_links(loop: bool, count: int) -> int:
     """The fewest binary links that a bundle can do with: a contour has four links."""
     return 3 * count if loop else max(0, 2 * (count - 1))
 
 
-def _ascending(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
+def _ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
     """Ascending rows of so many numbers from `least` on, with a sum of at most `most`."""
     if count == 0:
         yield ()
         return
     for first in range(least, most // count + 1):
-        for rest in _ascending(count - 1, most - first, first):
+        for rest in _ascending_tuples(count - 1, most - first, first):
             yield (first, *rest)
 
 
@@ -249,7 +251,7 @@ def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
     return found
 
 
-def _grown(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:
+def _insert_binary_links(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:
     """The chain with its binary links in their edges, those with most pairs first."""
     after = 1 + max(j for _, j, _ in bundles)
     pairs = []
@@ -262,7 +264,7 @@ def _grown(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: 
     return KinematicChain(links, tuple(sorted(pairs)))
 
 
-def _connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
+def _is_connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
     """Whether the links hold together by the pairs between them."""
     beside: dict[int, list[int]] = {link: [] for link in links}
     for i, j in pairs:

@@ -14,7 +14,7 @@ from itertools import combinations
 from random import Random
 
 from tmm_cli.mechanics.numerics import cross
-from tmm_cli.synthesis.schemes.schemes import Placed, Scheme
+from tmm_cli.synthesis.schemes.schemes import PlacedGroup, Scheme
 
 CRANK, CRANK_AT = 60, (60, 120, 30)  # mm; deg, of the first, second and third crank
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"  # O is the crank's pivot, and I looks like 1
@@ -24,7 +24,7 @@ WEIGHT = 3.0  # metres of links that a transmission angle of 0 is as bad as
 
 
 @dataclass(frozen=True)
-class Guided:
+class PrismaticLayout:
     """A sliding pair: the runner's point stays on the line through `through` at `angle`, in the carrier's axes."""
 
     carrier: int
@@ -43,19 +43,19 @@ class SchemeLayout:
     """
 
     points: dict[int, dict[str, complex]]
-    slides: tuple[Guided, ...]
+    slides: tuple[PrismaticLayout, ...]
     places: dict[str, complex]
     angles: dict[int, int]
     cranks: tuple[int, ...]
     cost: float
 
 
-class Unfit(Exception):  # noqa: N818
+class UnfitLayout(Exception):  # noqa: N818
     """This pose is no good."""
 
 
 @dataclass
-class Draft:
+class LayoutDraft:
     """Places of points (mm) and directions of axes (rad), link by link; groups are put down by who makes the pose."""
 
     scheme: Scheme
@@ -139,7 +139,7 @@ class Draft:
     def lose(self, transmission: float) -> None:
         """Count a group by the sine of its transmission angle."""
         if abs(transmission) < 0.5:
-            raise Unfit
+            raise UnfitLayout
         self.losses.append((1 - min(1.0, abs(transmission))) ** 2)
 
     def spare(self, way: float) -> None:
@@ -158,28 +158,28 @@ class Draft:
         """The pose in numbers, if links are neither too long nor their points too close to one another."""
         places = {name: place for points in self.where.values() for name, place in points.items()}
         if any(abs(p - q) < NEAREST for p, q in combinations(places.values(), 2)):
-            raise Unfit
+            raise UnfitLayout
         spans = [
             max((abs(p - q) for p, q in combinations(points.values(), 2)), default=0.0)
             for link, points in self.where.items()
             if link
         ]
         if max(spans) > LONGEST:
-            raise Unfit
+            raise UnfitLayout
         points = {
             link: {name: self.local(link, place) for name, place in known.items()} for link, known in self.where.items()
         }
         slides = tuple(
-            Guided(
+            PrismaticLayout(
                 carrier,
                 runner,
                 self.local(carrier, through),
-                _half_turn(round(math.degrees(turn - self.turn[carrier]))),
+                _wrap_line_angle(round(math.degrees(turn - self.turn[carrier]))),
                 point,
             )
             for carrier, runner, through, turn, point in self.slides
         )
-        moving = {name: whole(place) for name, place in places.items() if name not in self.where[0]}
+        moving = {name: round_to_mm(place) for name, place in places.items() if name not in self.where[0]}
         angles = {link: round(math.degrees(self.turn[link])) for link in self.slotted}
         cranks = tuple(CRANK_AT[crank - 1] for crank in self.cranks)
         return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.losses))
@@ -187,15 +187,15 @@ class Draft:
     def local(self, link: int, place: complex) -> complex:
         """A place in a link's axes, in whole millimetres."""
         origin = next(iter(self.where[link].values())) if link else 0j
-        return whole((place - origin) * cmath.rect(1, -self.turn[link]))
+        return round_to_mm((place - origin) * cmath.rect(1, -self.turn[link]))
 
 
-def whole(place: complex) -> complex:
+def round_to_mm(place: complex) -> complex:
     """The nearest place in whole millimetres."""
     return complex(round(place.real), round(place.imag))
 
 
-def _half_turn(angle: int) -> int:
+def _wrap_line_angle(angle: int) -> int:
     """The same line, its direction from -90 (not included) to 90 degrees."""
     return 90 - (90 - angle) % 180
 
@@ -209,14 +209,14 @@ def _half_turn(angle: int) -> int:
 TRIALS = 250
 
 
-def layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
+def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
     """Poses of a scheme, the best first."""
     random = Random(seed)
-    found = (_GroupByGroup(scheme, random).layout() for _ in range(TRIALS))
+    found = (_GroupPlacer(scheme, random).layout() for _ in range(TRIALS))
     return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
 
 
-class _GroupByGroup(Draft):
+class _GroupPlacer(LayoutDraft):
     """A pose of the whole scheme, its groups put down one after another."""
 
     def layout(self) -> SchemeLayout | None:
@@ -224,7 +224,7 @@ class _GroupByGroup(Draft):
         pivot = 0j
         for crank in self.cranks:
             name = "O" if crank == 1 else f"O{crank}"
-            pivot = 0j if crank == 1 else whole(pivot + self.polar(220, 320, -25, 25))
+            pivot = 0j if crank == 1 else round_to_mm(pivot + self.polar(220, 320, -25, 25))
             self.where[0][name] = pivot
             self.where[crank] = {name: pivot}
             self.turn[crank] = math.radians(CRANK_AT[crank - 1])
@@ -241,11 +241,11 @@ class _GroupByGroup(Draft):
             for group in self.scheme.groups:
                 build[group.type.name](group)
             return self.measured()
-        except Unfit:
+        except UnfitLayout:
             return None
 
-    def rrr(self, group: Placed) -> None:
-        (a, b), (X, Y) = group.links, _held(group)
+    def rrr(self, group: PlacedGroup) -> None:
+        (a, b), (X, Y) = group.links, _supporting_links(group)
         A, C = self.hinges(X, Y, 200, 380)
         base = C - A
         B = A + base * complex(self.random.uniform(0.2, 0.8), self.side() * self.random.uniform(0.35, 0.9))
@@ -256,8 +256,8 @@ class _GroupByGroup(Draft):
         legs = abs(B - A), abs(B - C)
         self.spare(min(sum(legs) - abs(base), abs(base) - abs(legs[0] - legs[1])))
 
-    def rrp(self, group: Placed) -> None:
-        (a, b), (X, Y) = group.links, _held(group)
+    def rrp(self, group: PlacedGroup) -> None:
+        (a, b), (X, Y) = group.links, _supporting_links(group)
         A, middle = self.hinge(X), self.near(Y)
         if middle is not None:
             if A is None:
@@ -279,8 +279,8 @@ class _GroupByGroup(Draft):
             off = abs(A - self.pivot(Y)) + abs(cross(along, B - self.pivot(Y)))
         self.spare(abs(B - A) - off)
 
-    def rpr(self, group: Placed) -> None:
-        (a, b), (X, Y) = group.links, _held(group)
+    def rpr(self, group: PlacedGroup) -> None:
+        (a, b), (X, Y) = group.links, _supporting_links(group)
         A, B = self.hinges(X, Y, 140, 260)
         nA, nB = self.name(X, A), self.name(Y, B)
         turn = cmath.phase(A - B)
@@ -290,8 +290,8 @@ class _GroupByGroup(Draft):
         self.slotted.append(b)
         self.lose(abs(A - B) / (2 * CRANK))
 
-    def prp(self, group: Placed) -> None:
-        (a, b), (X, Y) = group.links, _held(group)
+    def prp(self, group: PlacedGroup) -> None:
+        (a, b), (X, Y) = group.links, _supporting_links(group)
         middles = [x for x in (self.near(X), self.near(Y)) if x is not None]
         C = sum(middles) / len(middles) + self.polar(60, 220)
         one, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
@@ -306,8 +306,8 @@ class _GroupByGroup(Draft):
             self.slide(known, link, C, turns[known], name)
         self.lose(math.sin(turns[X] - turns[Y]))
 
-    def rpp(self, group: Placed) -> None:
-        (a, b), (X, Y) = group.links, _held(group)
+    def rpp(self, group: PlacedGroup) -> None:
+        (a, b), (X, Y) = group.links, _supporting_links(group)
         A, middle = self.hinge(X), self.near(Y)
         if A is None:
             assert middle is not None
@@ -322,8 +322,8 @@ class _GroupByGroup(Draft):
         self.slide(Y, b, E, along, nE)
         self.lose(math.sin(across - along))
 
-    def iii(self, group: Placed) -> None:
-        held = _held(group)
+    def iii(self, group: PlacedGroup) -> None:
+        held = _supporting_links(group)
         ends, names = [], []
         for link in held:
             end = self.hinge(link)
@@ -346,9 +346,9 @@ class _GroupByGroup(Draft):
         rows = [(w.real, w.imag, cross(c - middle, w) / 75) for w, c in zip(ways, corners, strict=True)]
         self.lose(_determinant(rows))
 
-    def iv(self, group: Placed) -> None:
+    def iv(self, group: PlacedGroup) -> None:
         one, left, other, right = group.links
-        X, Y = _held(group)
+        X, Y = _supporting_links(group)
         P, Q = self.hinges(X, Y, 300, 380)
         along = math.degrees(cmath.phase(Q - P))
         A, D = P + self.polar(80, 150, along + 30, along + 100), P + self.polar(80, 150, along - 60, along - 10)
@@ -360,7 +360,7 @@ class _GroupByGroup(Draft):
         self.bar(right, nD, D, nC, C)
 
 
-def _held(group: Placed) -> list[int]:
+def _supporting_links(group: PlacedGroup) -> list[int]:
     """The links that a group is attached to, in the order of its outer pairs."""
     return [known for known, _, _ in group.outer]
 

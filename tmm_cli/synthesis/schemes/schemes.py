@@ -24,7 +24,7 @@ from typing import Literal
 
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import ROMAN, structural_formula
-from tmm_cli.synthesis.schemes.chains import Form, canonical
+from tmm_cli.synthesis.schemes.chains import GraphForm, canonical_form
 
 Kind = Literal["R", "P"]
 Joint = tuple[int, int, Kind]
@@ -66,7 +66,7 @@ GROUP_TYPES: dict[str, GroupType] = {
     # a closed contour of four; leads on adjacent links would split it into two dyads
     "IV": GroupType("IV", 4, 4, ((0, 1, "R"), (1, 2, "R"), (2, 3, "R"), (0, 3, "R")), ((0, "R"), (2, "R"))),
 }
-CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV": ("IV",)}
+GROUP_CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV": ("IV",)}
 
 
 class TooManySchemes(Exception):  # noqa: N818  what is asked for is too much, not wrong
@@ -74,7 +74,7 @@ class TooManySchemes(Exception):  # noqa: N818  what is asked for is too much, n
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedGroup:
     """A group of a scheme: its type, its links, and the pairs that hold it, the outer ones in the type's order."""
 
     type: GroupType
@@ -93,7 +93,7 @@ class Scheme:
     """A scheme: links 0 (the frame), 1 .. cranks, then those of the groups, in the order in which they are attached."""
 
     cranks: int
-    groups: tuple[Placed, ...] = ()
+    groups: tuple[PlacedGroup, ...] = ()
 
     @property
     def mobility(self) -> int:
@@ -133,15 +133,15 @@ class Scheme:
         return "-".join(title.replace(" ", "-") for title in self.types)
 
     @cached_property
-    def form(self) -> Form:
+    def form(self) -> GraphForm:
         """Canonical form: equal for the same scheme, whichever way its links are numbered, and for no other."""
         colours = [0, *[1] * self.cranks, *[2] * (self.links - self.cranks)]
-        return canonical(colours, {(min(i, j), max(i, j)): "RP".index(kind) for i, j, kind in self.joints})
+        return canonical_form(colours, {(min(i, j), max(i, j)): "RP".index(kind) for i, j, kind in self.joints})
 
     @cached_property
     def directions(self) -> tuple[int, ...]:
         """For every link the first of those that keep their direction to it: joined by sliding pairs alone."""
-        return _first_joined(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
+        return _first_joined_links(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
 def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(GROUP_TYPES)) -> tuple[Scheme, ...]:
@@ -152,7 +152,7 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
     if not (mobility <= links <= MOST_LINKS_OF_SCHEME and 1 <= mobility <= MOST_CRANKS):
         raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS_OF_SCHEME} moving links")
     order = {GROUP_TYPES[name].name: k for k, name in enumerate(types)}
-    levels: dict[int, dict[Form, Scheme]] = {mobility: {(start := Scheme(mobility)).form: start}}
+    levels: dict[int, dict[GraphForm, Scheme]] = {mobility: {(start := Scheme(mobility)).form: start}}
     for count in range(mobility, links):
         for scheme in levels.get(count, {}).values():
             for name in order:
@@ -160,15 +160,15 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
                 if count + kind.links > links:
                     continue
                 level = levels.setdefault(count + kind.links, {})
-                for grown in attached(scheme, kind):
+                for grown in attach_group(scheme, kind):
                     level.setdefault(grown.form, grown)
                     if len(level) > MOST_SCHEMES:
                         raise TooManySchemes
-    found = [s for s in levels.get(links, {}).values() if s.groups and _in_one_piece(s)]
+    found = [s for s in levels.get(links, {}).values() if s.groups and _is_connected_without_frame(s)]
     return tuple(sorted(found, key=lambda s: [order[group.type.name] for group in s.groups]))
 
 
-def attached(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
+def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
     """Every way to attach one more group of this type (some of them the same scheme)."""
     first = scheme.links + 1
     own = tuple(range(first, first + kind.links))
@@ -177,17 +177,17 @@ def attached(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
         if len(set(held)) == 1:
             continue
         outer = tuple((known, own[end], pair) for known, (end, pair) in zip(held, kind.outer, strict=True))
-        grown = Scheme(scheme.cranks, (*scheme.groups, Placed(kind, own, inner, outer)))
+        grown = Scheme(scheme.cranks, (*scheme.groups, PlacedGroup(kind, own, inner, outer)))
         if all(grown.directions[i] != grown.directions[j] for i, j, pair in (*outer, *inner) if pair == "R"):
             yield grown
 
 
-def _in_one_piece(scheme: Scheme) -> bool:
+def _is_connected_without_frame(scheme: Scheme) -> bool:
     """Whether the moving links, every crank among them, hold together without the frame."""
-    return len(set(_first_joined(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
+    return len(set(_first_joined_links(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
 
 
-def _first_joined(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+def _first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
     """For every link, 0 to `links`, the first of those that these pairs join it to, itself among them."""
     first = list(range(links + 1))
     for i, j in pairs:

@@ -5,24 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from tmm_cli.synthesis.optimal.quantities.base import Goal
-from tmm_cli.synthesis.optimal.quantities.deviation import Law, Path
-from tmm_cli.synthesis.optimal.quantities.sizes import Box, Length, Mass
-from tmm_cli.synthesis.optimal.quantities.strokes import K, Speed, Stroke
-from tmm_cli.synthesis.optimal.quantities.transmission import Margin, Moment, Pressure, Reaction
-
-ALL: Final[tuple[type[Goal], ...]] = (
-    Length,
-    Mass,
-    Box,
-    Pressure,
-    Moment,
-    Reaction,
-    Margin,
-    Stroke,
-    K,
-    Speed,
-    Path,
-    Law,
+from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
+from tmm_cli.synthesis.optimal.quantities.deviation import LawDeviation, PathDeviation
+from tmm_cli.synthesis.optimal.quantities.sizes import LinkLengthSum, MotionBox, MovingMass
+from tmm_cli.synthesis.optimal.quantities.strokes import MeanOutputSpeed, OutputStroke, TimeRatio
+from tmm_cli.synthesis.optimal.quantities.transmission import (
+    DeadPositionMargin,
+    LargestBalancingMoment,
+    LargestPressureAngle,
+    LargestReaction,
 )
-QUANTITIES: Final[Mapping[str, type[Goal]]] = {quantity.of: quantity for quantity in ALL}  # as problem files write them
+
+ALL: Final[tuple[type[MechanismQuantity], ...]] = (
+    LinkLengthSum,
+    MovingMass,
+    MotionBox,
+    LargestPressureAngle,
+    LargestBalancingMoment,
+    LargestReaction,
+    DeadPositionMargin,
+    OutputStroke,
+    TimeRatio,
+    MeanOutputSpeed,
+    PathDeviation,
+    LawDeviation,
+)
+QUANTITIES: Final[Mapping[str, type[MechanismQuantity]]] = {
+    quantity.of: quantity for quantity in ALL
+}  # as problem files write them

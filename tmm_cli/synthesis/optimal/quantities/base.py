@@ -22,7 +22,7 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real, highest, least, peak, peaks_of, top
 from tmm_cli.mechanics.structure import output_link
 from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.measures import Ends
+from tmm_cli.synthesis.measures import DriverEnds
 
 MOST_PEAKS = 4  # of a curve that are looked at closely
 SCAN = 1440  # places in a turn, or in a stroke, of an analysed mechanism
@@ -34,7 +34,7 @@ Windows = list[tuple[Any, float, Read]]  # what a window is of, its first place,
 
 
 @dataclass(frozen=True)
-class Over:
+class QuantityRange:
     """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
 
     swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
@@ -50,7 +50,7 @@ class Over:
 
 
 @dataclass(frozen=True)
-class Goal(ABC):
+class MechanismQuantity(ABC):
     """What a task asks of it. name: of the pair, the point or the link; links: those whose lengths count.
 
     places: of the driver (rad or m), with the wanted values there; a path without places is to pass through the points
@@ -79,32 +79,32 @@ class Goal(ABC):
         """What is to be written down for it."""
 
     @abstractmethod
-    def coarse(self, read: Read, over: Over) -> Real:
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
         """From places all over the driver range (for `places`: from those), (variants,)."""
 
     @abstractmethod
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         """Pieces of the quantity, (variants, pieces); the largest counts (of `lowest`: the least).
 
         exact: outputs at the quantity's own places; step: of places in windows. Places are shares of the range.
         """
 
     @abstractmethod
-    def measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: DriverEnds) -> float:
         """On an analysed mechanism that goes its whole way, see `measure`."""
 
-    def measure(self, results: Results, ends: Ends) -> float:
+    def measure(self, results: Results, ends: DriverEnds) -> float:
         """On an analysed mechanism (SI, rad), over the driver range between two ends, else over its cycle.
 
         nan where the mechanism has none.
         """
-        return self.measured(results, ends) if measures.goes_its_way(results, ends) else measures.NONE
+        return self.measured(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
 
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+    def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         """What to look at closely, and about which place of a scan of one variant."""
         return []
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         """The quantity of one candidate where windows may not be exact enough; value: from those."""
         return value
 
@@ -144,22 +144,22 @@ class Goal(ABC):
         return self.outputs(motion, plan)
 
 
-class Constant(Goal):
+class ConstantQuantity(MechanismQuantity):
     """The same in all positions, its `value`."""
 
     moves = False
 
-    def coarse(self, read: Read, over: Over) -> Real:
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
         return read("value")[:, 0]
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         return exact("value")[:, :1]
 
-    def measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: DriverEnds) -> float:
         return float(self.outputs_of(results, np.array([results.start]))["value"])
 
 
-class Peak(Goal):
+class PeakQuantity(MechanismQuantity):
     """The largest value of a curve in a cycle, or the sum of those of several."""
 
     curves: ClassVar[tuple[str, ...]] = ("y",)
@@ -168,27 +168,27 @@ class Peak(Goal):
         """The quantity of a place from its curve, whose opposite it is for `lowest`."""
         return y
 
-    def coarse(self, read: Read, over: Over) -> Real:
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
         found: Real = self.levelled(sum(np.max(read(name), axis=1) for name in self.curves))
         return -found if self.lowest else found
 
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+    def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         return [("y", k) for k in peaks_of(read("y")[0], MOST_PEAKS, over.closed)]
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         ys = [self.levelled(read(name)) for name, _, read in parts]
         rough = over.rough and self.forces
         found: Real = np.stack([np.max(y, axis=1) if rough else peak(y) for y in ys], axis=1)
         return -found if self.lowest else found
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
+    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         if over.rough and self.forces:
             return highest(lambda shares: curve("y", shares), scan, closed=over.closed)
         return value
 
-    def measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: DriverEnds) -> float:
         total = sum(
-            highest_on(lambda q, n=name: np.asarray(self.outputs_of(results, q)[n]), results, ends)  # type: ignore[misc]
+            highest_over_range(lambda q, n=name: np.asarray(self.outputs_of(results, q)[n]), results, ends)  # type: ignore[misc]
             for name in self.curves
         )
         return -total if self.lowest else total
@@ -199,7 +199,7 @@ def motion_at(results: Results, q: Real) -> Motion:
     return at_positions(results, np.atleast_1d(q))
 
 
-def highest_on(curve: Callable[[Real], Real], results: Results, ends: Ends) -> float:
+def highest_over_range(curve: Callable[[Real], Real], results: Results, ends: DriverEnds) -> float:
     """The largest value of a curve over the driver range: in a cycle from position 0 on."""
     assert results.driver_range is not None
     driver, turns = results.linkage.driver, results.driver_range.turns

@@ -15,15 +15,22 @@ from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion, output_place
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import FIT, SIDE, Real, dot, peak, value
-from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.quantities.base import Goal, Over, Read, Windows, highest_on, motion_at
+from tmm_cli.synthesis.measures import DriverEnds
+from tmm_cli.synthesis.optimal.quantities.base import (
+    MechanismQuantity,
+    QuantityRange,
+    Read,
+    Windows,
+    highest_over_range,
+    motion_at,
+)
 
 AWAY = 1e100  # where a variant cannot be assembled
 FOOT_STEPS = 3  # of Newton's method from the nearest corner: it is off by half a step at most
 FOOT = 1e-3  # sine against the normal, above which the nearest place of a path is an end or a corner of it
 
 
-class Deviation(Goal):
+class Deviation(MechanismQuantity):
     """Root mean square, or the largest."""
 
     largest: str  # what that is called
@@ -32,15 +39,15 @@ class Deviation(Goal):
         return self.largest if self.norm == "largest" else self.text
 
     @abstractmethod
-    def deviations(self, read: Read, over: Over) -> Real:
+    def deviations(self, read: Read, over: QuantityRange) -> Real:
         """From all that is wanted, (variants, wanted), m or rad."""
 
     @abstractmethod
-    def deviations_on(self, results: Results, ends: Ends) -> Real:
+    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
         """The same of an analysed mechanism."""
 
     @abstractmethod
-    def residuals(self, read: Read, over: Over, each: int) -> Real:
+    def residuals(self, read: Read, over: QuantityRange, each: int) -> Real:
         """What is least in squares, (variants, residuals); of sets of so many variants the first one leads."""
 
     @abstractmethod
@@ -60,21 +67,21 @@ class Deviation(Goal):
         found: Real = np.sqrt(np.mean(off * off, axis=1))
         return found
 
-    def coarse(self, read: Read, over: Over) -> Real:
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
         return self.counted(self.deviations(read, over))
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         off = self.deviations(exact, over)
         return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
 
     def smooth(self, pieces: Real) -> Real:
         return pieces if self.norm == "largest" else pieces**2
 
-    def measured(self, results: Results, ends: Ends) -> float:
+    def measured(self, results: Results, ends: DriverEnds) -> float:
         return float(self.counted(self.deviations_on(results, ends)[None, :])[0])
 
 
-class Law(Deviation):
+class LawDeviation(Deviation):
     """Of a link, metres or radians; relative: from the first place on."""
 
     of, text = "law", N_("root mean square deviation from the wanted law")
@@ -90,25 +97,25 @@ class Law(Deviation):
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         return {"run": output_place(motion, self.name)}
 
-    def deviations(self, read: Read, over: Over) -> Real:
+    def deviations(self, read: Read, over: QuantityRange) -> Real:
         off = read("run") - read(WANTED)
         off = off - off[:, :1] if self.relative else off
         return np.angle(np.exp(1j * off)) if over.swings else off
 
-    def residuals(self, read: Read, over: Over, each: int) -> Real:
+    def residuals(self, read: Read, over: QuantityRange, each: int) -> Real:
         return self.deviations(read, over)
 
     def curve(self, read: Read) -> Any:
         return read("run")
 
-    def deviations_on(self, results: Results, ends: Ends) -> Real:
+    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
         run = output_place(motion_at(results, np.array(self.places)), self.name)
-        over = Over(results.linkage, results.linkage.output_swings(self.name))
+        over = QuantityRange(results.linkage, results.linkage.output_swings(self.name))
         found: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
         return found
 
 
-class Path(Deviation):
+class PathDeviation(Deviation):
     """Of a point from wanted points, metres; without places it is to pass through them in any of its positions."""
 
     of, text = "path", N_("root mean square distance from the wanted points")
@@ -119,53 +126,55 @@ class Path(Deviation):
         place = motion.spot(self.name)
         return {"px": place.real, "py": place.imag}
 
-    def deviations(self, read: Read, over: Over) -> Real:
+    def deviations(self, read: Read, over: QuantityRange) -> Real:
         x, y = read("px"), read("py")
         if self.places:
             apart: Real = np.hypot(x - np.real(self.wanted), y - np.imag(self.wanted))
             return apart
-        return nearest(x, y, np.array(self.wanted), closed=over.closed)
+        return distances_to_points(x, y, np.array(self.wanted), closed=over.closed)
 
-    def residuals(self, read: Read, over: Over, each: int) -> Real:
+    def residuals(self, read: Read, over: QuantityRange, each: int) -> Real:
         x, y = read("px"), read("py")
         if self.places:
             return np.hstack([x - np.real(self.wanted), y - np.imag(self.wanted)])
         place = (x + 1j * y).reshape(len(x) // each, each, -1)
-        return _across(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
+        return _distances_across(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
 
     def curve(self, read: Read) -> Any:
         return read("px") + 1j * read("py")
 
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+    def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         place = read("px")[0] + 1j * read("py")[0]
         return [] if self.places else [(w, int(np.argmin(np.abs(place - w)))) for w in self.wanted]
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         if self.places:
             return super().fine(parts, exact, over, step)
         squares = [-((read("px") - w.real) ** 2 + (read("py") - w.imag) ** 2) for w, __, read in parts]
         off = np.sqrt(np.maximum(np.stack([-peak(square) for square in squares], axis=1), 0))
         return off if self.norm == "largest" else self.counted(off)[:, None]
 
-    def deviations_on(self, results: Results, ends: Ends) -> Real:
+    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
         if self.places:
             apart: Real = np.abs(motion_at(results, np.array(self.places)).spot(self.name) - np.array(self.wanted))
             return apart
 
         def near(wanted: complex) -> float:
-            return highest_on(lambda q: -(np.abs(motion_at(results, q).spot(self.name) - wanted) ** 2), results, ends)
+            return highest_over_range(
+                lambda q: -(np.abs(motion_at(results, q).spot(self.name) - wanted) ** 2), results, ends
+            )
 
         return np.sqrt(np.maximum([-near(wanted) for wanted in self.wanted], 0.0))
 
 
-def _across(place: Any, wanted: Real, closed: bool) -> Real:
+def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
     """Distances across the path (sets, variants, corners) where its first variant is nearest to points; (..., points).
 
     They change their sign where the path goes through a point, so that they are smooth there.
     """
     sets, __, count = place.shape
     lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
-    near = corners(lead.real.copy(), lead.imag.copy(), wanted)
+    near = nearest_corners(lead.real.copy(), lead.imag.copy(), wanted)
     middle = near if closed else np.clip(near, SIDE, count - 1 - SIDE)
     about = (np.arange(-SIDE, SIDE + 1)[:, None, None] + middle) % count  # (corners, points, sets)
     off = place[np.arange(sets), :, about] - wanted[:, None, None]  # (corners, points, sets, variants)
@@ -186,13 +195,13 @@ def _across(place: Any, wanted: Real, closed: bool) -> Real:
     return found.transpose(1, 2, 0)
 
 
-def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
+def distances_to_points(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
     """Distances of a polygon (variants, corners) from points, (variants, points).
 
     Of the corner that is nearest, and of the sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    near, rows, count = corners(x, y, wanted), np.arange(len(x)), x.shape[1]
+    near, rows, count = nearest_corners(x, y, wanted), np.arange(len(x)), x.shape[1]
     wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
     px, py = x[rows, near] - wx, y[rows, near] - wy
     best = px * px + py * py
@@ -206,7 +215,7 @@ def nearest(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
     return found
 
 
-def corners(x: Real, y: Real, wanted: Real) -> Any:
+def nearest_corners(x: Real, y: Real, wanted: Real) -> Any:
     """Of polygons (variants, corners), those that are nearest to points, (points, variants)."""
     square, near = (x * x + y * y) / 2, np.empty((len(wanted), len(x)), dtype=int)
     work, other = np.empty_like(x), np.empty_like(x)

@@ -14,13 +14,21 @@ from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import Real, peak, peaks_of
-from tmm_cli.synthesis.optimal.quantities.base import CLOSELY, MOST_PEAKS, Constant, Over, Peak, Read, Windows
+from tmm_cli.synthesis.optimal.quantities.base import (
+    CLOSELY,
+    MOST_PEAKS,
+    ConstantQuantity,
+    PeakQuantity,
+    QuantityRange,
+    Read,
+    Windows,
+)
 
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # right, left, top, bottom
 OF_A_SIDE = 3  # points that may come to bear on a side
 
 
-class Length(Constant):
+class LinkLengthSum(ConstantQuantity):
     """Sum of link lengths, m, of all links or of some: of each the largest distance of its points, of the frame that of
     its hinges.
     """
@@ -37,7 +45,7 @@ class Length(Constant):
         return {"value": found}
 
 
-class Mass(Constant):
+class MovingMass(ConstantQuantity):
     """Of the moving links, kg."""
 
     of, text, dimension = "mass", N_("mass of the moving links"), "mass"
@@ -47,14 +55,14 @@ class Mass(Constant):
         return {"value": sum(linkage.links[name].mass for name in linkage.moving)}
 
 
-class Box(Peak):
+class MotionBox(PeakQuantity):
     """Width + height of the moving points, m. A curve to look at closely is a side and a point: its path is smooth."""
 
     of, text = "box", N_("box of the moving points, width + height")
     curves = ("y0", "y1", "y2", "y3")
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        spots = [motion.spot(point) for point in _points(motion.linkage)]
+        spots = [motion.spot(point) for point in _moving_points(motion.linkage)]
         x, y = [p.real for p in spots], [p.imag for p in spots]
         closely = {f"{CLOSELY}{axis}{k}": v for axis, vs in (("x", x), ("y", y)) for k, v in enumerate(vs)}
         return closely | {
@@ -64,15 +72,15 @@ class Box(Peak):
             "y3": -reduce(np.minimum, y),
         }
 
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+    def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         found: list[tuple[Any, int]] = []
         for side, (axis, sign) in enumerate(SIDES):
-            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_points(over.linkage)))}
+            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_moving_points(over.linkage)))}
             tops = [(y[at], k, at) for k, y in ys.items() for at in peaks_of(y, MOST_PEAKS, over.closed)]
             found += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
         return found
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         """Sums of one peak of each side, in all ways: the largest is the sum of the largest ones."""
         runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
@@ -81,7 +89,7 @@ class Box(Peak):
         return np.stack([np.sum(some, axis=0) for some in product(*sides)], axis=1)
 
 
-def _points(linkage: Linkage) -> list[str]:
+def _moving_points(linkage: Linkage) -> list[str]:
     """Points of moving links, those on the frame first."""
     fixed = linkage.links[FRAME].points
     points = {point for name in linkage.moving for point in linkage.links[name].points}

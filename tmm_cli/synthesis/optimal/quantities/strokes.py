@@ -15,13 +15,13 @@ from tmm_cli.mechanics.kinematics import Motion, output_place, output_slope
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real, highest, peak, zero
 from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.measures import Ends, ratio_of_curve
-from tmm_cli.synthesis.optimal.quantities.base import Curve, Goal, Over, Read, Windows
+from tmm_cli.synthesis.measures import DriverEnds, time_ratio_of_curve
+from tmm_cli.synthesis.optimal.quantities.base import Curve, MechanismQuantity, QuantityRange, Read, Windows
 
 FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may belong to two strokes
 
 
-class OfStrokes(Goal):
+class StrokeQuantity(MechanismQuantity):
     """A quantity of the output's strokes. A window is about an end of a stroke, of the angle there, followed."""
 
     of_a_cycle: ClassVar[bool] = False
@@ -38,7 +38,7 @@ class OfStrokes(Goal):
         assert output is not None
         return {"slope": output_slope(motion, output), "run": output_place(motion, output)}
 
-    def windows(self, read: Read, over: Over) -> list[tuple[Any, int]]:
+    def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         slope = read("slope")[0]
         moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
         after = np.roll(moves, -1) if over.closed else np.append(moves[1:], moves[-1:])
@@ -49,15 +49,15 @@ class OfStrokes(Goal):
         followed = np.unwrap(read("run")[0])
         return [(float(followed[k]), k) for k in turns]
 
-    def fine(self, parts: Windows, exact: Read, over: Over, step: float) -> Real:
+    def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         return self.between(parts, over, step) if parts else exact("slope")[:, :1] * np.nan
 
     @abstractmethod
-    def between(self, parts: Windows, over: Over, step: float) -> Real:
+    def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
         """Its pieces from windows about the ends of all strokes, (variants, pieces)."""
 
 
-class Stroke(OfStrokes):
+class OutputStroke(StrokeQuantity):
     """Metres, or radians; the longest of several."""
 
     of, text = "stroke", N_("stroke of the output")
@@ -65,59 +65,59 @@ class Stroke(OfStrokes):
     def kind(self, linkage: Linkage, groups: Any) -> str:
         return "length" if self.slides(linkage, groups) else "angle"
 
-    def coarse(self, read: Read, over: Over) -> Real:
-        travel = travel_of(read, over)
-        if over.closed and np.any(ends_of(read("slope")) > FOUR):
-            return longest(read("run"), travel, turns=over.swings)
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
+        travel = coarse_travel(read, over)
+        if over.closed and np.any(count_reversals(read("slope")) > FOUR):
+            return longest_stroke(read("run"), travel, turns=over.swings)
         return travel
 
-    def between(self, parts: Windows, over: Over, step: float) -> Real:
-        runs = runs_of(parts, over)
+    def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
+        runs = followed_runs(parts, over)
         if over.closed and len(parts) > FOUR:
-            return strokes_of(runs).T
+            return stroke_lengths(runs).T
         whole = np.vstack(runs)
         tops, lows = (peak(side * whole).reshape(len(runs), -1) for side in (1, -1))
         travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
         return travel[:, None]
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
-        several = over.closed and ends_of(curve("slope", scan)[None])[0] > FOUR
+    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+        several = over.closed and count_reversals(curve("slope", scan)[None])[0] > FOUR
         if over.swings or not over.taped or several or np.isnan(value):
             return value
         top = highest(lambda shares: curve("run", shares), scan, closed=over.closed)
         return top + highest(lambda shares: -curve("run", shares), scan, closed=over.closed)
 
-    def measured(self, results: Results, ends: Ends) -> float:
-        return measures.stroke(results, ends)
+    def measured(self, results: Results, ends: DriverEnds) -> float:
+        return measures.output_stroke(results, ends)
 
 
-class K(OfStrokes):
+class TimeRatio(StrokeQuantity):
     """Coefficient of change of mean speed, the longer stroke over the shorter in time: 1 and more."""
 
     of, text, dimension, of_a_cycle = "k", N_("k, the longer stroke over the shorter"), "number", True
 
-    def coarse(self, read: Read, over: Over) -> Real:
-        return ratio_of(forward_share(read("slope")))
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
+        return time_ratio_of_share(forward_share(read("slope")))
 
-    def between(self, parts: Windows, over: Over, step: float) -> Real:
+    def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
         forward: Any = 0.0
         for __, start, read in parts:
             slope = read("slope")
             forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
-        return ratio_of(np.mod(forward, 1.0))[:, None]
+        return time_ratio_of_share(np.mod(forward, 1.0))[:, None]
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: Over) -> float:
-        return ratio_of_curve(lambda shares: curve("slope", shares), scan)
+    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+        return time_ratio_of_curve(lambda shares: curve("slope", shares), scan)
 
-    def measured(self, results: Results, ends: Ends) -> float:
-        k = measures.ratio(results)
+    def measured(self, results: Results, ends: DriverEnds) -> float:
+        k = measures.time_ratio(results)
         return max(k, 1 / k)
 
     def open(self, results: Results) -> float:
-        return measures.ratio_open(results)
+        return measures.time_ratio_uncertainty(results)
 
 
-class Speed(OfStrokes):
+class MeanOutputSpeed(StrokeQuantity):
     """Mean speed of a sliding output over a cycle, m/s; of an accelerated crank over its first from position 0 on."""
 
     of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output"), "speed", True
@@ -132,20 +132,24 @@ class Speed(OfStrokes):
         nothing = 0.0 * found["slope"]
         return {**found, "rate": driver.rate + nothing, "gain": driver.acceleration + nothing}
 
-    def coarse(self, read: Read, over: Over) -> Real:
+    def coarse(self, read: Read, over: QuantityRange) -> Real:
         run = read("run")
-        found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * mean_rate(read, over) / over.cycle
+        found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * mean_crank_speed(read, over) / over.cycle
         return found
 
-    def between(self, parts: Windows, over: Over, step: float) -> Real:
-        found: Real = np.sum(strokes_of(runs_of(parts, over)), axis=0) * mean_rate(parts[0][2], over) / over.cycle
+    def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
+        found: Real = (
+            np.sum(stroke_lengths(followed_runs(parts, over)), axis=0)
+            * mean_crank_speed(parts[0][2], over)
+            / over.cycle
+        )
         return found[:, None]
 
-    def measured(self, results: Results, ends: Ends) -> float:
-        return measures.mean_speed(results)
+    def measured(self, results: Results, ends: DriverEnds) -> float:
+        return measures.mean_output_speed(results)
 
 
-def travel_of(read: Read, over: Over) -> Real:
+def coarse_travel(read: Read, over: QuantityRange) -> Real:
     """How far the run goes, coarsely, (variants,); nan where the output turns on and on."""
     run = read("run")
     travel: Real = np.max(run, axis=1) - np.min(run, axis=1)
@@ -156,7 +160,7 @@ def travel_of(read: Read, over: Over) -> Real:
     return travel
 
 
-def longest(run: Real, travel: Real, *, turns: bool) -> Real:
+def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
     """The longest stroke of a closed curve that goes to and fro several times, (variants,); travel: its whole range.
 
     turns: it is an angle that is told within -pi..pi.
@@ -171,14 +175,14 @@ def longest(run: Real, travel: Real, *, turns: bool) -> Real:
     return np.minimum(best, travel)
 
 
-def ends_of(slope: Real) -> Real:
+def count_reversals(slope: Real) -> Real:
     """How often a curve turns back in a cycle, (variants,); what rests may count twice."""
     sign = np.sign(slope)
     found: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
     return found
 
 
-def runs_of(parts: Windows, over: Over) -> list[Real]:
+def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
     """The run in each window, followed."""
     runs = []
     for angle, __, read in parts:
@@ -187,7 +191,7 @@ def runs_of(parts: Windows, over: Over) -> list[Real]:
     return runs
 
 
-def strokes_of(runs: list[Real]) -> Real:
+def stroke_lengths(runs: list[Real]) -> Real:
     """Lengths of the strokes between windows, (strokes, variants)."""
     ends = [np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs]
     return np.abs(np.diff([*ends, ends[0]], axis=0))
@@ -203,14 +207,14 @@ def forward_share(slope: Real) -> Real:
     return found
 
 
-def ratio_of(share: Real) -> Real:
+def time_ratio_of_share(share: Real) -> Real:
     """k from the share of one of two strokes: the longer over the shorter."""
     with np.errstate(all="ignore"):
         found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
     return found
 
 
-def mean_rate(read: Read, over: Over) -> Real:
+def mean_crank_speed(read: Read, over: QuantityRange) -> Real:
     """The crank's mean speed in the first cycle from position 0 on: half the sum of those at its ends, (variants,)."""
     rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
     return (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2

@@ -15,13 +15,13 @@ from tmm_cli.mechanics.kinematics import Motion, followers, sides
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import BALANCING, REACTION_SIZE
 from tmm_cli.synthesis import measures
-from tmm_cli.synthesis.measures import Ends
-from tmm_cli.synthesis.optimal.quantities.base import Peak
+from tmm_cli.synthesis.measures import DriverEnds
+from tmm_cli.synthesis.optimal.quantities.base import PeakQuantity
 
 SIDE: Final = "side"  # outputs whose sign tells on which side of a dead position a group is that has one assembly only
 
 
-class Assembles(Peak):
+class AssemblyReserve(PeakQuantity):
     """How far from its end the assembly of a group is, in sizes of the group; below zero it cannot be assembled.
 
     Every candidate must have it in all positions.
@@ -37,7 +37,7 @@ class Assembles(Peak):
         }
 
 
-class Margin(Peak):
+class DeadPositionMargin(PeakQuantity):
     """Least distance of a group from a dead position, 1 at best."""
 
     of, text, dimension, lowest = "margin", N_("least distance from a dead position"), "number", True
@@ -46,7 +46,7 @@ class Margin(Peak):
         return {"y": -reduce(np.minimum, [at.margin for at in motion.placements])}
 
 
-class Pressure(Peak):
+class LargestPressureAngle(PeakQuantity):
     """Largest pressure angle on the output, rad; its curve is the tangent."""
 
     of, text, dimension = "pressure", N_("largest pressure angle"), "angle"
@@ -65,14 +65,14 @@ class Pressure(Peak):
     def levelled(self, y: Any) -> Any:
         return np.arctan(y)
 
-    def measured(self, results: Results, ends: Ends) -> float:
-        return measures.pressure(results, ends)
+    def measured(self, results: Results, ends: DriverEnds) -> float:
+        return measures.largest_pressure_angle(results, ends)
 
 
 # Forces: what balances the driver, reactions.
 
 
-class Moment(Peak):
+class LargestBalancingMoment(PeakQuantity):
     """On the driver, N m, or N where it slides."""
 
     of, text, forces = "moment", N_("largest balancing moment"), True
@@ -88,7 +88,7 @@ class Moment(Peak):
         return {"y": np.abs(BALANCING.value(reactions.balance))}
 
 
-class Reaction(Peak):
+class LargestReaction(PeakQuantity):
     """In a pair, N; of a compound hinge the largest of its pairs."""
 
     of, text, forces, dimension = "reaction", N_("largest reaction in the pair"), True, "force"

@@ -1,4 +1,4 @@
-"""What varies in an optimal synthesis: between two bounds, in steps, or among given values."""
+"""Ranges of an optimal synthesis: of the parameters that vary, and of the driver."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tmm_cli.problem import (
     evaluate_quantity,
     quote,
 )
-from tmm_cli.synthesis.blocks import OfTheFile
+from tmm_cli.synthesis.blocks import TriedFileError
 from tmm_cli.synthesis.optimal.task import Parameter
 
 FileWith = Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
@@ -33,16 +33,16 @@ def read_ranges(
     vary: Mapping[str, Range], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
     """names: those of the file for names of the task. Raises ProblemError."""
-    kinds = _kinds({name: _values(own) for name, own in vary.items()}, sense, names, file_with)
-    return tuple(_parameter(name, own, kinds[name], sense) for name, own in vary.items())
+    kinds = _find_kinds({name: _range_values(own) for name, own in vary.items()}, sense, names, file_with)
+    return tuple(_read_parameter(name, own, kinds[name], sense) for name, own in vary.items())
 
 
-def _values(own: Range) -> list[Any]:
+def _range_values(own: Range) -> list[Any]:
     """Every value of a range as the file has it."""
     return (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
 
 
-def _parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Parameter:
+def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Parameter:
     at: Path = ("vary", name)
     dimension = KINDS[kind].dimension
 
@@ -80,7 +80,7 @@ def _parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Paramete
     return Parameter(name, values[0], values[-1], kind, tuple(values))
 
 
-def _kinds(
+def _find_kinds(
     given: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
     """The dimension of each: of its values, else the first that the file takes them for, lengths before others.
@@ -88,7 +88,7 @@ def _kinds(
     A bare number is a number where the file takes it for a length too (a share of the way between two points). Of what
     the file refuses whatever it is, the first whose dimension it does not mind.
     """
-    found = {name: next((k for v in own if (k := _kind_of(v, sense))), "") for name, own in given.items()}
+    found = {name: next((k for v in own if (k := _dimension_name(v, sense))), "") for name, own in given.items()}
 
     def value(name: str, kind: str) -> PhysicalValue:
         if not kind:  # as a bare number
@@ -100,7 +100,7 @@ def _kinds(
         """2: the file minds the dimension of a first value; 1: it refuses them for another reason; 0: for none."""
         try:
             file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, sense.units)
-        except OfTheFile as error:
+        except TriedFileError as error:
             return 2 if isinstance(error.error, UnitError) else 1
         except ProblemError:
             return 2  # said when its bounds are read
@@ -121,7 +121,7 @@ def _kinds(
     return found
 
 
-def _kind_of(source: Any, sense: ValueReader) -> str | None:
+def _dimension_name(source: Any, sense: ValueReader) -> str | None:
     try:
         found = evaluate_quantity(source, sense.parameters, sense.units).dimension
     except ProblemError:
@@ -134,10 +134,10 @@ def _kind_of(source: Any, sense: ValueReader) -> str | None:
 
 
 Ends = tuple[Any, Any] | None
-Over = str | tuple[float, float]
+RangeChoice = str | tuple[float, float]
 
 
-def asked_over(over: Any, driver: Driver, sense: ValueReader) -> Over:
+def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
     """What the key `over` says, with places in SI; what is usual where it is left out. Raises ProblemError."""
     turns, stroked = driver.kind == "turn", driver.stroke is not None
     ways = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
@@ -153,7 +153,7 @@ def asked_over(over: Any, driver: Driver, sense: ValueReader) -> Over:
                 allowed=", ".join([*possible, "[from, to]"]),
             )
         return over
-    low, high = (float(sense.number(value, _dimension(driver), ("over", n))) for n, value in enumerate(over))
+    low, high = (float(sense.number(value, _driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
             _("the lower end comes first, the other one at most a turn after it"),
@@ -164,15 +164,15 @@ def asked_over(over: Any, driver: Driver, sense: ValueReader) -> Over:
     return low, high
 
 
-def driven(problem: Problem, over: Over) -> Variant:
+def with_driver_range(problem: Problem, over: RangeChoice) -> Variant:
     """The linkage of a file with the way of its driver. Raises ProblemError."""
-    ends, stroke = _ends(problem, over), problem.linkage.driver.stroke
+    ends, stroke = _driver_ends(problem, over), problem.linkage.driver.stroke
     if ends is not None and stroke is not None and not (stroke[0] <= ends[0] and ends[1] <= stroke[1]):
-        raise _not_there(("over",), over, problem.linkage.driver, stroke, problem.units)
+        raise _out_of_range(("over",), over, problem.linkage.driver, stroke, problem.units)
     return Variant(problem.linkage, problem.request, ends)
 
 
-def _ends(problem: Problem, over: Over) -> Ends:
+def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
     driver, places = problem.linkage.driver, problem.request.places
     if over == "cycle":
         return None
@@ -193,10 +193,10 @@ def _ends(problem: Problem, over: Over) -> Ends:
     return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # about the sketch, whose assembly it has
 
 
-def place_of(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
+def read_position(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
     """A place on the driver's way, whole turns away where that brings it there. Raises ProblemError."""
     driver = variant.linkage.driver
-    place: Any = sense.number(value, _dimension(driver), path)
+    place: Any = sense.number(value, _driver_dimension(driver), path)
     if variant.ends is None:
         return place
     low, high = (float(end) for end in variant.ends)
@@ -204,16 +204,16 @@ def place_of(value: Any, variant: Variant, sense: ValueReader, path: Path) -> An
     if driver.kind == "turn" and not low - slack <= place <= high + slack:
         place = place + 2 * np.pi * np.ceil(float(low - slack - place) / (2 * np.pi))
     if not low - slack <= place <= high + slack:
-        raise _not_there(path, value, driver, (low, high), sense.units)
+        raise _out_of_range(path, value, driver, (low, high), sense.units)
     return place
 
 
-def _dimension(driver: Driver) -> Dimension:
+def _driver_dimension(driver: Driver) -> Dimension:
     return ANGLE if driver.kind == "turn" else LENGTH
 
 
-def _not_there(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem) -> ProblemError:
-    dimension = _dimension(driver)
+def _out_of_range(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem) -> ProblemError:
+    dimension = _driver_dimension(driver)
     low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
     return ProblemError(
         _("the driver does not go there"),

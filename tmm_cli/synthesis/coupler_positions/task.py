@@ -1,22 +1,43 @@
-"""The construction of a coupler's guidance: positions, bisectors, pivots; Burmester's curves for four positions."""
+"""Four-bar by positions of its coupler: solution, drawings, keys of the task."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
-from typing import Any, Final
+from math import sin
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
-from tmm_cli.language import N_, Phrase
-from tmm_cli.mechanics.numerics import settled
+from tmm_cli.language import N_, Phrase, _
+from tmm_cli.mechanics.numerics import SAME_POSITION, settled
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, planar
 from tmm_cli.synthesis import four_bar
-from tmm_cli.synthesis.construction import Arc, Construction, Curve, Segment, Spot, Style, swept
-from tmm_cli.synthesis.coupler_positions.burmester import CouplerPositionsTask, Dyads, Marks, Poses, Side, by_turn
-from tmm_cli.synthesis.coupler_positions.curve import frame, lines
-from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, exists, guiding
-from tmm_cli.synthesis.record import Demand, Listing, Outcome, Value
+from tmm_cli.synthesis.blocks import TaskBlock, choose_key_set
+from tmm_cli.synthesis.construction import (
+    Arc,
+    ConstructionCurve,
+    GeometricConstruction,
+    LetteredPoint,
+    Segment,
+    Style,
+    swept_arc,
+)
+from tmm_cli.synthesis.coupler_positions.burmester import (
+    CouplerPoses,
+    CouplerPositionsTask,
+    DyadData,
+    Dyads,
+    GuidanceQuality,
+    dyads_by_rotation,
+)
+from tmm_cli.synthesis.coupler_positions.curve import burmester_lines, sheet_extent
+from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, are_sensible, find_dyads
+from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
 
 CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
 TITLES: Final = (  # by how many pivots were given
@@ -28,9 +49,9 @@ BY_PIN: Final = N_("dashed: bisectors of the places of the pin")
 BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its places ′, turned back with the coupler to position 1")
 
 
-def construction(
-    poses: Poses, one: Dyads, other: Dyads, by_pivot: tuple[bool, bool] = (False, False)
-) -> tuple[Construction, ...]:
+def draw_construction(
+    poses: CouplerPoses, one: Dyads, other: Dyads, by_pivot: tuple[bool, bool] = (False, False)
+) -> tuple[GeometricConstruction, ...]:
     """The four-bar in its first position, the others thin, arcs of pins, and how its dyads were found.
 
     by_pivot: of each dyad, whether its pivot was given: then the pivot's places seen from the plane in position 1 lie
@@ -40,24 +61,24 @@ def construction(
     rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (one, other)]
     count = len(poses.places)
     segments: list[Segment] = []
-    spots: list[Spot] = []
+    spots: list[LetteredPoint] = []
     arcs: list[Arc] = []
     for k, (name, pin) in enumerate((("A", "B"), ("D", "C"))):
         dyad, inverted = (one, other)[k], by_pivot[k]
         places, pivot = rows[k]
         first = complex(places[0])
-        arcs.append(swept(pivot, places))
+        arcs.append(swept_arc(pivot, places))
         segments.append(Segment(pivot, first, "link", "l1" if name == "A" else "l3"))
-        spots += [Spot(name, pivot, "support"), Spot(f"{pin}1", first, "hinge")]
-        spots += [Spot(f"{pin}{n + 1}", complex(places[n]), "dot") for n in range(1, count)]
+        spots += [LetteredPoint(name, pivot, "support"), LetteredPoint(f"{pin}1", first, "hinge")]
+        spots += [LetteredPoint(f"{pin}{n + 1}", complex(places[n]), "dot") for n in range(1, count)]
         if count == 4:
             continue
         row, centre = [complex(z) for z in places], pivot
         if inverted:
             local = np.asarray(poses.in_plane(dyad.pivot), complex)
             row, centre = [complex(z) for z in np.asarray(poses.on_frame(local), complex)[:, 0]], first
-            arcs.append(swept(centre, np.array(row), "dashed"))
-            spots += [Spot(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
+            arcs.append(swept_arc(centre, np.array(row), "dashed"))
+            spots += [LetteredPoint(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
         for before, here in pairwise(row):
             segments += [Segment(before, here, "thin"), Segment((before + here) / 2, centre, "dashed")]
     (b, a), (c, d) = rows
@@ -67,7 +88,7 @@ def construction(
         if k:
             segments.append(Segment(complex(b[k]), complex(c[k]), "link2"))
         segments += [Segment(complex(b[k]), p, "thin"), Segment(p, complex(c[k]), "thin")]
-        spots.append(Spot(f"P{k + 1}", p, "dot"))
+        spots.append(LetteredPoint(f"P{k + 1}", p, "dot"))
     values = tuple(
         (name, float(abs(z)), "length")
         for name, z in (("l1", b[0] - a), ("l2", c[0] - b[0]), ("l3", c[0] - d), ("l4", d - a))
@@ -75,7 +96,7 @@ def construction(
     if count < 4:
         notes = sorted({BY_PIVOT if given else BY_PIN for given in by_pivot})
         return (
-            Construction(
+            GeometricConstruction(
                 TITLES[sum(by_pivot)],
                 tuple(segments),
                 tuple(arcs),
@@ -85,10 +106,10 @@ def construction(
                 values=values,
             ),
         )
-    found = lines(poses, [s.at for s in spots])
-    curves = tuple(Curve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
+    found = burmester_lines(poses, [s.at for s in spots])
+    curves = tuple(ConstructionCurve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
     note = N_("red: centre points m (pivots); dashed: circle points k1 (pins), in position 1")
-    near = Construction(
+    near = GeometricConstruction(
         N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"),
         tuple(segments),
         tuple(arcs),
@@ -100,7 +121,7 @@ def construction(
     )
     few = [s for s in spots if s.name in ("A", "D", "B1", "C1")]
     links = [s for s in segments if s.style == "link"]
-    wide = Construction(
+    wide = GeometricConstruction(
         N_("Centre-point curve and circle-point curve of the four positions (Burmester)"),
         tuple(links),
         (),
@@ -109,7 +130,7 @@ def construction(
         curves,
         "curves",
         chain="four-bar",
-        around=frame([s.at for s in few], [line for row in found for line in row]),
+        around=sheet_extent([s.at for s in few], [line for row in found for line in row]),
     )
     return near, wide
 
@@ -122,7 +143,6 @@ def construction(
 # AB one way.
 
 
-__all__ = ["PARAMETERS", "CouplerPositionsTask", "Side", "solve"]
 NAMES: Final = {
     "Ax": N_("pivot A: x"),
     "Ay": N_("pivot A: y"),
@@ -174,18 +194,18 @@ LISTED: Final = 360  # turns that are listed of each branch of Burmester's curve
 
 def refuse(task: CouplerPositionsTask) -> None:
     """Raises Infeasible with the reason where no four-bar guides the coupler."""
-    guiding(task)
+    find_dyads(task)
 
 
-def solve(task: CouplerPositionsTask) -> Outcome:
+def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
-    one, other, mark = guiding(task)
-    numbers = _parameters(task, one, other)
-    values = [Value(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
+    one, other, mark = find_dyads(task)
+    numbers = _parameter_values(task, one, other)
+    values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
-        Value("", float(mark.least), "angle", N_("least transmission angle on the way")),
-        Value("", float(mark.turn), "angle", N_("turn of AB from the first to the last position")),
-        Value("", DEFECTS[int(mark.defect)], "word", N_("defects")),
+        NamedValue("", float(mark.least), "angle", N_("least transmission angle on the way")),
+        NamedValue("", float(mark.turn), "angle", N_("turn of AB from the first to the last position")),
+        NamedValue("", DEFECTS[int(mark.defect)], "word", N_("defects")),
     ]
     count = len(task.places)
     notes, listings = [], []
@@ -197,15 +217,17 @@ def solve(task: CouplerPositionsTask) -> Outcome:
             )
         )
     elif count == 4:
-        values += [*_on_curve(task, "AB", one), *_on_curve(task, "DC", other)]
-        listings.append(_curve(task))
+        values += [*_curve_values(task, "AB", one), *_curve_values(task, "DC", other)]
+        listings.append(_tabulate_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
-    drawn = construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
+    drawn = draw_construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
     source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, one, other, mark))
-    return Outcome(tuple(_given(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings))
+    return SynthesisOutcome(
+        tuple(_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
+    )
 
 
-def _parameters(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[str, Any]:
+def _parameter_values(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[str, Any]:
     """All parameters in extended precision."""
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
     a, d = one.pivot, other.pivot
@@ -218,21 +240,21 @@ def _parameters(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[st
     return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
 
 
-def _on_curve(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterator[Value]:
+def _curve_values(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterator[NamedValue]:
     """Where a dyad is on Burmester's curves, as it can be given again."""
-    side = task.sides.get(name, Side())
+    side = task.sides.get(name, DyadData())
     if side.turn is None:
         pins = task.poses.on_frame(found.pin)
         turn = float(np.angle(complex((pins[1] - found.pivot) / (pins[0] - found.pivot))))
-        ends = [by_turn(task.poses, np.asarray(turn, np.longdouble), branch).pivot for branch in (0, 1)]
+        ends = [dyads_by_rotation(task.poses, np.asarray(turn, np.longdouble), branch).pivot for branch in (0, 1)]
         branch = int(np.argmin(np.nan_to_num(np.abs(np.array(ends, complex) - complex(found.pivot)), nan=np.inf)))
-        yield Value("", turn, "angle", GIVEN[name]["turn"])
-        yield Value("", str(branch + 1), "word", BRANCH[name])
+        yield NamedValue("", turn, "angle", GIVEN[name]["turn"])
+        yield NamedValue("", str(branch + 1), "word", BRANCH[name])
     if side.near is not None:
-        yield Value("", float(abs(complex(found.pivot) - complex(side.near))), "length", AWAY[name])
+        yield NamedValue("", float(abs(complex(found.pivot) - complex(side.near))), "length", AWAY[name])
 
 
-def _curve(task: CouplerPositionsTask) -> Listing:
+def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
     columns = (
         ("branch", N_("branch"), "name"),
@@ -248,9 +270,9 @@ def _curve(task: CouplerPositionsTask) -> Listing:
     turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
     rows = []
     for branch in (0, 1):
-        found = by_turn(task.poses, turns, branch)
+        found = dyads_by_rotation(task.poses, turns, branch)
         first = task.poses.on_frame(found.pin)[..., 0]
-        for k in np.flatnonzero(exists(task, found)):
+        for k in np.flatnonzero(are_sensible(task, found)):
             a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
             places = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
             rows.append((str(branch + 1), float(turns[k]), *places, abs(b1 - a)))
@@ -267,7 +289,7 @@ def _position_names(k: int) -> tuple[str, str, str]:
     )
 
 
-def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Marks) -> Iterator[Demand]:
+def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: GuidanceQuality) -> Iterator[Demand]:
     b = task.poses.on_frame(one.pin)
     phi = np.angle(np.asarray((b - one.pivot) / (other.pivot - one.pivot), complex))
     span = complex(other.pin - one.pin)
@@ -275,17 +297,17 @@ def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Marks) 
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
         at = {"phi": float(phi[k]), "local": local, "slope": slope, "near": float(angle)}
         x, y, turned = _position_names(k)
-        yield Demand(x, complex(place).real, "length", partial(_pose, "x", at), at=task.size)
-        yield Demand(y, complex(place).imag, "length", partial(_pose, "y", at), at=task.size)
-        yield Demand(turned, float(angle), "angle", partial(_pose, "angle", at), at=1.0)
-    measure = partial(four_bar.transmission, float(mark.worst))
+        yield Demand(x, complex(place).real, "length", partial(_measured_pose, "x", at), at=task.size)
+        yield Demand(y, complex(place).imag, "length", partial(_measured_pose, "y", at), at=task.size)
+        yield Demand(turned, float(angle), "angle", partial(_measured_pose, "angle", at), at=1.0)
+    measure = partial(four_bar.transmission_angle, float(mark.worst))
     name = N_("least transmission angle on the way")
     yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
 
 
-def _pose(part: str, at: dict[str, Any], results: Any) -> float:
+def _measured_pose(part: str, at: dict[str, Any], results: Any) -> float:
     """A coordinate of the coupler's position where AB stands at an angle from AD."""
-    found = four_bar.pins(results, np.array([at["phi"]]))
+    found = four_bar.pin_positions(results, np.array([at["phi"]]))
     if found is None:
         return float("nan")
     b, c = found[1][0], found[2][0]
@@ -295,23 +317,130 @@ def _pose(part: str, at: dict[str, Any], results: Any) -> float:
     return float({"x": place.real, "y": place.imag, "angle": turned}[part])
 
 
-def _given(task: CouplerPositionsTask) -> Iterator[Value]:
+def _given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
         x, y, turned = _position_names(k)
-        yield from _place(place, x, y)
-        yield Value("", angle, "angle", turned)
+        yield from _coordinate_values(place, x, y)
+        yield NamedValue("", angle, "angle", turned)
     for name, side in task.sides.items():
         texts = GIVEN[name]
         for part in ("pin", "pivot", "length", "turn", "near"):
             value = getattr(side, part)
             if value is not None and isinstance(texts[part], tuple):
-                yield from _place(value, *texts[part])
+                yield from _coordinate_values(value, *texts[part])
             elif value is not None:
-                yield Value("", value, "length" if part == "length" else "angle", texts[part])
+                yield NamedValue("", value, "length" if part == "length" else "angle", texts[part])
     if task.within is not None:
-        yield from _place(task.within[0], N_("pivots within, x"), N_("pivots within, y"))
-        yield from _place(task.within[1], N_("pivots within, to x"), N_("pivots within, to y"))
+        yield from _coordinate_values(task.within[0], N_("pivots within, x"), N_("pivots within, y"))
+        yield from _coordinate_values(task.within[1], N_("pivots within, to x"), N_("pivots within, to y"))
 
 
-def _place(place: Any, x: str, y: str) -> tuple[Value, Value]:
-    return Value("", place.real, "length", x), Value("", place.imag, "length", y)
+def _coordinate_values(place: Any, x: str, y: str) -> tuple[NamedValue, NamedValue]:
+    return NamedValue("", place.real, "length", x), NamedValue("", place.imag, "length", y)
+
+
+def _check_position(found: Any) -> Any:
+    if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
+        raise PydanticCustomError("position", "a place and an angle [x, y, angle] are wanted")
+    return found
+
+
+Position = Annotated[list[Value], BeforeValidator(_check_position)]
+SideName = Literal["left", "right"]
+DYADS = ("AB", "DC")
+
+
+class CouplerPositionsBlock(TaskBlock):
+    """A four-bar ABCD (AB drives) whose coupler takes 2, 3 or 4 positions."""
+
+    task: Literal["coupler-positions"]
+    positions: list[Position] = Field(
+        min_length=2, max_length=4, description="[x, y, angle] of the coupler's axes, 2 to 4, in order"
+    )
+    B: Vector | None = Field(default=None, description="pin of AB in the coupler's axes; or its pivot A")
+    C: Vector | None = Field(default=None, description="pin of DC in the coupler's axes; or its pivot D")
+    A: Vector | None = Field(default=None, description="pivot of AB on the frame")
+    D: Vector | None = Field(default=None, description="pivot of DC on the frame")
+    AB: Value | None = Field(default=None, description="length, with two positions")
+    DC: Value | None = Field(default=None, description="length, with two positions")
+    AB_side: SideName = Field(default="left", description="of the way from place 1 to 2, with two positions")
+    DC_side: SideName = "left"
+    AB_turn: Value | None = Field(default=None, description="turn of AB from 1 to 2, with four; best transmission")
+    DC_turn: Value | None = Field(default=None, description="turn of DC from 1 to 2, with four; best transmission")
+    A_near: Vector | None = Field(
+        default=None, description="or, with four, a place: the pivot of the curve nearest to it"
+    )
+    D_near: Vector | None = Field(default=None, description="the same of D")
+    pivots_within: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=2, description="with four, opposite corners of a box for free pivots"
+    )
+    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links of that turn")
+    DC_branch: Literal[1, 2] = 1
+    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
+
+
+BLOCK = CouplerPositionsBlock
+
+
+def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsTask:
+    """The task in SI. Raises ProblemError."""
+    count = len(shape.positions)
+    poses = [
+        (
+            planar(*(values.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
+            values.number(pose[2], ANGLE, ("positions", k, 2)),
+        )
+        for k, pose in enumerate(shape.positions)
+    ]
+    for k, (place, angle) in enumerate(poses):
+        same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
+        if same:
+            raise ProblemError(
+                _("this position is there already"),
+                path=("positions", k),
+                found=_("position {number}").format(number=same[0] + 1),
+                allowed=_("any other position, as one turned by 20 deg"),
+            )
+    sides = {name: side for name in DYADS if (side := _read_dyad(shape, values, name, count)) is not None}
+    places, angles = zip(*poses, strict=True)
+    return CouplerPositionsTask(
+        tuple(places), tuple(angles), sides, shape.defects == "keep", _read_box(shape, values, count, sides)
+    )
+
+
+def _read_box(
+    shape: CouplerPositionsBlock, values: ValueReader, count: int, sides: dict[str, DyadData]
+) -> tuple[complex, complex] | None:
+    """Corners of the box for free pivots."""
+    if shape.pivots_within is None:
+        return None
+    if count != 4 or len(sides) == 2:
+        why = _("{count} positions").format(count=count) if count != 4 else _("both links are given")
+        raise ProblemError(
+            _("a box is for pivots that are free"),
+            path=("pivots_within",),
+            found=why,
+            allowed=_("four positions, and AB or DC free"),
+            key=True,
+        )
+    one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
+    return one, other
+
+
+def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
+    """What is given of a dyad, which must be just what the count of positions needs."""
+    pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
+    sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
+    refusal = _("these keys do not determine {link} with {count} positions").format(link=name, count=count)
+    given = choose_key_set(shape, sets, (pivot, pin, name, turn, near), refusal)
+    if not given:
+        return None
+    found: dict[str, Any] = {
+        field: values.vector(getattr(shape, key), LENGTH, (key,))
+        for field, key in (("pivot", pivot), ("pin", pin), ("near", near))
+        if key in given
+    }
+    for field, key, want in (("length", name, LENGTH), ("turn", turn, ANGLE)):
+        if key in given:
+            found[field] = values.number(getattr(shape, key), want, (key,))
+    return DyadData(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)

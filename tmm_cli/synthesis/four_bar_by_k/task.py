@@ -1,39 +1,62 @@
-"""Drawings of the four-bars by k: circles with their admissible arcs, link lengths and pressure angle along them."""
+"""Four-bar by k and both extreme positions of its rocker: choice of the crank's pivot A, drawings, keys of the task."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
+from pydantic import Field
 
 from tmm_cli.language import N_, _
 from tmm_cli.mechanics.numerics import find_roots, settled, unit
-from tmm_cli.synthesis.construction import Angle, Centre, Construction, Curve, Diagram, Line, Segment, Spot, box, circle
-from tmm_cli.synthesis.four_bar_by_k.arcs import (
-    ARC,
-    Found,
-    FourBarByKTask,
-    arcs,
-    at,
-    bound,
-    line,
-    line_places,
-    places,
-    whole,
-    widest,
+from tmm_cli.mechanics.quantities import LENGTH
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector
+from tmm_cli.synthesis.blocks import TaskBlock, read_numbers
+from tmm_cli.synthesis.construction import (
+    Angle,
+    CircleCentre,
+    ConstructionCurve,
+    Diagram,
+    DiagramLine,
+    GeometricConstruction,
+    LetteredPoint,
+    Segment,
+    circle_extent,
+    full_circle,
 )
-from tmm_cli.synthesis.measures import crank_turns, end_angle, pressure, ratio, stroke
-from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, Outcome, Value, given
+from tmm_cli.synthesis.four_bar_by_k.arcs import (
+    SHORTEST_ARC,
+    FourBarByKSolution,
+    FourBarByKTask,
+    admissible_arcs,
+    four_bar_at,
+    largest_beta,
+    largest_w,
+    line_offset,
+    pivots_on_line,
+    sample_arc,
+    sample_whole_arc,
+)
+from tmm_cli.synthesis.measures import (
+    driver_completes_range,
+    largest_pressure_angle,
+    output_stroke,
+    stroke_end_angle,
+    time_ratio,
+)
+from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
 LINKS: Final = ("l1", "l2", "l3", "l4")
 LONGEST: Final = 20.0  # the whole family is on the diagrams when no rod is longer than this many of the chosen one
 CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
 
 
-def construction(task: FourBarByKTask, found: Found, family: Sequence[Found]) -> Construction:
+def draw_construction(
+    task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
+) -> GeometricConstruction:
     """Both extreme positions, the circles on which C1C2 is seen under theta, and the pivots that may be A."""
     d, a = complex(task.support), complex(found.a)
     c1, c2 = (complex(d + task.l3 * np.exp(1j * psi)) for psi in (task.psi1, task.psi2))
@@ -50,36 +73,36 @@ def construction(task: FourBarByKTask, found: Found, family: Sequence[Found]) ->
         Segment(c1, c2, "thin"),
     ]
     spots = [
-        Spot("D", d, "support"),
-        Spot("A", a, "support"),
-        Spot("B1", pin1, "hinge"),
-        Spot("B2", pin2, "hinge"),
-        Spot("C1", c1, "hinge"),
-        Spot("C2", c2, "hinge"),
+        LetteredPoint("D", d, "support"),
+        LetteredPoint("A", a, "support"),
+        LetteredPoint("B1", pin1, "hinge"),
+        LetteredPoint("B2", pin2, "hinge"),
+        LetteredPoint("C1", c1, "hinge"),
+        LetteredPoint("C2", c2, "hinge"),
     ]
     middle, theta, half = (c1 + c2) / 2, float(task.theta), abs(c2 - c1) / 2
-    arcs = [circle(a, float(found.l1))]
+    arcs = [full_circle(a, float(found.l1))]
     angles = [Angle(d, c1, c2, "ψ")]
-    centres, wishes = [], [box(a, float(found.l1))]
+    centres, wishes = [], [circle_extent(a, float(found.l1))]
     if theta > 0:
         out, radius = (middle - d) / abs(middle - d), half / float(np.sin(theta))
         angles.append(Angle(a, c1, c2, "θ"))
         for f in sorted(family, key=lambda one: int(one.side) != int(found.side)):
             centre = middle + int(f.side) * out * half / float(np.tan(theta))
-            arcs.append(circle(centre, radius))
+            arcs.append(full_circle(centre, radius))
             if int(f.side) == int(found.side):
-                centres.append(Centre(centre, radius, (c1, c2)))
+                centres.append(CircleCentre(centre, radius, (c1, c2)))
                 name = "90° − θ" if theta < np.pi / 2 else "θ − 90°"
                 angles += [Angle(c1, c2, centre, name), Angle(c2, c1, centre, name)]
                 wishes.append((centre,))
-            wishes.append(box(centre, radius))
+            wishes.append(circle_extent(centre, radius))
     values = [(name, float(getattr(task if name == "l3" else found, name)), "length") for name in LINKS]
     values += [("ψ", float(task.swing), "angle"), ("θ", theta, "angle")]
-    curves = [Curve(tuple(complex(z) for z in f.a), "bold") for f in family]
+    curves = [ConstructionCurve(tuple(complex(z) for z in f.a), "bold") for f in family]
     notes = [N_("red: where {A} may be, so that the crank turns fully")]
     if theta > 0:
         notes.append(N_("{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|"))
-    return Construction(
+    return GeometricConstruction(
         N_("Extreme positions of the rocker, and the circles on which {C}1{C}2 is seen under theta"),
         tuple(segments),
         tuple(arcs),
@@ -94,7 +117,9 @@ def construction(task: FourBarByKTask, found: Found, family: Sequence[Found]) ->
     )
 
 
-def diagrams(task: FourBarByKTask, found: Found, family: Sequence[Found]) -> tuple[Diagram, Diagram]:
+def draw_diagrams(
+    task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
+) -> tuple[Diagram, Diagram]:
     """Largest pressure angle, and the lengths of crank and frame, over that of the coupler along the arcs."""
     size, most = max(float(found.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
     if most > LONGEST * size:
@@ -109,22 +134,22 @@ def diagrams(task: FourBarByKTask, found: Found, family: Sequence[Found]) -> tup
             angle, frame = N_("A on D's side of C1C2"), N_("frame l4, A on D's side of C1C2")
         x = np.asarray(f.l2)
         kept = x <= most
-        pressures.append(Line(angle, x[kept], np.asarray(f.pressure)[kept]))
-        lengths.append(Line(frame, x[kept], np.asarray(f.l4)[kept]))
+        pressures.append(DiagramLine(angle, x[kept], np.asarray(f.pressure)[kept]))
+        lengths.append(DiagramLine(frame, x[kept], np.asarray(f.l4)[kept]))
     longest = max(family, key=lambda one: float(np.max(one.l2)))
     kept = np.asarray(longest.l2) <= most
-    lengths.append(Line(N_("crank l1"), longest.l2[kept], longest.l1[kept]))
+    lengths.append(DiagramLine(N_("crank l1"), longest.l2[kept], longest.l1[kept]))
     dot = np.array([found.l2], dtype=float)
     both = np.array([found.l1, found.l4], dtype=float)
-    pressures.append(Line(N_("chosen"), dot, np.array([found.pressure], dtype=float), dots=True))
-    lengths.append(Line(N_("chosen"), np.repeat(dot, 2), both, dots=True))
+    pressures.append(DiagramLine(N_("chosen"), dot, np.array([found.pressure], dtype=float), dots=True))
+    lengths.append(DiagramLine(N_("chosen"), np.repeat(dot, 2), both, dots=True))
     across, title = (N_("coupler l2"), "length"), N_("Largest pressure angle along the admissible arcs")
     drawn = Diagram("family-pressure", title, across, (N_("largest pressure angle"), "angle"), tuple(pressures))
     title = N_("Lengths of the links along the admissible arcs")
     return drawn, Diagram("family-lengths", title, across, (N_("length"), "length"), tuple(lengths))
 
 
-def listing(family: Sequence[Found]) -> Listing:
+def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
     """The family in numbers, from end to end of every arc, where the rocker is dead."""
     columns = (
         ("side", N_("arc"), "word"),
@@ -147,7 +172,7 @@ def listing(family: Sequence[Found]) -> Listing:
     )
 
 
-def side_name(found: Found) -> str:
+def side_name(found: FourBarByKSolution) -> str:
     """Which of the two arcs it is on."""
     return N_("beyond C1C2") if int(found.side) > 0 else N_("on D's side of C1C2")
 
@@ -172,19 +197,19 @@ ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
 
 
-def _pressure(found: Found, __: FourBarByKTask) -> Any:
+def _pressure_of(found: FourBarByKSolution, __: FourBarByKTask) -> Any:
     return found.pressure
 
 
-def _extent(found: Found, __: FourBarByKTask) -> Any:
+def _extent(found: FourBarByKSolution, __: FourBarByKTask) -> Any:
     return found.l2 + found.l4
 
 
-def _away(found: Found, task: FourBarByKTask) -> Any:
+def _distance_to_near(found: FourBarByKSolution, task: FourBarByKTask) -> Any:
     return np.abs(found.a - task.near)
 
 
-def _rise(f: Found, task: FourBarByKTask) -> Any:
+def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
     """Proportional to the rise of the sine of the largest pressure angle over w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
@@ -201,43 +226,46 @@ def _rise(f: Found, task: FourBarByKTask) -> Any:
 
 
 # what is least at the pivot that is asked for, and what vanishes there
-LEAST: Final[Mapping[str, Callable[[Found, FourBarByKTask], Any]]] = {"best": _pressure, "near": _away}
-EQUATIONS: Final[Mapping[str, Callable[[Found, FourBarByKTask], Any]]] = {
+OBJECTIVES: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any]]] = {
+    "best": _pressure_of,
+    "near": _distance_to_near,
+}
+EQUATIONS: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any]]] = {
     "l1": lambda found, task: found.l1 - task.l1,
     "l2": lambda found, task: found.l2 - task.l2,
     "pressure": lambda found, task: found.pressure - task.pressure,
     "l4": lambda found, task: found.l4 - task.l4,
-    **dict.fromkeys(("level", "yA"), lambda found, task: np.imag(found.a - task.support) - line(task)),
-    "xA": lambda found, task: np.real(found.a - task.support) - line(task),
-    "best": _rise,
+    **dict.fromkeys(("level", "yA"), lambda found, task: np.imag(found.a - task.support) - line_offset(task)),
+    "xA": lambda found, task: np.real(found.a - task.support) - line_offset(task),
+    "best": _pressure_slope,
     "near": lambda found, task: np.real(np.conj(found.a - task.near) * found.slope),
 }
 
 
-def _crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]:
+def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]:
     """Where a function of what is found vanishes along an arc."""
     if task.choose in ON_LINE:
-        fair = [w for w in line_places(task) if 1 < w < bound(task, side)]
-        return [w for w in fair if abs(function(f := at(task, w, side), task)) < SAME * (f.l2 + task.l3)]
-    w = places(task, side)
-    values = function(at(task, w, side), task)
+        fair = [w for w in pivots_on_line(task) if 1 < w < largest_w(task, side)]
+        return [w for w in fair if abs(function(f := four_bar_at(task, w, side), task)) < SAME * (f.l2 + task.l3)]
+    w = sample_arc(task, side)
+    values = function(four_bar_at(task, w, side), task)
     here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
     if not here.size:
         return []
-    return list(find_roots(lambda x: function(at(task, x, side), task), w[here], w[here + 1]))
+    return list(find_roots(lambda x: function(four_bar_at(task, x, side), task), w[here], w[here + 1]))
 
 
-def _best(task: FourBarByKTask, side: int, choice: str) -> Any:
+def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
     """Where something of what is found is least along an arc: where its slope vanishes, or an end of the arc."""
-    w = places(task, side)
-    here = int(np.argmin(LEAST[choice](at(task, w, side), task)))
+    w = sample_arc(task, side)
+    here = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
     if here in (0, len(w) - 1):
         return w[here]
     around = w[[here - 1]], w[[here + 1]]
-    return find_roots(lambda x: EQUATIONS[choice](at(task, x, side), task), *around)[0]
+    return find_roots(lambda x: EQUATIONS[choice](four_bar_at(task, x, side), task), *around)[0]
 
 
-def choose(task: FourBarByKTask) -> Found:
+def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
     """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible.
 
     It is looked for with D in the origin: a support that is far away takes no digits.
@@ -249,35 +277,41 @@ def choose(task: FourBarByKTask) -> Found:
         if getattr(task, key) is not None
     }
     centred = replace(task, support=0 * task.support, **beside)
-    if task.choose in LEAST:
-        found = [(_best(centred, side, task.choose), side) for side in arcs(centred)]
+    if task.choose in OBJECTIVES:
+        found = [(_find_minimum(centred, side, task.choose), side) for side in admissible_arcs(centred)]
     else:
-        found = [(w, side) for side in arcs(centred) for w in _crossings(centred, side, EQUATIONS[task.choose])]
+        found = [
+            (w, side)
+            for side in admissible_arcs(centred)
+            for w in _find_crossings(centred, side, EQUATIONS[task.choose])
+        ]
     if not found and task.choose == "pressure":
-        raise _beyond_pressure(centred)
+        raise _pressure_refusal(centred)
     if not found:
         level = task.choose == "level"
         reason = _("no pivot of the admissible arcs meets this")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
-    goal = _extent if task.choose == "pressure" else LEAST.get(task.choose, _pressure)
-    w, side = min(found, key=lambda one: float(goal(at(centred, *one), centred)))
-    if task.choose == "near" and w in places(centred, side)[[0, -1]]:
+    goal = _extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _pressure_of)
+    w, side = min(found, key=lambda one: float(goal(four_bar_at(centred, *one), centred)))
+    if task.choose == "near" and w in sample_arc(centred, side)[[0, -1]]:
         reason = _("the nearest place of the admissible arcs is an end of them, where the rocker is dead")
         raise Infeasible("near", reason)
-    f = at(centred, w, side)
+    f = four_bar_at(centred, w, side)
     return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
 
 
-def _beyond_pressure(task: FourBarByKTask) -> Infeasible:
+def _pressure_refusal(task: FourBarByKTask) -> Infeasible:
     """The refusal of a largest pressure angle that no pivot of the admissible arcs has."""
-    least = min(float(at(task, _best(task, side, "best"), side).pressure) for side in arcs(task))
+    least = min(
+        float(four_bar_at(task, _find_minimum(task, side, "best"), side).pressure) for side in admissible_arcs(task)
+    )
     reason = _("no pivot of the admissible arcs has this largest pressure angle")
     return Infeasible("pressure", reason, (least, "angle", 1) if task.pressure < least else None)
 
 
 def refuse(task: FourBarByKTask) -> None:
     """Raises Infeasible with the reason where there is no such pivot."""
-    choose(task)
+    choose_pivot(task)
 
 
 def _refuse_numbers(task: FourBarByKTask) -> None:
@@ -285,9 +319,9 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
         raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
     against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
-    if not SMALLEST <= task.swing <= np.pi - 2 * ARC:
+    if not SMALLEST <= task.swing <= np.pi - 2 * SHORTEST_ARC:
         raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"))
-    if theta > np.pi / 2 + half - ARC:  # the largest theta of the arc on D's side
+    if theta > np.pi / 2 + half - SHORTEST_ARC:  # the largest theta of the arc on D's side
         raise Infeasible(
             "k",
             _(
@@ -295,7 +329,7 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
                 "position, or stand all but in it"
             ),
         )
-    if against and theta > np.pi / 2 - half - ARC:  # of the other one
+    if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other one
         raise Infeasible(
             "turns",
             _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
@@ -311,45 +345,45 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
         raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"))
 
 
-def solve(task: FourBarByKTask) -> Outcome:
+def solve(task: FourBarByKTask) -> SynthesisOutcome:
     """The task of one file. Raises Infeasible."""
-    f = choose(task)
+    f = choose_pivot(task)
     demands = [
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", crank_turns, asked=False),
-        Demand(N_("k"), float(task.k), "number", ratio),
-        Demand(N_("swing psi of the rocker"), float(task.swing), "angle", stroke),
+        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("k"), float(task.k), "number", time_ratio),
+        Demand(N_("swing psi of the rocker"), float(task.swing), "angle", output_stroke),
         *(
-            Demand(QUANTITIES[n][1], float(v), "angle", partial(end_angle, near=float(v)), at=1.0)
+            Demand(QUANTITIES[n][1], float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
             for n, v in (("psi1", task.psi1), ("psi2", task.psi2))
         ),
         Demand(
             N_("largest pressure angle"),
             float(f.pressure),
             "angle",
-            pressure,
+            largest_pressure_angle,
             asked=task.pressure is not None,
             of="pressure",
         ),
     ]
-    family = [at(task, whole(task, side), side) for side in arcs(task)]
+    family = [four_bar_at(task, sample_whole_arc(task, side), side) for side in admissible_arcs(task)]
     source = N_(
         "circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
         "l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
     )
     notes = () if task.k > 1 else (N_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
-    return Outcome(
-        _given(task),
-        _found(task, f),
+    return SynthesisOutcome(
+        _given_values(task),
+        _found_values(task, f),
         source,
         tuple(demands),
-        (construction(task, f, family), *diagrams(task, f, family)),
+        (draw_construction(task, f, family), *draw_diagrams(task, f, family)),
         notes,
-        (listing(family),),
+        (tabulate_family(family),),
         output="swing",
     )
 
 
-def _given(task: FourBarByKTask) -> tuple[Value, ...]:
+def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
     choice = {
         "best": N_("best transmission: the least largest pressure angle"),
         "level": N_("supports level: A as high as D"),
@@ -361,40 +395,94 @@ def _given(task: FourBarByKTask) -> tuple[Value, ...]:
         "xA": N_("by its x"),
         "yA": N_("by its height"),
     }[task.choose]
-    return *given(task, QUANTITIES), Value("", choice, "word", N_("choice of A"))
+    return *given_values(task, QUANTITIES), NamedValue("", choice, "word", N_("choice of A"))
 
 
-def _found(task: FourBarByKTask, f: Found) -> tuple[Value, ...]:
+def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
     """The four-bar, where its pivot stands, what that means for the crank, and how far the admissible arcs reach."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     found = [
-        Value("l1", f.l1, *QUANTITIES["l1"]),
-        Value("l2", f.l2, *QUANTITIES["l2"]),
-        Value("l4", f.l4, *QUANTITIES["l4"]),
-        Value("xA", np.real(f.a), *QUANTITIES["xA"]),
-        Value("yA", np.imag(f.a), *QUANTITIES["yA"]),
-        Value("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank at C2, in line with the coupler")),
-        Value("", task.theta, "angle", N_("theta = C1AC2")),
-        Value("", f.pressure, "angle", N_("largest pressure angle")),
+        NamedValue("l1", f.l1, *QUANTITIES["l1"]),
+        NamedValue("l2", f.l2, *QUANTITIES["l2"]),
+        NamedValue("l4", f.l4, *QUANTITIES["l4"]),
+        NamedValue("xA", np.real(f.a), *QUANTITIES["xA"]),
+        NamedValue("yA", np.imag(f.a), *QUANTITIES["yA"]),
+        NamedValue("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank at C2, in line with the coupler")),
+        NamedValue("", task.theta, "angle", N_("theta = C1AC2")),
+        NamedValue("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
-        found.append(Value("", np.abs(f.a - task.near), "length", N_("distance of A from the place that was wanted")))
+        found.append(
+            NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the place that was wanted"))
+        )
     if task.k == 1:
         return tuple(found)
     turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
     found += [
-        Value("", f.beta, "angle", N_("place on the arc, angle AC2C1")),
-        Value("", side_name(f), "word", N_("arc")),
-        Value("", turns, "word", N_("crank for a slow stroke from psi1 to psi2")),
+        NamedValue("", f.beta, "angle", N_("place on the arc, angle AC2C1")),
+        NamedValue("", side_name(f), "word", N_("arc")),
+        NamedValue("", turns, "word", N_("crank for a slow stroke from psi1 to psi2")),
     ]
-    for side in arcs(task):
+    for side in admissible_arcs(task):
         beyond, inside = (
             N_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
             N_("admissible arc on D's side: angle AC2C1 from 0 to"),
         )
-        last = at(task, places(task, side)[-1], side)
+        last = four_bar_at(task, sample_arc(task, side)[-1], side)
         found += [
-            Value("", widest(task, side), "angle", beyond if side > 0 else inside),
-            Value("", last.l4, "length", N_("l4 at that end (l3 at the other)")),
+            NamedValue("", largest_beta(task, side), "angle", beyond if side > 0 else inside),
+            NamedValue("", last.l4, "length", N_("l4 at that end (l3 at the other)")),
         ]
     return tuple(found)
+
+
+CHOICES = {"best transmission": "best", "supports level": "level"}
+CHOICE_KEYS = ("choose", "pressure", "l1", "l2", "l4", "near", "xA", "yA")
+
+
+class FourBarByKBlock(TaskBlock):
+    """A four-bar by k, its rocker and both extreme angles of that; one way to choose the crank's pivot A."""
+
+    task: Literal["four-bar-by-k"]
+    l3: Value = Field(description="rocker DC")
+    psi1: Value = Field(description="angle of DC where the crank lies over the coupler")
+    psi2: Value = Field(description="angle of DC where the crank is in line with the coupler")
+    k: Value = Field(description="coefficient of change of mean speed, 1 or more")
+    support: Vector = Field(default=(0, 0), description="D; [0, 0]")
+    choose: Literal["best transmission", "supports level"] | None = Field(
+        default=None, description="how A is chosen; best transmission"
+    )
+    pressure: Value | None = Field(
+        default=None, description="or: the largest pressure angle; of two pivots the one of the smaller mechanism"
+    )
+    l1: Value | None = Field(default=None, description="or: the crank AB")
+    l2: Value | None = Field(default=None, description="or: the coupler BC")
+    l4: Value | None = Field(default=None, description="or: the frame AD")
+    near: Vector | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
+    xA: Value | None = Field(default=None, description="or: x of A")  # noqa: N815  as the parameter is called
+    yA: Value | None = Field(default=None, description="or: the height of A, its y")  # noqa: N815
+    turns: Literal["ccw", "cw"] | None = Field(
+        default=None, description="sense of the crank whose slow stroke leads from psi1 to psi2; any"
+    )
+
+
+BLOCK = FourBarByKBlock
+
+
+def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
+    """The task in SI. Raises ProblemError."""
+    ways = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
+    if len(ways) > 1:
+        raise ProblemError(
+            _("the pivot A is chosen in one way"),
+            found=_(" and ").join(ways),
+            allowed=_("one of {ways}").format(ways=", ".join(CHOICE_KEYS)),
+            key=True,
+        )
+    found = read_numbers(shape, values, QUANTITIES)
+    for key in ("support", "near"):
+        if getattr(shape, key) is not None:
+            found[key] = values.vector(getattr(shape, key), LENGTH, (key,))
+    way = ways[0] if ways else "choose"
+    choice = CHOICES[shape.choose or "best transmission"] if way == "choose" else way
+    return FourBarByKTask(**found, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])

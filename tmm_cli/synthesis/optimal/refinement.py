@@ -1,8 +1,8 @@
-"""Local polish: sequential quadratic programming by scipy (D. Kraft's SLSQP) with central differences.
+"""Local refinement of a candidate: sequential quadratic programming by scipy (D. Kraft's SLSQP), central differences.
 
-The largest of several pieces is minimised as a bound t above all of them, so that minimax has a smooth form. Places are
-counted from the start, in steps after which the steepest piece would be gone if it went on as it begins: the method
-takes the first curvature for 1, and where pieces are steep its first steps would leave the valley that was found.
+The largest of several pieces is minimised as a bound t above all of them: this makes the minimax problem smooth.
+Coordinates are counted from the start, scaled so that a unit step would reduce the steepest piece to zero if it were
+linear: the method assumes an initial curvature of 1, and with steep pieces its first steps would leave the valley.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ import numpy as np
 
 from tmm_cli.batch import Places
 from tmm_cli.mechanics.numerics import WINDOW, Real
-from tmm_cli.synthesis.optimal.candidates import Candidates, reader
-from tmm_cli.synthesis.optimal.evolution import Evolved
-from tmm_cli.synthesis.optimal.many_starts import Ends
-from tmm_cli.synthesis.optimal.quantities.base import Peak
+from tmm_cli.synthesis.optimal.candidates import Candidates, quantity_reader
+from tmm_cli.synthesis.optimal.evolution import EvolutionResult
+from tmm_cli.synthesis.optimal.many_starts import IndependentEnds
+from tmm_cli.synthesis.optimal.quantities.base import PeakQuantity
 
 STEP = 2e-6  # of a derivative, in shares of the range
-DONE = 1e-11  # of the objective: what a further step may still bring
+OBJECTIVE_TOLERANCE = 1e-11  # of the objective: what a further step may still bring
 MOST = 60  # steps
 IDLE = 3  # steps that bring no more, as where a piece is pointed and its slope promises what no step holds
 TOO_FAR = 1e6  # a piece's value where a step leads to what cannot be assembled, against about 1 at the start
@@ -28,7 +28,7 @@ WEIGHT = 10.0  # of what is violated beside the objective, where steps are compa
 
 
 @dataclass(frozen=True)
-class Local:
+class LocalValues:
     """What a problem gives for variants (v): pieces of the objective, inequalities >= 0, equalities, each (v, n)."""
 
     pieces: Real
@@ -43,7 +43,7 @@ class _End(Exception):  # noqa: N818  where the steps end
 class _Differences:
     """Values and slopes of a Local's parts at a place, each (values,) and (values, n), kept for the next call."""
 
-    def __init__(self, evaluate: Callable[[Real], Local], size: int) -> None:
+    def __init__(self, evaluate: Callable[[Real], LocalValues], size: int) -> None:
         self.evaluate, self.size = evaluate, size
         self.at: Real = np.full(size, np.nan)
         self.found: tuple[tuple[Real, Real], ...] = ()
@@ -66,7 +66,7 @@ class _Differences:
         return self.found
 
 
-def polish(evaluate: Callable[[Real], Local], x: Real) -> Real:
+def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
     """The nearest best place in 0..1 from x (n,)."""
     from scipy.optimize import minimize
 
@@ -86,7 +86,7 @@ def polish(evaluate: Callable[[Real], Local], x: Real) -> Real:
         nonlocal idle
         f, c, e = (values for values, slopes in near(z))
         bad = float(np.max(f) + WEIGHT * (np.sum(np.maximum(-c, 0)) + np.sum(np.abs(e))))
-        idle = idle + 1 if steps and not bad < min(step[0] for step in steps) - DONE else 0
+        idle = idle + 1 if steps and not bad < min(step[0] for step in steps) - OBJECTIVE_TOLERANCE else 0
         steps.append((bad, place(z)))
         if idle > IDLE:
             raise _End
@@ -122,7 +122,7 @@ def polish(evaluate: Callable[[Real], Local], x: Real) -> Real:
             bounds=[*bounds, (None, None)],
             constraints=constraints,
             callback=take,
-            options={"ftol": DONE, "maxiter": MOST},
+            options={"ftol": OBJECTIVE_TOLERANCE, "maxiter": MOST},
         )
         take(found.x)
     except _End:
@@ -140,7 +140,7 @@ SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less 
 
 
 @dataclass(frozen=True)
-class Best:
+class BestCandidate:
     """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
 
     ends: of independent starts, where there were such.
@@ -150,8 +150,8 @@ class Best:
     numbers: Real
     values: list[float]
     missed: float
-    evolved: Evolved
-    ends: Ends | None = None
+    evolved: EvolutionResult
+    ends: IndependentEnds | None = None
 
     @property
     def agree(self) -> bool:
@@ -159,10 +159,10 @@ class Best:
         return self.ends is None or self.ends.agree
 
 
-def exactly(candidates: Candidates, x: Real) -> list[float]:
+def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
     """Objective and constrained quantities of x in 0..1, as exactly as they will be measured; nan: it has none."""
     with np.errstate(all="ignore"):
-        found, coarse = _pieces_near(candidates, x)(x), candidates.values(x[None])
+        found, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
         values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
         scan, two = candidates.over(candidates.scan), candidates.numbers(x[None])
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
@@ -180,7 +180,7 @@ def exactly(candidates: Candidates, x: Real) -> list[float]:
     return values
 
 
-def polished(candidates: Candidates, x: Real) -> Real:
+def refine_candidate(candidates: Candidates, x: Real) -> Real:
     """The best place near x, whose numbers that have some values only stay as they are."""
     whole, free = x, candidates.task.free
 
@@ -191,17 +191,17 @@ def polished(candidates: Candidates, x: Real) -> Real:
         return found
 
     for narrow in NARROWER if candidates.taped else FEWER:
-        before, pieces = x, _pieces_near(candidates, x, narrow)
-        top = float(np.max(np.abs(_objective(candidates, pieces(x)[0])))) or 1.0
+        before, pieces = x, _exact_pieces(candidates, x, narrow)
+        top = float(np.max(np.abs(_objective_pieces(candidates, pieces(x)[0])))) or 1.0
         with np.errstate(all="ignore"):
-            best = polish(lambda some: _local(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
+            best = minimize_locally(lambda some: _local_values(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
         x = all_of(best[None])[0]
         if not narrow and float(np.max(np.abs(x - before))) < SETTLED:
             break
     return x
 
 
-def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
     """Pieces of every quantity near x, exactly: windows are where x has its peaks.
 
     narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
@@ -214,7 +214,7 @@ def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callab
     at = 0
     for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
         own = []
-        for what, k in quantity.windows(reader(found, n, candidates.along(n, candidates.scan)), over):
+        for what, k in quantity.windows(quantity_reader(found, n, candidates.along(n, candidates.scan)), over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)
@@ -229,8 +229,8 @@ def _pieces_near(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callab
         out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
         return [
             quantity.fine(
-                [(what, first, reader(out, n, where)) for what, first, where in parts[n]],
-                reader(out, n, exact[n]),
+                [(what, first, quantity_reader(out, n, where)) for what, first, where in parts[n]],
+                quantity_reader(out, n, exact[n]),
                 candidates.overs[n],
                 step,
             )
@@ -246,7 +246,7 @@ def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
     return found
 
 
-def _objective(candidates: Candidates, pieces: Real) -> Real:
+def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
     """What is made least, with derivatives where it is zero."""
     target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
@@ -255,15 +255,17 @@ def _objective(candidates: Candidates, pieces: Real) -> Real:
     return -pieces if objective.lowest else objective.smooth(pieces)
 
 
-def _local(candidates: Candidates, found: list[Real], top: float) -> Local:
+def _local_values(candidates: Candidates, found: list[Real], top: float) -> LocalValues:
     """What the polish needs of the pieces of some candidates."""
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
         low = high = _value(candidates, n, pieces)[:, None]
-        if isinstance(constraint.quantity, Peak) and not constraint.equal:  # every piece keeps the bound then
+        if isinstance(constraint.quantity, PeakQuantity) and not constraint.equal:  # every piece keeps the bound then
             low, high = (pieces, high) if constraint.quantity.lowest else (low, pieces)
         above, even = constraint.rows(low, high)
         least += above
         equal += even
     none = np.zeros((len(found[0]), 0))
-    return Local(_objective(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal]))
+    return LocalValues(
+        _objective_pieces(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal])
+    )

@@ -1,0 +1,434 @@
+"""Four-bar by pairs of angles, or by a function: keys, four-bars through the pairs, and the choice of one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from tmm_cli.language import N_, _, translated
+from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, least
+from tmm_cli.mechanics.quantities import ANGLE, NUMBER
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest, quote
+from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
+from tmm_cli.synthesis.four_bar import FourBarLinks, classify_four_bar, extreme_cosine
+from tmm_cli.synthesis.four_bar_by_angles import freudenstein, freudenstein as least_squares
+from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, FourBarRatios, find_parallelogram
+
+FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {
+    "log10(x)": np.log10,
+    "ln(x)": np.log,
+    "exp(x)": np.exp,
+    "sqrt(x)": np.sqrt,
+    "1/x": np.reciprocal,
+    "x^2": np.square,
+    "x^3": lambda x: x * x * x,
+    "x^1.5": lambda x: x * np.sqrt(x),
+    "sin(x)": np.sin,
+    "cos(x)": np.cos,
+    "tan(x)": np.tan,
+}
+ANGLES: Final = ("sin(x)", "cos(x)", "tan(x)")  # their x is an angle
+
+
+@dataclass(frozen=True)
+class GeneratedFunction:
+    """y(x), straight between the rows of its table, from x[0] to x[1]; input, output: angles (rad) at these ends."""
+
+    x: tuple[float, float]
+    phi: tuple[float, float]
+    psi: tuple[float, float]
+    name: str = ""
+    table: tuple[tuple[float, float], ...] = ()
+
+    def value(self, x: Any) -> Any:
+        if self.name:
+            return FUNCTIONS[self.name](x)
+        rows = np.asarray(self.table, dtype=float)
+        return np.interp(np.asarray(x, dtype=float), rows[:, 0], rows[:, 1])
+
+    def wanted(self, phi: Any) -> Any:
+        """The output angle for an input angle."""
+        start, end = self.value(np.asarray(self.x[0])), self.value(np.asarray(self.x[1]))
+        x = self.x[0] + (phi - self.phi[0]) / (self.phi[1] - self.phi[0]) * (self.x[1] - self.x[0])
+        return self.psi[0] + (self.value(x) - start) / (end - start) * (self.psi[1] - self.psi[0])
+
+    def corners(self) -> Any:
+        """Input angles of the rows of the table within the range; there it may have corners."""
+        x = np.asarray([row[0] for row in self.table], dtype=float)
+        share = (x - float(self.x[0])) / (float(self.x[1]) - float(self.x[0]))
+        share = share[(share > 0) & (share < 1)]
+        return float(self.phi[0]) + share * (float(self.phi[1]) - float(self.phi[0]))
+
+    def precision(self, count: int) -> tuple[Any, Any]:
+        """Angles at the precision points: Chebyshev's spacing, x = middle - half range cos((2j - 1) pi/(2 n))."""
+        turns = np.arange(1, 2 * count, 2) / np.longdouble(2 * count)
+        share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(float)
+        phi = self.phi[0] + share * (self.phi[1] - self.phi[0])
+        return phi, self.wanted(phi)
+
+
+# Keys of lengths and zero angles.
+
+
+LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
+    "l1": ("length", N_("input l1 = AB")),
+    "l2": ("length", N_("coupler l2 = BC")),
+    "l3": ("length", N_("output l3 = DC")),
+    "l4": ("length", N_("frame l4 = AD")),
+}
+ZEROS: Final = {
+    "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
+    "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
+}
+
+
+# Four-bars by pairs of angles, what each is worth, and which of them is taken.
+
+
+SCAN: Final = 1500  # four-bars through two pairs that are compared, and
+LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
+_POSITIVE: Final = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
+RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # their l4/l1, negative for a crank the other way
+SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
+
+
+@dataclass(frozen=True)
+class AnglePairsTask:
+    """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three;
+    zero angles, None: to find.
+
+    choose: transmission, crank, or the number of a solution; keep: whether defects are put up with.
+    """
+
+    phi: tuple[float, ...]
+    psi: tuple[float, ...]
+    lengths: dict[str, float]
+    phi0: float | None = 0.0
+    psi0: float | None = 0.0
+    choose: str = "transmission"
+    keep: bool = False
+    function: GeneratedFunction | None = None
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last input angle that are used."""
+        return self.function.phi if self.function else (self.phi[0], self.phi[-1])
+
+    @property
+    def free(self) -> bool:
+        """Whether two pairs and one length leave l1/l4 free."""
+        return len(self.phi) == 2 and len(self.lengths) == 1
+
+    @property
+    def approximate(self) -> bool:
+        """Whether there are more pairs than a four-bar can pass."""
+        return len(self.phi) > 3 + (self.phi0 is None) + (self.psi0 is None)
+
+
+class FourBarQuality(NamedTuple):
+    """Of four-bars (arrays of one shape): the least transmission angle (rad) over the range and the input angle there
+    (from AD), the defect ("", locks, branch), whether the input turns fully, whether a link is the other way than its
+    given zero says.
+    """
+
+    least: Any
+    worst: Any
+    defect: Any
+    crank: Any
+    reversed: Any
+
+
+def rate_four_bars(found: FourBarRatios, task: AnglePairsTask) -> FourBarQuality:
+    """What four-bars are worth."""
+    l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (found.l1, found.l2, found.l3, found.phi0))
+    l4 = np.ones(np.shape(l1))
+    with np.errstate(all="ignore"):
+        ends = np.sort(phi0[..., None] + np.asarray(task.span, dtype=float), axis=-1)
+        size, worst = extreme_cosine((l1, l2, l3, l4), ends[..., 0], ends[..., 1])
+        terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
+        b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
+        sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
+        branch = np.any(sides != sides[..., :1], axis=-1) & (not task.approximate)  # they are compared with one only
+        turned = np.zeros(np.shape(branch), dtype=bool)
+        for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
+            if given is not None:
+                turned |= np.cos(np.asarray(given - zero, dtype=float)) < 0
+    defect = np.where(branch, "branch", np.where(1 - size <= DEAD_COSINE_DOUBLE * terms, "locks", ""))
+    turns = classify_four_bar(FourBarLinks(l1, l2, l3, l4)).turns[..., 0]
+    return FourBarQuality(np.arccos(np.minimum(1.0, size)), worst, defect[()], turns, turned)
+
+
+def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
+    """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free, or of those
+    that pass no pairs exactly.
+    """
+    if len(task.phi) == 3 and len(task.lengths) == 2:
+        found = _four_bar_of_circle(task)
+        return found.at(are_real(found))
+    if len(task.phi) > 2 and (one := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
+        return one.at(None)
+    if task.approximate:
+        found, __ = least_squares.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
+        found = found.at(are_real(found))
+        return found.at(np.argsort(rate_four_bars(found, task).defect != "", kind="stable")[:1])
+    if task.free:
+        found = _best_ratio(task)
+    elif len(task.phi) == 2:
+        found = _four_bars_of_lengths(task)
+    else:
+        found = freudenstein.solve_exact_pairs(task.phi, task.psi, task.phi0, task.psi0).at(0)
+    return found.at(are_real(found))
+
+
+def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
+    """The four-bars through two pairs with l4/l1 = |ratio|; a negative one is a crank drawn the other way."""
+    return _four_bars_through_two(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
+
+
+def _four_bars_of_lengths(task: AnglePairsTask) -> FourBarRatios:
+    """The four-bars through two pairs with two given lengths; either link may be drawn the other way."""
+    a, b = sorted(task.lengths)
+    ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
+    one, zero = np.ones(2), np.zeros(2)
+    if b == "l3":  # p = ratio q
+        return _four_bars_through_two(task, np.stack([one, -ratio * sense, zero], axis=-1), zero)
+    return _four_bars_through_two(
+        task, np.stack([one, zero, zero] if a == "l1" else [zero, one, zero], axis=-1), ratio * sense
+    )
+
+
+def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
+    """The four-bar through three pairs with l4 and l1 (or l3): B turned back about D by the output angles (C about A by
+    the input angles) has three places, and the centre of the circle through them is C (B) with its zero angle.
+    """
+    phi, psi = (np.asarray(x, EXACT) + (zero or 0.0) for x, zero in ((task.phi, task.phi0), (task.psi, task.psi0)))
+    by_input = "l1" in task.lengths
+    own, back, base = (phi, psi, -1.0) if by_input else (psi, phi, 1.0)
+    length = EXACT(task.lengths["l1" if by_input else "l3"]) / task.lengths["l4"]
+    places = (base + length * np.exp(1j * own)) * np.exp(-1j * back)
+    rows = np.stack([2 * places.real, 2 * places.imag, np.ones_like(phi)], axis=-1)
+    x, y, __ = freudenstein.solve_linear(rows, np.abs(places) ** 2)
+    found, zero, l2 = np.hypot(x, y), np.arctan2(y, x), np.abs(places[0] - x - 1j * y)
+    one = (length, l2, found, task.phi0, zero) if by_input else (found, l2, length, zero, task.psi0)
+    return FourBarRatios(*one).at(None)
+
+
+def _four_bars_through_two(task: AnglePairsTask, known: Any, value: Any) -> FourBarRatios:
+    """The four-bars through two pairs with conditions known . (p, q, s) = value, (n, 3) and (n,)."""
+    phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
+    phi, psi = (
+        np.broadcast_to(np.asarray(row, EXACT) + zero, (len(known), 2))
+        for row, zero in ((task.phi, phi0), (task.psi, psi0))
+    )
+    values = freudenstein.solve_two_pairs(phi, psi, known, value)
+    found = freudenstein.lengths_from_pqs(np.concatenate([values, np.zeros((len(phi), 2))], -1), phi, psi)
+    return found._replace(phi0=found.phi0 + phi0, psi0=found.psi0 + psi0)
+
+
+def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
+    """The four-bar of best transmission through two pairs, l1/l4 being free."""
+
+    def badness(ratios: Any) -> Any:
+        found = four_bars_of_ratios(task, ratios)
+        mark = rate_four_bars(found, task)
+        return np.where(are_real(found), np.where(mark.defect != "", 4.0, 2.0 * mark.reversed) - mark.least, 9.0)
+
+    values = badness(RATIOS)
+    k = int(np.argmin(values))
+    best = RATIOS[k]
+    low, high = (RATIOS[min(max(k + step, 0), len(RATIOS) - 1)] for step in (-1, 1))
+    if low * high > 0:
+        place, value = least(badness, low, high)
+        best = place if value <= values[k] else best
+    return four_bars_of_ratios(task, np.array([best]))
+
+
+def are_real(found: FourBarRatios) -> Any:
+    """Whether there are such four-bars, with links neither infinite nor of no length."""
+    numbers = np.stack([np.asarray(x, dtype=float) for x in found])
+    lengths = numbers[:3]
+    with np.errstate(all="ignore"):
+        return np.isfinite(numbers).all(0) & (lengths > SHORT).all(0) & (lengths < LONG).all(0)
+
+
+def choose_four_bar(task: AnglePairsTask, found: FourBarRatios) -> int:
+    """Which of the four-bars is taken; one at least must have no defect, or defects be put up with."""
+    if task.choose.isdigit():
+        return int(task.choose) - 1
+    mark = rate_four_bars(found, task)
+    crank = mark.crank & (task.choose == "crank")
+    fair = np.flatnonzero((mark.defect == "") | task.keep)
+    return int(max(fair, key=lambda k: (mark.defect[k] == "", crank[k], not mark.reversed[k], mark.least[k])))
+
+
+DOMAINS = {
+    "log10(x)": "x more than 0",
+    "ln(x)": "x more than 0",
+    "sqrt(x)": "x of 0 or more",
+    "x^1.5": "x of 0 or more",
+    "1/x": "x on one side of 0",
+}
+MOST = 361  # pairs of angles
+OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
+
+
+class FourBarByAnglesBlock(TaskBlock):
+    """A four-bar by pairs of input and output angles, or by a function at some points."""
+
+    task: Literal["four-bar-by-angles"]
+    pairs: list[Vector] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=MOST,
+        description="[input, output] angles from AD, in order; over 5: least squares",
+    )
+    l1: Value | None = Field(default=None, description="one length gives the size; l1 input, l2 coupler, l3 output")
+    l2: Value | None = None
+    l3: Value | None = None
+    l4: Value | None = Field(
+        default=None, description="frame; two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three"
+    )
+    phi0: Value | None = Field(default=None, description="zero of input angles, from AD; 0; 4 and more pairs find it")
+    psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 and more pairs find it")
+    function: str | None = Field(default=None, max_length=40, description="y: " + ", ".join(FUNCTIONS))
+    table: list[Vector] | None = Field(default=None, min_length=2, max_length=10_000, description="or rows [x, y]")
+    x: Range | None = Field(default=None, description="[from, to], with a function")
+    input: Range | None = Field(default=None, description="[from, to]: input angles for x")
+    output: Range | None = Field(default=None, description="[from, to]: output angles for y")
+    points: int | None = Field(
+        default=None, ge=2, le=MOST, description="with Chebyshev's spacing; 3; over 5: least squares"
+    )
+    choose: Literal["transmission", "crank", 1, 2, 3] = Field(
+        default="transmission", description="of several solutions: best transmission, a crank if there is one, a number"
+    )
+    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch and order defects")
+
+
+BLOCK = FourBarByAnglesBlock
+
+
+def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
+    """The task in SI. Raises ProblemError."""
+    lengths = read_numbers(shape, values, LENGTHS)
+    function = None
+    if shape.pairs is None:
+        function = _read_function(shape, values)
+        phi, psi = function.precision(shape.points or 3)
+        pairs = list(zip(phi.tolist(), psi.tolist(), strict=True))
+    else:
+        if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:
+            raise ProblemError(
+                _("pairs and a function are two tasks"), path=(extra[0],), allowed=_("one of the two"), key=True
+            )
+        pairs = [
+            (values.number(a, ANGLE, ("pairs", k, 0)), values.number(b, ANGLE, ("pairs", k, 1)))
+            for k, (a, b) in enumerate(shape.pairs)
+        ]
+    count = len(pairs)
+    _check_lengths(lengths, count)
+    zeros = {"phi0": None, "psi0": None} | read_numbers(shape, values, ZEROS)
+    _complete_zero_angles(zeros, count, lengths)
+    phi, psi = zip(*pairs, strict=True)
+    choose, keep = str(shape.choose), shape.defects == "keep"
+    return AnglePairsTask(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
+
+
+def _check_lengths(lengths: dict[str, float], count: int) -> None:
+    two = len(lengths) == 2 and "l2" not in lengths and (count == 2 or (count == 3 and "l4" in lengths))
+    other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
+    if len(lengths) != 1 and not two:
+        raise ProblemError(
+            _("one length gives the size of the four-bar"),
+            found=", ".join(lengths) or _("none"),
+            allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other,
+            key=True,
+        )
+
+
+def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None:
+    """The zero angles that are to be found stay None, others are 0: 4 pairs find one, more both that are not given."""
+    given = [key for key, value in zeros.items() if value is not None]
+    if count == 3 and len(lengths) == 2:
+        found, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")
+        if found in given:
+            raise ProblemError(
+                f"three pairs and two lengths determine {found} too",
+                path=(found,),
+                found=", ".join(given),
+                allowed=other,
+                key=True,
+            )
+        zeros[other] = zeros[other] or 0.0
+    elif count == 5 and len(given) == 1:
+        raise ProblemError(
+            _("5 pairs determine zero angles too"),
+            path=(given[0],),
+            found=given[0],
+            allowed=_("neither phi0 nor psi0; or both, for the least squares of errors"),
+            key=True,
+        )
+    elif count < 4:
+        zeros.update({key: value or 0.0 for key, value in zeros.items()})
+    elif count == 4 and not given:
+        zeros["psi0"] = 0.0
+
+
+def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> GeneratedFunction:
+    missing = [key for key in ("input", "output") if getattr(shape, key) is None]
+    if (shape.function is None) == (shape.table is None) or missing:
+        given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
+        raise ProblemError(
+            translated(UNDETERMINED),
+            found=", ".join(given) or _("none"),
+            allowed=_("pairs; or function (or table), x, input, output"),
+            key=True,
+        )
+    name = (shape.function or "").replace(" ", "")
+    if shape.function is not None and name not in FUNCTIONS:
+        raise ProblemError(
+            _("this function is not known here"),
+            path=("function",),
+            found=quote(shape.function),
+            allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
+            near=nearest(name, FUNCTIONS),
+        )
+    ends: dict[str, Any] = {
+        key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))
+        for key in ("input", "output")
+    }
+    of_x = ANGLE if name in ANGLES else NUMBER
+    rows = tuple(
+        (values.number(a, NUMBER, ("table", k, 0)), values.number(b, NUMBER, ("table", k, 1)))
+        for k, (a, b) in enumerate(shape.table or ())
+    )
+    if rows and any(b[0] <= a[0] for a, b in pairwise(rows)):
+        raise ProblemError(_("x must grow from row to row"), path=("table",), allowed=_("rows in the order of x"))
+    if shape.x is not None:
+        x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(shape.x))
+    elif rows:
+        x = (rows[0][0], rows[-1][0])
+    else:
+        raise ProblemError(_("the range of x is missing"), path=("function",), allowed="x: [from, to]", key=True)
+    found = GeneratedFunction((x[0], x[1]), ends["input"], ends["output"], name, rows)
+    _check_function(found)
+    return found
+
+
+def _check_function(function: GeneratedFunction) -> None:
+    with np.errstate(all="ignore"):
+        y = function.value(np.linspace(*function.x, 101))
+    if function.x[0] == function.x[1] or function.phi[0] == function.phi[1]:
+        key = "x" if function.x[0] == function.x[1] else "input"
+        raise ProblemError(_("this range is empty"), path=(key,), allowed=_("two different ends"))
+    if not np.all(np.isfinite(y)) or y[0] == y[-1]:
+        other = "two ends at which the function differs"
+        raise ProblemError(
+            _("the function has no values there, or the same at both ends"),
+            path=("x",),
+            allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
+        )
