@@ -24,7 +24,7 @@ from tmm_cli.language import spoken
 from tmm_cli.mechanics.dynamics import Linear, Rim, SteadyTask
 from tmm_cli.mechanics.linkage import Load
 from tmm_cli.note import html, note
-from tmm_cli.note.dynamics import parts as words
+from tmm_cli.note.dynamics import reduced_model as words
 from tmm_cli.reports import input_data_tables
 
 THIN = 0.05  # mm: less than half of a line

@@ -167,7 +167,7 @@ TO_MACHINES = {  # files whose numbers are no words for people, or are rounded o
     "drawing/formats/*",
     "animation/page.py",
     "animation/content.py",
-    "grading/exports/tables_csv.py",
+    "grading/exports/csv_files.py",
     "cli/bench/*",
     "grading/exports/rows.py",
     "grading/exports/xlsx.py",

@@ -55,7 +55,7 @@ IMPORT_WHEN_CALLED = {  # what most runs do without, so that they start sooner
     "cli.opening": "grading, for variants of a table",
     "note.formats": "an extra: python-docx",
     "drawing.formats.dxf": "an extra: ezdxf",
-    "grading.cells": "an extra: python-calamine",
+    "grading.untrusted_tables": "an extra: python-calamine",
     "reports.spreadsheets": "an extra: xlsxwriter",
 }
 

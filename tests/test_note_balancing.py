@@ -9,8 +9,7 @@ from formulas import formulas
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.note import Figure, Found, Heading, Note, Subject, centres, html, note
-from tmm_cli.note.balancing import chapter as balancing
+from tmm_cli.note import Figure, Found, Heading, Note, Subject, balancing, centres, html, note
 from tmm_cli.problem import build_problem, read_text
 
 HEADINGS = {"Balancing", "Instantaneous centres"}
@@ -68,7 +67,7 @@ def test_masses_of_a_shaft_in_two_planes_are_found_by_sums_of_their_parts():
 def test_centres_are_counted_and_give_the_speeds_of_all_links():
     results = solved("six-bar")
     (k,) = results.centres
-    told = dict(found(Note("", "en", tuple(centres.blocks(Subject(results, drawn=False))))))
+    told = dict(found(Note("", "en", tuple(centres.write_centres(Subject(results, drawn=False))))))
     assert told["N"] == len(results.centres[k]) == 15
     for link in "234":
         assert told[f"ω{link}"] == pytest.approx(abs(results.motion.link(link).omega[k]))
@@ -84,10 +83,10 @@ def test_a_file_that_does_not_ask_has_neither_chapter(name):
 @pytest.mark.parametrize(
     ("name", "chapter", "stem"),
     [
-        ("balanced-four-bar", balancing, "shaking-force"),
-        ("six-bar", centres, "centres-03"),
+        ("balanced-four-bar", balancing.write_balancing, "shaking-force"),
+        ("six-bar", centres.write_centres, "centres-03"),
     ],
 )
 def test_each_chapter_has_its_drawing(name, chapter, stem):
-    figures = [block.key for block in chapter.blocks(Subject(solved(name))) if isinstance(block, Figure)]
+    figures = [block.key for block in chapter(Subject(solved(name))) if isinstance(block, Figure)]
     assert figures == [stem]

@@ -20,7 +20,7 @@ FRICTION = "friction: {coefficient: 0.1, radius: 15}"
 
 
 def chapter(name: str) -> list[Block]:
-    return list(forces.blocks(Subject(solved(name), drawn=False)))
+    return list(forces.write_forces(Subject(solved(name), drawn=False)))
 
 
 def section(found: list[Block], title: str) -> list[Block]:
@@ -75,7 +75,7 @@ def at_one_position(name: str, *, at: str) -> list[Block]:
     text = re.sub(
         "(?m)^positions: .*", f"positions: {{count: 1, from: {at}}}", (PROBLEMS / f"{name}.yaml").read_text("utf-8")
     )
-    return list(forces.blocks(Subject(solved_text(text), drawn=False)))
+    return list(forces.write_forces(Subject(solved_text(text), drawn=False)))
 
 
 @pytest.mark.parametrize("at", ["0", "30", "90"])
@@ -149,7 +149,7 @@ def rubbing(tmp_path_factory):
 
 
 def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
-    found = [block for block in forces.blocks(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
+    found = [block for block in forces.write_forces(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
     rubbed = {s.name.below for s in found if s.name.letter == "T"}
     assert rubbed == {one.pair + rubbing.reactions.of(one.pair).on for one in rubbing.linkage.friction}
     without = [s.result for s in found if s.name == Symbol("M", "b", "0")]
@@ -160,7 +160,7 @@ def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
 
 
 def test_the_method_is_explained_once_and_sections_are_named_after_their_positions(rubbing):
-    found = list(forces.blocks(Subject(rubbing, drawn=False)))
+    found = list(forces.write_forces(Subject(rubbing, drawn=False)))
     headings = [block.text for block in found if isinstance(block, Heading)]
     assert [re.findall(r"position (\d)", text) for text in headings].count(["3"]) == 5
     said = [str(block.line) for block in found if isinstance(block, Paragraph)]
@@ -183,7 +183,7 @@ def test_a_couple_may_have_the_name_of_another_quantity(load, language):
     text = (Path(__file__).parent / "data" / "couple-named-m3.yaml").read_text().replace("M3:", f"{load}:")
     results = solved_text(text)
     with spoken(language):
-        found = [b for b in forces.blocks(Subject(results, drawn=False)) if isinstance(b, Found)]
+        found = [b for b in forces.write_forces(Subject(results, drawn=False)) if isinstance(b, Found)]
         for block in found:
             block.printed()
     inertia = next(a for a in results.loads if a.link == "3" and a.kind == "inertia")

@@ -21,7 +21,7 @@ def subject(name, *, drawn=False):
 
 @cache
 def chapter(name):
-    return tuple(kinematics.blocks(subject(name)))
+    return tuple(kinematics.write_kinematics(subject(name)))
 
 
 def found(name):
@@ -87,7 +87,7 @@ def test_scales_are_those_of_the_drawings(name):
 def test_wheels_that_turn_evenly_have_no_accelerations_made_of_rounding():
     """Three planets hold one another twice: least squares leave 1e-31 rad/s2 where nothing accelerates."""
     results = solved_text(planets(3, "h"))
-    told = [block for block in kinematics.blocks(Subject(results, drawn=False)) if isinstance(block, Found)]
+    told = [block for block in kinematics.write_kinematics(Subject(results, drawn=False)) if isinstance(block, Found)]
     rates = {block.name.name: block.result for block in told if block.name.name.startswith(("ω", "ε"))}
     assert rates["ωs"] == pytest.approx(3.0)  # Willis: 1 + 80/40
     assert all(value == 0 for name, value in rates.items() if name.startswith("ε"))

@@ -10,10 +10,9 @@ import numpy as np
 
 from tmm_cli.batch import Family
 from tmm_cli.grading.diagnose import Claim
-from tmm_cli.grading.mistakes.base import Mistake
+from tmm_cli.grading.mistakes.base import Mistake, solve
 from tmm_cli.grading.mistakes.motion import Coriolis
 from tmm_cli.grading.sheet import Right, Written, written_down
-from tmm_cli.grading.solution import solve
 from tmm_cli.mechanics.analysis import Quantity
 from tmm_cli.mechanics.forces import Applied
 from tmm_cli.mechanics.groups import (

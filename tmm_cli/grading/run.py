@@ -1,8 +1,7 @@
-"""Marks of earlier runs, so that only what has changed is graded: a line a student, added as soon as it is graded.
+"""Grading of a group: solve the variants, judge every answer, explain the wrong ones, keep marks for later runs.
 
-A line has the key of what it was graded from, a digest of the rest, and the marks as JSON. A line that is damaged is as
-if it were not there.
-"""
+The file of kept marks has a line per student, added as soon as the student is graded: the key of everything the marks
+depend on, a digest of the rest, and the marks as JSON. A damaged line is ignored."""
 
 from __future__ import annotations
 
@@ -17,9 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Asked, Family, Task, Way, families, here, processes, program_digest
-from tmm_cli.grading.copies import with_copies
-from tmm_cli.grading.diagnose import diagnose_students
+from tmm_cli.batch import Asked, Family, Task, Way, families, here, processes, program_digest, read_task
+from tmm_cli.grading.diagnose import diagnose_students, with_copies
 from tmm_cli.grading.exports import write
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.mistakes.data import OtherZero
@@ -27,11 +25,13 @@ from tmm_cli.grading.own_answers import following
 from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable, read
 from tmm_cli.grading.sheet import right
 from tmm_cli.grading.submissions.answers import at_positions
+from tmm_cli.grading.submissions.read import read_submissions
+from tmm_cli.grading.variant_tables import read_table
 from tmm_cli.language import _, language
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem import Tree
+from tmm_cli.problem import ProblemError, Tree, read_file
 
 NAMES = tuple(field.name for field in fields(Mark))
 VECTORS = ("value", "right")
@@ -317,3 +317,37 @@ def _graded_chunk(task: Task, table: VariantTable, submissions: Sequence[Submiss
     students = [submission.student for submission in submissions]
     rows = {student: table.rows[student] for student in students if student in table.rows}
     return Chunk(task.tree, VariantTable(table.names, rows), tuple(submissions))
+
+
+HANDED_IN = ("submissions", "answers.csv", "answers.xlsx")
+
+
+def grades(task_file: Path) -> dict[str, Any]:
+    """What an example is graded with, student by student, as plain data. Raises ProblemError."""
+    task, folder = read_task(read_file(str(task_file))), task_file.parent
+    table = read_table(str(folder / "variants.csv"), task)
+    handed_in = next((folder / name for name in HANDED_IN if (folder / name).exists()), None)
+    if handed_in is None:
+        raise ProblemError(_("nothing was handed in"), allowed=", ".join(HANDED_IN), file=str(folder))
+    submissions = list(read_submissions(handed_in, task, table.rows))
+    return {"students": _as_plain_data(graded(task, table, submissions))}
+
+
+def _as_plain_data(found: Sequence[StudentMarks]) -> dict[str, Any]:
+    return {
+        marks.student: {
+            "points": marks.points,
+            "copied": marks.copied,
+            "problems": list(marks.problems),
+            "marks": {
+                mark.key[0] if mark.key[1] is None else f"{mark.key[0]} at {mark.key[1]}": {
+                    "state": mark.state,
+                    "error": mark.error,
+                    "allowed": mark.allowed,
+                    "mistakes": list(mark.mistakes),
+                }
+                for mark in marks.marks
+            },
+        }
+        for marks in found
+    }

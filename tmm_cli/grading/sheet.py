@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.batch import Asked, Family, changed, numbers
-from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.solution import Solution, solve
+from tmm_cli.grading.mistakes.base import Mistake, Solution, solve
 from tmm_cli.mechanics.analysis import Quantity
 from tmm_cli.mechanics.groups import Closed
 from tmm_cli.mechanics.numerics import Real, Vector

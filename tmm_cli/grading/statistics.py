@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.batch import Task
-from tmm_cli.grading.cells import sentence, shown
 from tmm_cli.grading.record import State, StudentMarks
+from tmm_cli.grading.untrusted_tables import sentence, shown
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER

@@ -15,7 +15,6 @@ from .blocks import (
     Title as Title,
     paragraph as paragraph,
 )
-from .context import Subject as Subject
 from .expression import (
     EXACT as EXACT,
     MOST_FIGURES as MOST_FIGURES,
@@ -33,6 +32,7 @@ from .forces.equations import by_moments as by_moments
 from .forces.loads import losses as losses
 from .formats import FORMATS as FORMATS, formats_of as formats_of
 from .formats.html import html as html
+from .formula_tree import Letter as Letter, Row as Row, row as row
 from .kinematics.on_paper import Here as Here
-from .math import Letter as Letter, Row as Row, row as row
 from .register import note as note
+from .subject import Subject as Subject

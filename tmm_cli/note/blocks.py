@@ -10,7 +10,7 @@ from tmm_cli.drawing.paper import Drawing
 from tmm_cli.language import filled
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note.expression import Found
-from tmm_cli.note.math import Node
+from tmm_cli.note.formula_tree import Node
 
 
 @dataclass(frozen=True)

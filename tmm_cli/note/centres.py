@@ -10,15 +10,14 @@ from tmm_cli.mechanics.kinematics import Centre, Links
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, Heading, said
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found, Leaf
-from tmm_cli.note.tables import rows_of
+from tmm_cli.note.subject import Subject, rows_of
 from tmm_cli.reports import name, walk
 
 ALL, LINKS = Symbol("N"), Symbol("k")
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_centres(subject: Subject) -> Iterable[Block]:
     """Of a file that asks for them."""
     results = subject.results
     if not results.centres:

@@ -14,7 +14,8 @@ from itertools import chain
 
 from tmm_cli.language import half_up
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.note import math as paper
+from tmm_cli.note import formula_tree as paper
+from tmm_cli.note.formula_tree import chain_of_equalities
 
 FIGURES = 4  # of a result, and of what is put in if that does
 MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
@@ -347,3 +348,16 @@ def result_node(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
     """A result as it stands at the end of its formula, with its unit."""
     shown = _figures(text, say)
     return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
+
+
+def formula(found: Found, say: Callable[[str], str]) -> paper.Node:
+    """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
+
+    Raises:
+        ValueError: The formula does not give the result.
+    """
+    figures, text = found.printed()
+    own = found.expression
+    plain = isinstance(own, Leaf)  # read off: what would be put in is the result
+    put_in = () if plain else (letters(own), numbers(own, figures, say))
+    return chain_of_equalities((paper.Letter(found.name), *put_in, result_node(text, found.unit, say)))

@@ -23,10 +23,9 @@ from tmm_cli.note.blocks import (
     several,
     tabled,
 )
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
-from tmm_cli.note.math import Words
-from tmm_cli.note.tables import NONE, unbroken
+from tmm_cli.note.formula_tree import Words
+from tmm_cli.note.subject import NONE, Subject, unbroken
 from tmm_cli.reports import (
     PAIRS,
     ROLES,
@@ -46,7 +45,7 @@ from tmm_cli.reports import (
 W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2")
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_structure(subject: Subject) -> Iterable[Block]:
     """From the scheme to the class."""
     structure = subject.results.structure
     yield Heading(_("Structure of the mechanism"))

@@ -8,9 +8,8 @@ from collections.abc import Iterable
 from tmm_cli.language import _, translated
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note.blocks import Block, Heading, paragraph, said, tabled
-from tmm_cli.note.context import Subject, by_hand
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
-from tmm_cli.note.tables import rows_of
+from tmm_cli.note.subject import Subject, by_hand, rows_of
 from tmm_cli.problem import Synthesised
 from tmm_cli.reports import tables_of_synthesis
 from tmm_cli.synthesis import Diagram, measure_problem, theta_of
@@ -20,7 +19,7 @@ THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")
 USED = ("k", "stroke", "OA", "OC", "CD")  # values of tasks that are put into formulas
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_synthesis(subject: Subject) -> Iterable[Block]:
     """Nothing where the file gives all sizes."""
     results = subject.results
     task = results.problem.synthesis

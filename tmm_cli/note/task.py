@@ -12,8 +12,7 @@ from tmm_cli.mechanics.forces import Symbol, named
 from tmm_cli.mechanics.linkage import FRAME, Link, Load
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
-from tmm_cli.note.context import Subject, with_degrees
-from tmm_cli.note.tables import NONE, rows_of, unbroken
+from tmm_cli.note.subject import NONE, Subject, rows_of, unbroken, with_degrees
 from tmm_cli.reports import ROLES, called, heavy, input_data_tables, link_name, motion
 
 # tables of `tmm explain` that the note has in words of its own; the others it has as they are
@@ -21,7 +20,7 @@ IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads
 SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_task(subject: Subject) -> Iterable[Block]:
     """What is given and what is to be found."""
     results = subject.results
     problem, linkage = results.problem, results.linkage

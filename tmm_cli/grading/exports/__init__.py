@@ -8,18 +8,18 @@ from importlib import import_module
 from pathlib import Path
 from typing import Final
 
-from tmm_cli.grading.exports import feedback, gradescope, junit, moodle, tables_csv, xlsx
+from tmm_cli.grading.exports import csv_files, feedback, gradescope_junit, xlsx
 from tmm_cli.grading.exports.book import Export, Gradebook
 from tmm_cli.problem import ProblemError
 from tmm_cli.reports import Staged, write_whole
 
 EXPORTS: Final[Mapping[str, Export]] = {
-    "csv": tables_csv.files,
+    "csv": csv_files.csv_tables,
     "xlsx": xlsx.files,
-    "feedback": feedback.files,
-    "gradescope": gradescope.files,
-    "moodle": moodle.files,
-    "junit": junit.files,
+    "feedback": feedback.feedback_files,
+    "gradescope": gradescope_junit.gradescope_files,
+    "moodle": csv_files.moodle_file,
+    "junit": gradescope_junit.junit_file,
     "drawing": lambda book: import_module("tmm_cli.grading.group_chart").files(book),
 }
 

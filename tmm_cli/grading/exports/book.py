@@ -12,8 +12,8 @@ from functools import cached_property, lru_cache
 from typing import Literal
 
 from tmm_cli.batch import Asked, Task
-from tmm_cli.grading.cells import sentence, shown
 from tmm_cli.grading.record import Mark, StudentMarks, factor
+from tmm_cli.grading.untrusted_tables import sentence, shown
 from tmm_cli.language import N_, _, numeral, spelt
 from tmm_cli.problem import on_paper
 from tmm_cli.reports import folder_name

@@ -1,18 +1,260 @@
-"""feedback/<student>.md and .html: what each student is told."""
+"""Feedback sheet of each student: every answer as it was understood, the permitted error, explanations of mistakes.
+
+Written as feedback/<student>.md and feedback/<student>.html. Whose answers were copied is never told."""
 
 from __future__ import annotations
 
+import cmath
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from html import escape
 from typing import Final
 
-from tmm_cli.grading.exports import feedback_html, feedback_markdown
-from tmm_cli.grading.exports.book import Gradebook
-from tmm_cli.grading.exports.student_sheet import Sheet, sheets
+from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, rounded, share_text
+from tmm_cli.grading.record import Mark, State, StudentMarks
+from tmm_cli.grading.untrusted_tables import sentence, shown
+from tmm_cli.language import N_, _, numeral
 
-FORMATS: Final[Mapping[str, Callable[[Sheet], str]]] = {"md": feedback_markdown.text, "html": feedback_html.text}
+WIDENED = 1.05  # times the usual error: less more is not worth telling
+UNSAID = "†"  # marks answers without a unit
+SHARES = {
+    "largest": N_("Errors are shares of the largest value of a quantity in the cycle."),
+    "range": N_("Errors of places are shares of the whole way."),
+    "angle": N_("Errors of angles are shares of a radian: 1 % is 0.57 degrees."),
+}
 
 
-def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+@dataclass(frozen=True)
+class StudentSheetRow:
+    """An answer of a sheet, its cells as plain text under the sheet's headers."""
+
+    state: State
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class StudentSheet:
+    """What one student is told, as plain text. reasons: sentences, each with the answers that it is about."""
+
+    title: str
+    student: str
+    total: str
+    problems: tuple[str, ...]
+    headers: tuple[str, ...]
+    rows: tuple[StudentSheetRow, ...]
+    reasons: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...]
+
+
+def sheets(book: Gradebook) -> Iterator[StudentSheet]:
+    """In the order of the marks."""
+    reveal = book.task.rules.reveal
+    right = (_("right value"),) if reveal else ()
+    headers = (_("asked"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
+    title, general = shown(book.title), _notes(book)
+    for student in book.marks:
+        both = list(zip(book.answers, student.marks, strict=True))
+        unsaid = (_unsaid(),) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
+        yield StudentSheet(
+            title,
+            shown(student.student),
+            _total(student),
+            tuple(map(sentence, student.problems)),
+            headers,
+            tuple(StudentSheetRow(mark.state, _cells(answer, mark, reveal)) for answer, mark in both),
+            tuple(_reasons(both)),
+            (*unsaid, *general, *_why_more(both)),
+        )
+
+
+def _unsaid() -> str:
+    return _("{mark} no unit was written: it was read in the one that fits.").format(mark=UNSAID)
+
+
+def _total(student: StudentMarks) -> str:
+    share = percent(student)
+    points = _("{points} of {of} points").format(points=_points(student.points), of=_points(student.of))
+    return points if share is None else f"{points} ({numeral(share, 'g')} %)"
+
+
+def _points(points: float) -> str:
+    return numeral(rounded(points), ".10g")
+
+
+def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
+    right = (answer.text(mark.right) if mark.judged else "-",) if reveal else ()
+    points = f"{_points(mark.points)} / {_points(mark.of)}"
+    return (
+        answer.name,
+        written(answer, mark),
+        *right,
+        _error(answer, mark),
+        _allowed(answer, mark),
+        points,
+        _(STATES[mark.state]),
+    )
+
+
+def written(answer: Answer, mark: Mark) -> str:
+    """The student's value with its unit, in the unit it was read in; as it was written where it is no value."""
+    if mark.value is None or not cmath.isfinite(mark.value):
+        return shown(mark.text) or "-"
+    return answer.text(mark.value, mark.reading, mark.size) + (f" {UNSAID}" if mark.reading else "")
+
+
+def _error(answer: Answer, mark: Mark) -> str:
+    return "-" if mark.value is None or answer.asked.quantity.against == "exact" else share_text(mark.error)
+
+
+def _allowed(answer: Answer, mark: Mark) -> str:
+    """What was allowed, and what is usual where that is less."""
+    if answer.asked.quantity.against == "exact":
+        return _("exact")
+    if not mark.judged:
+        return share_text(answer.asked.tolerance)
+    if not _widened(answer, mark):
+        return share_text(mark.allowed)
+    usual = share_text(answer.asked.tolerance)
+    return _("{allowed}, usually {usual}").format(allowed=share_text(mark.allowed), usual=usual)
+
+
+def _notes(book: Gradebook) -> tuple[str, ...]:
+    """What errors are shares of."""
+    against = {answer.asked.quantity.against for answer in book.answers}
+    return tuple(_(SHARES[one]) for one in SHARES if one in against)
+
+
+def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
+    """Why more than usual is allowed."""
+    drawn = {answer.asked.drawn for answer, mark in both if _widened(answer, mark)}
+    if True in drawn:
+        yield _(
+            "More than usual is allowed where lengths drawn 0.5 mm in 100 mm off move the value that far: nobody can "
+            "measure it more exactly there."
+        )
+    if False in drawn:
+        yield _("More than usual is allowed where lengths rounded to 0.05 % move a computed value that far.")
+
+
+def _widened(answer: Answer, mark: Mark) -> bool:
+    return answer.asked.quantity.against != "exact" and mark.allowed > WIDENED * answer.asked.tolerance
+
+
+def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
+    """Each sentence once, with all answers that it is about; at last what nothing explains."""
+    found: dict[str, list[str]] = {}
+    left = []
+    for answer, mark in both:
+        for reason in mark.reasons:
+            found.setdefault(reason, []).append(answer.name)
+        if mark.state == "wrong" and not mark.reasons:
+            left.append(answer.name)
+    for reason, names in found.items():
+        yield sentence(reason), ", ".join(names)
+    if left:
+        yield _("No typical mistake explains what is wrong here."), ", ".join(left)
+
+
+def output(answer: Answer, mark: Mark, reveal: bool) -> str:
+    """All about one answer in a few lines."""
+    lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
+    if mark.state != "missing":
+        lines.append(_("your answer: {answer}").format(answer=written(answer, mark)))
+    if reveal and mark.judged:
+        lines.append(_("right value: {value}").format(value=answer.text(mark.right)))
+    if mark.value is not None and answer.asked.quantity.against != "exact":
+        told = _("off by {error} of {whole}; allowed: {allowed}")
+        lines.append(told.format(error=share_text(mark.error), whole=answer.of, allowed=_allowed(answer, mark)))
+    if mark.reading and mark.value is not None:
+        lines.append(_unsaid())
+    return "\n".join((*lines, *map(sentence, mark.reasons)))
+
+
+SIGNS = re.compile(r"([\\`*\[\]|#~])")
+LINE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")  # within a word it is no markup
+CELL_BREAK = "\x1f"  # stands between the cells of a row while they are escaped
+
+
+def markdown_text(sheet: StudentSheet) -> str:
+    """A sheet as Markdown; nothing in it is markup of the student's."""
+    parts = [
+        f"# {_escape_markdown(sheet.title)}",
+        f"**{_escape_markdown(sheet.student)}**: {_escape_markdown(sheet.total)}",
+    ]
+    parts += [_markdown_list(sheet.problems)] if sheet.problems else []
+    rows = [sheet.headers, ["---"] * len(sheet.headers), *(row.cells for row in sheet.rows)]
+    parts.append("\n".join(f"| {_escape_markdown(CELL_BREAK.join(row)).replace(CELL_BREAK, ' | ')} |" for row in rows))
+    if sheet.reasons:
+        parts += [f"## {_('Why')}", _markdown_list(f"{reason} ({names})" for reason, names in sheet.reasons)]
+    return "\n\n".join([*parts, *map(_escape_markdown, sheet.notes)]) + "\n"
+
+
+def _markdown_list(lines: Iterable[str]) -> str:
+    return "\n".join(f"- {_escape_markdown(line)}" for line in lines)
+
+
+def _escape_markdown(text: str) -> str:
+    """A text with no markup in it, neither of Markdown nor of HTML."""
+    safe = SIGNS.sub(r"\\\1", escape(text, quote=False))
+    return LINE.sub(r"\\_", safe) if "_" in safe else safe
+
+
+STYLE = """
+body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:60rem;margin:2rem auto;padding:0 1rem;
+overflow-wrap:anywhere}
+h1{font-size:1.35rem;margin:0}h2{font-size:1.05rem;margin:1.6rem 0 .3rem}
+.who{margin:.2rem 0 1.2rem}.who b{font-size:1.1rem}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+th,td{text-align:left;padding:.3rem .7rem .3rem 0;border-bottom:1px solid #ddd;vertical-align:top}
+th{border-bottom:2px solid #1a1a1a;font-weight:600}td:first-child,th:first-child{padding-left:.6rem}
+td{white-space:nowrap}td:nth-child(2),td:nth-last-child(3),td:last-child{white-space:normal}
+td:first-child{border-left:4px solid #b3261e}.right td:first-child{border-left-color:#1d7a3a}
+.follows td:first-child{border-left-color:#c77700}.missing td:first-child{border-left-color:#bbb}
+.missing td{color:#767676}ul{padding-left:1.2rem;margin:.3rem 0}li{margin:.2rem 0}
+.about,.note{color:#555;font-size:.87rem}.note{margin:.5rem 0}.note:first-of-type{margin-top:1rem}
+@media print{body{margin:0;max-width:none;font-size:10.5pt}tr,li{break-inside:avoid}td:first-child{
+print-color-adjust:exact;-webkit-print-color-adjust:exact}@page{margin:18mm}}
+"""
+PAGE_HEAD = (
+    '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+    '<meta name="viewport" content="width=device-width,initial-scale=1">'
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';style-src 'unsafe-inline'\">"
+)
+
+
+def html_page(sheet: StudentSheet) -> str:
+    """A sheet as a page; names are kept apart in their own direction of writing."""
+    problems = _html_list(f"<li>{escape(problem)}</li>" for problem in sheet.problems)
+    header = "".join(f"<th>{escape(header)}</th>" for header in sheet.headers)
+    rows = "\n".join(
+        f'<tr class="{row.state}"><td>{escape(CELL_BREAK.join(row.cells)).replace(CELL_BREAK, "</td><td>")}</td></tr>'
+        for row in sheet.rows
+    )
+    reasons = _html_list(
+        f'<li>{escape(reason)} <span class="about">{escape(names)}</span></li>' for reason, names in sheet.reasons
+    )
+    why = f"<h2>{escape(_('Why'))}</h2>{reasons}" if reasons else ""
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in sheet.notes)
+    return (
+        f"{PAGE_HEAD}<title>{escape(sheet.title)}</title><style>{STYLE}</style></head>\n<body><h1>{escape(sheet.title)}</h1>"
+        f'<p class="who"><b><bdi>{escape(sheet.student)}</bdi></b><br>{escape(sheet.total)}</p>{problems}\n'
+        f"<table><thead><tr>{header}</tr></thead><tbody>\n{rows}\n</tbody></table>{why}{notes}</body></html>\n"
+    )
+
+
+def _html_list(items: Iterable[str]) -> str:
+    found = "\n".join(items)
+    return f"<ul>{found}</ul>" if found else ""
+
+
+FEEDBACK_FORMATS: Final[Mapping[str, Callable[[StudentSheet], str]]] = {
+    "md": markdown_text,
+    "html": html_page,
+}
+
+
+def feedback_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
     """Each sheet in every format."""
     for name, sheet in zip(book.files, sheets(book), strict=True):
-        yield from ((f"feedback/{name}.{ending}", (text(sheet),)) for ending, text in FORMATS.items())
+        yield from ((f"feedback/{name}.{ending}", (text(sheet),)) for ending, text in FEEDBACK_FORMATS.items())

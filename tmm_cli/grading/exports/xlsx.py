@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.cells import shown
 from tmm_cli.grading.exports.book import Cell, Gradebook, finite, marks_header, marks_rows, reasons, rounded
-from tmm_cli.grading.exports.student_sheet import written
+from tmm_cli.grading.exports.feedback import written
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.statistics import statistics_tables
+from tmm_cli.grading.untrusted_tables import shown
 from tmm_cli.mechanics.quantities import NUMBER
 from tmm_cli.reports import WRITTEN, Column, empty_workbook
 

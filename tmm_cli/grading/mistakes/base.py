@@ -1,19 +1,61 @@
-"""A typical mistake: what would have come out with it, by the same stages."""
+"""A typical mistake, and the solution of a family of variants with mistakes in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
+
+import numpy as np
 
 from tmm_cli.batch import Family
-from tmm_cli.grading.solution import Solution
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity
-from tmm_cli.mechanics.forces import Applied
-from tmm_cli.mechanics.groups import Kernel
-from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.forces import Applied, Reactions, applied, react, solve_friction
+from tmm_cli.mechanics.groups import DriverMotion, Kernel
+from tmm_cli.mechanics.kinematics import Motion, Strokes, move
+from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Motion and forces of all variants at all positions, (variants, positions)."""
+
+    family: Family
+    motion: Motion
+    reactions: Reactions
+
+    @property
+    def linkage(self) -> Linkage:
+        return self.family.linkage
+
+    @property
+    def strokes(self) -> Strokes | None:
+        return self.family.strokes
+
+
+def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
+    """All stages; each mistake changes what it is a mistake in, the first one first."""
+    for mistake in mistakes:
+        family = mistake.family(family)
+    lead = family.linkage.driver
+    at: Any = family.linkage.sketch.at if family.linkage.others else family.q[:, :1]
+    law = DriverMotion(at, lead.rate, lead.acceleration, lead.sense)
+    kernels = family.kernels
+    for mistake in mistakes:
+        kernels = tuple(mistake.kernel(kernel, family) for kernel in kernels)
+    motion = move(family.linkage, kernels, family.q, law)
+    for mistake in mistakes:
+        motion = mistake.motion(motion)
+    with np.errstate(all="ignore"):
+        loads = applied(motion, family.strokes)
+        for mistake in mistakes:
+            loads = tuple(mistake.load(load, motion, family) for load in loads)
+        reactions = react(motion, family.structure, loads)
+        if family.linkage.friction:
+            reactions = solve_friction(motion, family.structure, loads, reactions).reactions
+    return Solution(family, motion, reactions)
 
 
 @dataclass(frozen=True)

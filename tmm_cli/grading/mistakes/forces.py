@@ -9,8 +9,7 @@ from typing import Self
 import numpy as np
 
 from tmm_cli.batch import Family
-from tmm_cli.grading.mistakes.base import Mistake
-from tmm_cli.grading.solution import Solution
+from tmm_cli.grading.mistakes.base import Mistake, Solution
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import Quantity
 from tmm_cli.mechanics.forces import Applied

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from tmm_cli.batch import Task
-from tmm_cli.grading.cells import bytes_of, decoded, rows_of
 from tmm_cli.grading.record import Submission
 from tmm_cli.grading.submissions.answers import Answers, Entry, one_line
 from tmm_cli.grading.submissions.numbers import PARTS, Part, checked_unit
-from tmm_cli.grading.tables import WHO
+from tmm_cli.grading.untrusted_tables import bytes_of, decoded, rows_of
+from tmm_cli.grading.variant_tables import WHO
 from tmm_cli.language import N_, _
 from tmm_cli.problem import Composer, ProblemError, clean, latin, quote, read_text
 

@@ -11,9 +11,9 @@ from tmm_cli.language import _, symbol
 from tmm_cli.mechanics.dynamics import Tangent
 from tmm_cli.mechanics.forces import Lettered, Symbol
 from tmm_cli.note.blocks import Block, said
-from tmm_cli.note.dynamics.parts import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
+from tmm_cli.note.dynamics.reduced_model import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
 from tmm_cli.note.expression import Constant, Found, Leaf, Raised, letters
-from tmm_cli.note.math import Letter, row
+from tmm_cli.note.formula_tree import Letter, row
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
 FIRST_GROUP, CONSTANT = Lettered("J_I"), Lettered("J_c")
@@ -22,7 +22,7 @@ DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
 DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), Lettered("m_f")
 
 
-def speeds(here: Here) -> Iterable[Block]:
+def write_extreme_speeds(here: Here) -> Iterable[Block]:
     """The largest and the least one, from their mean and the fluctuation."""
     steady = here.steady
     low, high = steady.speeds
@@ -39,7 +39,7 @@ def speeds(here: Here) -> Iterable[Block]:
     yield Found(LEAST, middle * (1 - half), low, _("rad/s"))
 
 
-def diagram(here: Here) -> Iterable[Block]:
+def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
     """The energy-mass diagram and what its tangents cut off."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
@@ -62,12 +62,12 @@ def diagram(here: Here) -> Iterable[Block]:
         psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", letters(slope)),
     )
     for tangent, name, speed, point in zip(here.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
-        energy, work = speed_of(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
+        energy, work = tangent_speed(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
         cut = work - energy * Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
         yield Found(name, cut, tangent.offset, _("J"))
 
 
-def by_tangents(here: Here) -> Iterable[Block]:
+def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
     """Its inertia from what they cut off."""
     steady = here.steady
     upper, lower = here.tangents
@@ -81,11 +81,11 @@ def by_tangents(here: Here) -> Iterable[Block]:
         )
     yield said(text)
     cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
-    squares = speed_of(upper, LARGEST) ** 2 - speed_of(lower, LEAST) ** 2
+    squares = tangent_speed(upper, LARGEST) ** 2 - tangent_speed(lower, LEAST) ** 2
     yield Found(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))
 
 
-def by_mertsalov(here: Here) -> Iterable[Block]:
+def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
     """Where the flywheel is found for a constant moment; and what the course's tangents give."""
     steady = here.steady
     if steady.found is None:
@@ -142,7 +142,7 @@ def by_mertsalov(here: Here) -> Iterable[Block]:
     yield Found(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 
 
-def on_shaft(here: Here) -> Iterable[Block]:
+def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
     """Where it sits on another shaft."""
     steady = here.steady
     if steady.task.ratio == 1:
@@ -159,7 +159,7 @@ def on_shaft(here: Here) -> Iterable[Block]:
     yield Found(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
 
 
-def size(here: Here) -> Iterable[Block]:
+def write_flywheel_size(here: Here) -> Iterable[Block]:
     """Diameter, width and mass of a disk, or of a rim."""
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
@@ -199,6 +199,6 @@ def size(here: Here) -> Iterable[Block]:
     yield Found(MASS, mass if numbers[1] == 1 else mass / numbers[1], steady.mass, _("kg"))
 
 
-def speed_of(tangent: Tangent, name: Symbol) -> Leaf:
+def tangent_speed(tangent: Tangent, name: Symbol) -> Leaf:
     """At which the energy-mass diagram has this tangent."""
     return Leaf(name, float(np.sqrt(2 * tangent.slope)))

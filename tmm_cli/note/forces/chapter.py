@@ -10,16 +10,15 @@ from tmm_cli.language import _, filled
 from tmm_cli.mechanics.forces import Lettered, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest, without_rounding
 from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
-from tmm_cli.note.context import Subject
 from tmm_cli.note.forces import lever, loads, sections
 from tmm_cli.note.forces.equations import MU
 from tmm_cli.note.forces.sections import parts_of
-from tmm_cli.note.math import Letter, row
-from tmm_cli.note.tables import NONE, over_positions
+from tmm_cli.note.formula_tree import Letter, row
+from tmm_cli.note.subject import NONE, Subject, over_positions
 from tmm_cli.reports import has_flywheel, indeterminate
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_forces(subject: Subject) -> Iterable[Block]:
     """Of what has forces."""
     if not subject.acts:
         return

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import ForceSum, MomentEquation, Part, Symbol, Term
-from tmm_cli.note.breaking import chain
 from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
-from tmm_cli.note.math import Letter, Node, Number, row
+from tmm_cli.note.formula_tree import Letter, Node, Number, chain_of_equalities, row
 
 MU = Symbol("μ", "l")
 ALONG = 1e-12  # one less the cosine: a force with less is along the guide
@@ -19,7 +18,9 @@ def moments(equation: MomentEquation, mu: float | None = None) -> Node:
     """ΣM_E = −R·h₃ + G·h₁ − ... = 0, what is sought first; mu (m/mm): with arms on paper, couples as M/μ_l."""
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
-    return chain((Letter(Symbol("ΣM", equation.about)), letters(added(_moment(t, mu) for t in terms)), Number("0")))
+    return chain_of_equalities(
+        (Letter(Symbol("ΣM", equation.about)), letters(added(_moment(t, mu) for t in terms)), Number("0"))
+    )
 
 
 def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None) -> Found | None:
@@ -52,7 +53,7 @@ def along_guide(forces: ForceSum) -> tuple[Node, Found]:
     parts = [own, *(part for part in forces.parts if part is not own)]
     shares = [_projection(part, number) for number, part in enumerate(parts)]
     told = [signed(part.along, share) for part, share in zip(parts, shares, strict=True)]
-    whole = chain((Letter(Symbol("ΣF", forces.guide)), letters(added(told)), Number("0")))
+    whole = chain_of_equalities((Letter(Symbol("ΣF", forces.guide)), letters(added(told)), Number("0")))
     rest = signed(-own.along, added(told[1:]))
     if isinstance(shares[0], Product):  # what is sought is not along the guide
         rest = rest / shares[0].factors[1]
@@ -62,7 +63,7 @@ def along_guide(forces: ForceSum) -> tuple[Node, Found]:
 def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     """Vectors, each with so many lines under it, come to nothing."""
     parts = [part for symbol, lines in vectors for part in ("+", Letter(symbol, vector=True, lines=lines))]
-    return chain((row(*parts[1:]), Number("0")))
+    return chain_of_equalities((row(*parts[1:]), Number("0")))
 
 
 def _moment(term: Term, mu: float | None = None) -> Expression:

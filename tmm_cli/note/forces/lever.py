@@ -12,9 +12,9 @@ from tmm_cli.mechanics.forces import Applied, Symbol, balance_symbol, load_symbo
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
 from tmm_cli.mechanics.plans import LeverPlan, Scales, drawn_check, lever_plan, sheets
 from tmm_cli.note.blocks import Block, Equation, Heading, said
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
+from tmm_cli.note.subject import Subject
 
 
 def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:

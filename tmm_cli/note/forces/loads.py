@@ -21,9 +21,9 @@ from tmm_cli.mechanics.forces import (
 from tmm_cli.mechanics.linkage import Friction, Spring
 from tmm_cli.mechanics.numerics import NO_FORCE, dot
 from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
 from tmm_cli.note.kinematics.equations import equal, sense
+from tmm_cli.note.subject import Subject
 from tmm_cli.reports import locked_ranges
 
 

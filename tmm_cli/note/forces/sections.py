@@ -27,10 +27,10 @@ from tmm_cli.mechanics.forces import (
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.plans import ForcePlan, NamedVector, force_plans
 from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import Found, Function, Leaf, read
 from tmm_cli.note.forces.equations import MU, along_guide, by_moments, moments, vector_sum
 from tmm_cli.note.kinematics.equations import sense
+from tmm_cli.note.subject import Subject
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,22 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note, Title
-from tmm_cli.note.breaking import formula, width
-from tmm_cli.note.context import figures
-from tmm_cli.note.expression import Found
-from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
+from tmm_cli.note.expression import Found, formula
+from tmm_cli.note.formula_tree import (
+    Brackets,
+    Fraction,
+    Letter,
+    Lines,
+    Node,
+    Number,
+    Power,
+    Root,
+    Row,
+    Sign,
+    Words,
+    width,
+)
+from tmm_cli.note.subject import localise_figures
 
 SPACES = nsdecls("w", "m", "r")
 FONT = '<w:rPr><w:rFonts w:ascii="Cambria Math" w:hAnsi="Cambria Math"/></w:rPr>'
@@ -319,7 +331,7 @@ class _Writer:
     def __init__(self, note: Note) -> None:
         self.note = note
         self.numbers = note.numbers()
-        self.figures = partial(figures, spoken=note.language)
+        self.figures = partial(localise_figures, spoken=note.language)
         self.document: Any = Document()
         prepared(self.document, note.title, note.language)
         self.parts = Parts(self.document)

@@ -14,10 +14,9 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note
-from tmm_cli.note.breaking import formula
-from tmm_cli.note.context import figures
-from tmm_cli.note.expression import Found
-from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
+from tmm_cli.note.expression import Found, formula
+from tmm_cli.note.formula_tree import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
+from tmm_cli.note.subject import localise_figures
 
 
 def mathml(node: Node, *, display: bool = False) -> str:
@@ -117,7 +116,7 @@ class Writer:
             case blocks.Equation(node):
                 return f'<div class="equation">{mathml(node, display=True)}</div>'
             case Found():
-                shown = formula(block, partial(figures, spoken=self.note.language))
+                shown = formula(block, partial(localise_figures, spoken=self.note.language))
                 return f'<div class="equation found">{mathml(shown, display=True)}</div>'
             case blocks.Rows():
                 return self.table(block)

@@ -9,10 +9,9 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Slide
 from tmm_cli.mechanics.plans import About, Along, OnGuide, Spot, Step, VectorEquation, massive
 from tmm_cli.note.blocks import Block, Equation, listed, said
-from tmm_cli.note.breaking import LINE, width
 from tmm_cli.note.expression import Found, Leaf
+from tmm_cli.note.formula_tree import LINE, Letter, Node, Number, Words, row, width
 from tmm_cli.note.kinematics.on_paper import Here, OnPaper, Vector, drawn, large, unit, vector, zero
-from tmm_cli.note.math import Letter, Node, Number, Words, row
 
 
 def sense(value: float) -> str:

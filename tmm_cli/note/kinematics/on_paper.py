@@ -15,9 +15,9 @@ from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.mechanics.plans import NamedVector, Plan, Spot, extent, in_letters, round_scale, turns
 from tmm_cli.note.blocks import Block, Equation
-from tmm_cli.note.context import OF_POSITION, Subject
 from tmm_cli.note.expression import Expression, Found, Leaf
-from tmm_cli.note.math import Letter, Number, row
+from tmm_cli.note.formula_tree import Letter, Number, row
+from tmm_cli.note.subject import OF_POSITION, Subject
 
 SMALL = 0.2  # of the largest known vector: a smaller one is not the one by which a scale is told
 

@@ -9,8 +9,8 @@ from tmm_cli.mechanics.plans import About, Along, OnGuide, Step, VectorEquation
 from tmm_cli.note.blocks import Block, listed, said
 from tmm_cli.note.kinematics import equations as words
 from tmm_cli.note.kinematics.equations import equations, of_known_link
+from tmm_cli.note.kinematics.higher_pairs import begun
 from tmm_cli.note.kinematics.on_paper import Here, Vector
-from tmm_cli.note.kinematics.ratios import begun
 
 
 def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:

@@ -1,4 +1,4 @@
-"""The law of motion: the machine reduced to its driver, what drives it, the flywheel, speed and acceleration."""
+"""Chapter on the law of motion: steady running of a machine, or a single run."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces import Symbol
+from tmm_cli.mechanics.dynamics import SingleRun
+from tmm_cli.mechanics.forces import Lettered, Symbol
 from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, said, tabled
-from tmm_cli.note.context import Subject
-from tmm_cli.note.dynamics import flywheel, parts as driving, parts as reduced
-from tmm_cli.note.dynamics.flywheel import OFFSETS, speed_of
-from tmm_cli.note.dynamics.parts import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
-from tmm_cli.note.expression import Found, Function, Leaf
-from tmm_cli.note.math import Fraction, Letter, Sign, row
-from tmm_cli.note.tables import rows_of
+from tmm_cli.note.dynamics import flywheel, reduced_model
+from tmm_cli.note.dynamics.flywheel import OFFSETS, tangent_speed
+from tmm_cli.note.dynamics.reduced_model import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
+from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
+from tmm_cli.note.formula_tree import Fraction, Letter, Sign, row
+from tmm_cli.note.subject import Subject, rows_of
 from tmm_cli.reports import signs, walk
 
 TABLES = ("dynamics", "law-of-motion")
 
 
-def blocks(subject: Subject) -> Iterable[Block]:
+def write_steady_running(subject: Subject) -> Iterable[Block]:
     """Of steady running."""
     every = [Here(subject, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
-    yield from reduced.explained(here)
+    yield from reduced_model.explain_reduction(here)
     for one in every:
-        yield from reduced.inertia(one)
-        yield from reduced.moment(one)
+        yield from reduced_model.write_reduced_inertia(one)
+        yield from reduced_model.write_reduced_moment(one)
     yield from subject.figures(
         "law",
         _("Reduced moments, works and energies are shown in figure {figure}."),
@@ -38,18 +38,23 @@ def blocks(subject: Subject) -> Iterable[Block]:
         only="law-moments",
     )
     yield Heading(_("Driving moment"), 2)
-    yield from driving.mean(here)
+    yield from reduced_model.write_mean_driving_moment(here)
     for one in every:
-        yield from driving.motor(one)
+        yield from reduced_model.write_motor_moment(one)
     flies = here.steady.law.flywheel > 0
     yield Heading(_("Flywheel") if flies else _("Fluctuation of speed"), 2)
-    yield from flywheel.speeds(here)
-    yield from flywheel.diagram(here)
+    yield from flywheel.write_extreme_speeds(here)
+    yield from flywheel.write_energy_mass_diagram(here)
     yield from subject.figures(
         "energy-mass", _("The energy-mass diagram is shown in figure {figure}."), _("Energy-mass diagram")
     )
     if flies:
-        for part in (flywheel.by_tangents, flywheel.by_mertsalov, flywheel.on_shaft, flywheel.size):
+        for part in (
+            flywheel.write_flywheel_by_tangents,
+            flywheel.write_flywheel_by_mertsalov,
+            flywheel.write_flywheel_on_its_shaft,
+            flywheel.write_flywheel_size,
+        ):
             yield from part(here)
     yield Heading(_("Speed and acceleration of the driving link"), 2)
     yield from _energy_at_start(here)
@@ -81,7 +86,7 @@ def _energy_at_start(here: Here) -> Iterable[Block]:
     upper, __ = here.tangents
     yield said(_("The kinetic energy of the machine in position 0:"))
     flywheel, offset = Leaf(FLYWHEEL, here.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
-    own = speed_of(upper, LARGEST) ** 2 / 2 * flywheel - offset if flywheel.value else -offset
+    own = tangent_speed(upper, LARGEST) ** 2 / 2 * flywheel - offset if flywheel.value else -offset
     yield Found(START, own, here.start, _("J"))
 
 
@@ -113,3 +118,49 @@ def _time(here: Here) -> Iterable[Block]:
     yield said(_("The time from position 0 on is the integral of the slowness over the angle:"))
     yield Equation(row(Letter(Symbol("t")), "=", Sign("∫"), Fraction(row("d", Letter(Symbol("φ"))), omega)))
     yield said(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
+
+
+DRIVEN, LOADED, BRAKED, END = Lettered("A_d"), Lettered("A_l"), Lettered("A_b"), Symbol("T", "1")
+
+
+def write_single_run(subject: Subject) -> Iterable[Block]:
+    """Of a run with an end."""
+    single = subject.results.single
+    assert single is not None
+    yield Heading(_("Law of motion"))
+    yield from _energies(single, crank=subject.results.linkage.driver.kind == "turn")
+    yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
+    yield from tables(subject)
+
+
+def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
+    """Of the whole run."""
+    run = single.run
+    yield said(
+        _(
+            "The machine is replaced by its driving link, to which all masses and all loads are reduced, and its "
+            "equation of motion is integrated from the beginning of the run on."
+        )
+    )
+    parts = [(START, run.kinetic[0]), (DRIVEN, run.driven[-1]), (LOADED, run.loaded[-1])]
+    text = _(
+        "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives and the work {Al} of the loads:"
+    )
+    if single.task.brake:
+        parts.append((BRAKED, run.braked[-1]))
+        text = _(
+            "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives, the work {Al} of the "
+            "loads and the work {Ab} of the brake:"
+        )
+    yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
+    end = Leaf(END, float(run.kinetic[-1]))
+    yield Found(END, added(Leaf(symbol, float(value)) for symbol, value in parts), end.value, _("J"))
+    inertia = float(single.machine.inertia(np.array([run.way[-1]]))[0])
+    every: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
+    if single.task.flywheel:
+        every = Leaf(FLYWHEEL, single.task.flywheel) + every
+    if run.speed[-1] > 0:
+        yield said(_("With the reduced inertia at the end of the run the speed there is"))
+        root = Function("sqrt", 2 * end / every)
+        unit = _("rad/s") if crank else _("m/s")
+        yield Found(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

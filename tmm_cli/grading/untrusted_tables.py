@@ -1,4 +1,4 @@
-"""Texts that others wrote, made harmless: one line, short, nothing that steers."""
+"""Tables from other people and programs: CSV and XLSX as rows of plain text, limited in size; nothing is executed."""
 
 from __future__ import annotations
 

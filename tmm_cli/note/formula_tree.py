@@ -1,11 +1,106 @@
-"""Formulas in lines: no format breaks a wide formula well by itself, so it is broken before it is written."""
+"""Formulas as trees of nodes, which each format of the note writes, and their breaking into lines.
+
+No format breaks a wide formula well by itself, so it is broken before it is written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from tmm_cli.note.expression import Found, Leaf, letters, numbers, result_node
-from tmm_cli.note.math import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words, row
+from tmm_cli.mechanics.forces import Symbol
+
+
+@dataclass(frozen=True)
+class Number:
+    """Figures as they are printed, in the language of the note."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Letter:
+    """A quantity, by its letter with indices. lines: under a vector, two of one known whole, one of a known line."""
+
+    symbol: Symbol
+    vector: bool = False
+    lines: int = 0
+
+
+@dataclass(frozen=True)
+class Sign:
+    """What stands between: + − · = ∥ ⊥, or a name of a function."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Words:
+    """Upright text in a formula: a unit, a name of a group."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """Nodes one after another."""
+
+    nodes: tuple[Node, ...]
+
+
+@dataclass(frozen=True)
+class Fraction:
+    """One over another."""
+
+    over: Node
+    under: Node
+
+
+@dataclass(frozen=True)
+class Power:
+    """A base with an exponent."""
+
+    base: Node
+    exponent: Node
+
+
+@dataclass(frozen=True)
+class Root:
+    """A square root."""
+
+    of: Node
+
+
+@dataclass(frozen=True)
+class Brackets:
+    """Round brackets as high as what is in them; in a broken formula the other one may stand on another line.
+
+    bars: straight ones, of a size.
+    """
+
+    inside: Node
+    opens: bool = True
+    closes: bool = True
+    bars: bool = False
+
+
+@dataclass(frozen=True)
+class Lines:
+    """A formula that is too wide for one line, broken before a sign."""
+
+    lines: tuple[Node, ...]
+
+
+Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets | Lines
+
+
+def row(*parts: Node | str) -> Node:
+    """Nodes and signs in a row; a single one is itself."""
+    nodes: list[Node] = []
+    for part in parts:
+        node = Sign(part) if isinstance(part, str) else part
+        nodes += node.nodes if isinstance(node, Row) else (node,)
+    return nodes[0] if len(nodes) == 1 else Row(tuple(nodes))
+
 
 LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
 SMALL = 0.75  # size of indices and exponents
@@ -16,7 +111,7 @@ OPEN, CLOSE = Sign("("), Sign(")")
 OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
 
 
-def chain(sides: Sequence[Node], most: float = LINE) -> Node:
+def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
     """Equal sides with their signs; broken before a sign of equality, or of a term, where it is too wide."""
     lines: list[Node] = []
     for side in sides:
@@ -29,19 +124,6 @@ def chain(sides: Sequence[Node], most: float = LINE) -> Node:
             lines += _in_terms(row("=", side), most)
     lines = _evened(lines, most)
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
-
-
-def formula(found: Found, say: Callable[[str], str]) -> Node:
-    """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
-
-    Raises:
-        ValueError: The formula does not give the result.
-    """
-    figures, text = found.printed()
-    own = found.expression
-    plain = isinstance(own, Leaf)  # read off: what would be put in is the result
-    put_in = () if plain else (letters(own), numbers(own, figures, say))
-    return chain((Letter(found.name), *put_in, result_node(text, found.unit, say)))
 
 
 def width(node: Node) -> float:

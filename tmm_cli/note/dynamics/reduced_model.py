@@ -1,4 +1,4 @@
-"""Letters of the law of motion, and what every part of its chapter is about."""
+"""Reduced moment of inertia and reduced moment of a machine, position by position, and its driving moment."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tmm_cli.mechanics.forces import Applied, Lettered, Symbol, load_symbols
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, said
-from tmm_cli.note.context import Subject
 from tmm_cli.note.expression import EXACT, Constant, Expression, Found, Function, Leaf, Sum, added, evaluate, signed
+from tmm_cli.note.subject import Subject
 
 INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Lettered("M_d"), Symbol("A")
 FLYWHEEL, START, MEAN, DELTA = Lettered("J_f"), Symbol("T", "0"), Lettered("ω_m"), Symbol("δ")
@@ -70,7 +70,7 @@ class Here:
 # The reduced inertia and the reduced moment of a position, link by link and load by load.
 
 
-def explained(here: Here) -> Iterable[Block]:
+def explain_reduction(here: Here) -> Iterable[Block]:
     """What is reduced, and how."""
     link = here.motion.linkage.driver.link
     yield said(
@@ -86,7 +86,7 @@ def explained(here: Here) -> Iterable[Block]:
     )
 
 
-def inertia(here: Here) -> Iterable[Block]:
+def write_reduced_inertia(here: Here) -> Iterable[Block]:
     """Masses at the squares of the ratios of speeds."""
     terms = [term for link in here.motion.linkage.moving for term in _of_link(here, link)]
     if not terms:
@@ -114,7 +114,7 @@ def _of_link(here: Here, name: str) -> Iterable[Expression]:
     yield inertia if turned.symbol == omega.symbol else inertia * (turned / omega) ** 2
 
 
-def moment(here: Here) -> Iterable[Block]:
+def write_reduced_moment(here: Here) -> Iterable[Block]:
     """Powers of all loads over the speed of the driving link."""
     terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _of_load(here, load)]
     if not terms:
@@ -165,7 +165,7 @@ STALL, FREE = Lettered("M_s"), Symbol("ω", "0")
 BREAKDOWN, SLIP, CRITICAL = Lettered("M_k"), Symbol("s"), Lettered("s_k")
 
 
-def mean(here: Here) -> Iterable[Block]:
+def write_mean_driving_moment(here: Here) -> Iterable[Block]:
     """Over a cycle all moments together do no work."""
     steady = here.steady
     turns = round(steady.machine.length / (2 * math.pi))
@@ -191,7 +191,7 @@ def mean(here: Here) -> Iterable[Block]:
     yield Found(DRIVING, -work, steady.moment, _("N·m"))
 
 
-def motor(here: Here) -> Iterable[Block]:
+def write_motor_moment(here: Here) -> Iterable[Block]:
     """The moment in a position, by the speed there."""
     match here.steady.task.motor:
         case Linear() as found:

@@ -1,4 +1,4 @@
-"""Tables of variants: a row a student, a column a parameter, made by hand or drawn; read and written as CSV or XLSX."""
+"""Tables of variants: a row per student, a column per parameter; read and written as CSV or XLSX."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from tmm_cli.batch import NUMBER_WITH_UNIT, Task
-from tmm_cli.grading.cells import rows_of
 from tmm_cli.grading.record import VariantTable
+from tmm_cli.grading.untrusted_tables import rows_of
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_unit, quote, under, unknown_name
 from tmm_cli.reports import csv_cell, empty_workbook

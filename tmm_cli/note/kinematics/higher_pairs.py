@@ -1,4 +1,4 @@
-"""What higher pairs give: Willis' formula of toothed wheels, rolling on racks, a cam's law of motion."""
+"""Velocities and accelerations from higher pairs: Willis' formula for gears, rolling on a rack, motion law of a cam."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from tmm_cli.mechanics.linkage import FRAME, Mesh
 from tmm_cli.mechanics.plans import Along, OnGuide, Ratio, Step
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
+from tmm_cli.note.formula_tree import Letter, row
 from tmm_cli.note.kinematics.equations import sense
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
-from tmm_cli.note.math import Letter, row
 
 
 def begun(here: Here, step: Step, letter: str) -> Iterable[Block]:

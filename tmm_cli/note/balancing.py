@@ -1,7 +1,8 @@
-"""Counterweights by the static replacement of masses: couplers by masses in their hinges, as a course finds them.
+"""Chapter on balancing: shaking force and moment, counterweights, balancing of a rotor.
 
-I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 13. It is written where it gives what the calculation
-found: for links whose centres of mass lie on the lines of their hinges.
+Counterweights are explained by static replacement of masses (couplers by masses in their hinges; Artobolevsky, Theory
+of Mechanisms and Machines, 1988, ch. 13) where that gives the computed values: for links whose centres of mass lie on
+the lines of their hinges.
 """
 
 from __future__ import annotations
@@ -12,21 +13,107 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics import Balanced, BalancingTask, Counterweight, Place
+from tmm_cli.mechanics.dynamics import Balanced, Balancing, BalancingTask, Counterweight, Place, Rotor, steadily
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import cross, dot
-from tmm_cli.note.blocks import Block, said
-from tmm_cli.note.context import Subject
-from tmm_cli.note.expression import EXACT, Expression, Found, Leaf, added, evaluate, signed
+from tmm_cli.mechanics.numerics import NO_VECTOR, Vector, cross, dot
+from tmm_cli.note.blocks import Block, Heading, Inline, said
+from tmm_cli.note.expression import EXACT, Expression, Found, Function, Leaf, added, evaluate, signed
+from tmm_cli.note.subject import Subject, rows_of
+from tmm_cli.reports import walk
+
+FORCE, MOMENT = Symbol("F"), Symbol("M")
+X, Y = Symbol("F", "x"), Symbol("F", "y")
+
+
+def write_balancing(subject: Subject) -> Iterable[Block]:
+    """Of a file that asks for it."""
+    found = subject.results.balancing
+    if found is not None and (found.task.rotor is not None or found.cycle.shakes):
+        yield Heading(_("Balancing"))
+        if found.cycle.shakes:
+            yield from _of_links(subject, found)
+        if found.task.rotor is not None:
+            yield Heading(_("Rotating masses"), 2)
+            yield from write_rotor_balancing(subject, found.task.rotor, found.corrections)
+
+
+def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
+    yield Heading(_("Shaking force and moment"), 2)
+    yield from _explained(found)
+    for k in subject.detail:
+        yield from _position(subject, found, k)
+    if found.cycle.counterweights:
+        yield Heading(_("Counterweights"), 2)
+        yield from write_counterweights(subject, found.cycle, found.task)
+    text = _("The hodograph of the shaking force is shown in figure {figure}.")
+    if found.cycle.counterweights:
+        text = _("The hodographs of the shaking force before and after balancing are shown in figure {figure}.")
+    yield from subject.figures("shaking", text, _("Hodograph of the shaking force"))
+    yield from (rows_of(subject, table) for table in walk(subject.results, ("shaking",)))
+
+
+def _explained(found: Balancing) -> Iterable[Block]:
+    """What is summed up."""
+    pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
+    yield said(
+        _(
+            "At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
+            "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its "
+            "centre of "
+            "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
+            "{epsilon} the angular acceleration."
+        ),
+        F=FORCE,
+        M=MOMENT,
+        pivot=pivot,
+        m=Symbol("m"),
+        a=Symbol("a", "S"),
+        x=Symbol("x", "S"),
+        y=Symbol("y", "S"),
+        J=Symbol("J", "S"),
+        epsilon=Symbol("ε"),
+    )
+
+
+def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
+    """Parts of the force, its size, and the moment."""
+    results = subject.results
+    motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
+    about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
+    largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
+    for name in motion.linkage.moving:
+        link = motion.linkage.links[name]
+        centre, mass = motion.centre(name), float(np.ravel(link.mass)[0])
+        a, r = complex(centre.a[0]), complex(centre.x[0]) - about
+        if mass and abs(a) > NO_VECTOR * largest:
+            m = Leaf(Symbol("m", name), mass)
+            ax, ay = Leaf(Symbol("a", f"S{name}x"), a.real), Leaf(Symbol("a", f"S{name}y"), a.imag)
+            x, y = Leaf(Symbol("x", f"S{name}"), r.real), Leaf(Symbol("y", f"S{name}"), r.imag)
+            along.append(m * ax)
+            across.append(m * ay)
+            moments.append(m * (x * ay - y * ax))
+        inertia, epsilon = float(np.ravel(link.inertia)[0]), float(np.broadcast_to(motion.link(name).epsilon, 1)[0])
+        if inertia and epsilon:
+            moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
+    if not moments:
+        return
+    yield said(_("Position {number}:"), number=subject.called(k))
+    force = complex(found.before.force[k])
+    x, y = Leaf(X, force.real), Leaf(Y, force.imag)
+    yield Found(X, -added(along), x.value, _("N"))
+    yield Found(Y, -added(across), y.value, _("N"))
+    yield Found(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
+    yield Found(MOMENT, -added(moments), float(found.before.moment[k]), _("N·m"))
+
 
 ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
 SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found
 
-MOMENT, SHARE = Symbol("D"), Symbol("k")
+MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
-def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[Block]:
+def write_counterweights(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[Block]:
     """Each with its mass times radius, and its mass where the radius is told; what they leave of the force."""
     replaced = _Replaced(subject.results.linkage, found, task)
     if replaced.solved():
@@ -37,7 +124,7 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
                 "counterweight "
                 "then balances the masses of its link about its pivot, on the side that is away from them."
             ),
-            D=MOMENT,
+            D=MASS_RADIUS,
         )
         yield from replaced.told
     else:
@@ -46,7 +133,7 @@ def blocks(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[B
                 "The product {D} = m·r of the mass of a counterweight and its radius, and its angle, are such that the "
                 "mean square of the force over the cycle is least; it depends on them linearly."
             ),
-            D=MOMENT,
+            D=MASS_RADIUS,
         )
     for weight in found.counterweights:
         link, own = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
@@ -200,3 +287,57 @@ class _Replaced:
                         k=SHARE,
                     )
                 )
+
+
+PLANES = ("I", "II")
+
+
+def write_rotor_balancing(subject: Subject, rotor: Rotor, corrections: Vector) -> Iterable[Block]:
+    """In the second plane what leaves no couple about the first one, then in the first what leaves no force."""
+    two = len(rotor.planes) > 1
+    static = _("A shaft is balanced statically when the vectors {D} = m·r of all its masses add up to nothing.")
+    dynamic = _(
+        "A shaft is balanced dynamically when the vectors {D} = m·r of all its masses add up to nothing, and "
+        "their moments about one of the planes too; {alpha} is the angle of a mass, {z} its place along the "
+        "shaft."
+    )
+    yield said(dynamic if two else static, D=Symbol("D"), alpha=Symbol("α"), z=Symbol("z"))
+    if two:
+        yield from _mass(subject, rotor, corrections, 1)
+    yield from _mass(subject, rotor, corrections, 0)
+
+
+def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterable[Block]:
+    found, name = complex(corrections[k]), PLANES[k]
+    own = Symbol("D", name)
+    yield said(_("In plane {plane}:"), plane=name)
+    parts = []
+    for axis, function, take in (("x", "cos", np.real), ("y", "sin", np.imag)):
+        whole: Expression = -added(_share(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes)))
+        if k:
+            whole = whole / _gap(Symbol("z", name), rotor.planes[k].at, rotor)
+        elif len(rotor.planes) > 1:
+            whole = whole - Leaf(Symbol("D", f"{PLANES[1]}{axis}"), float(take(corrections[1])))
+        parts.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(found))))
+        yield Found(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
+    yield Found(own, Function("sqrt", added(part**2 for part in parts)), abs(found), _("kg·m"))
+    if abs(found):
+        direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
+        yield said(_("Its angle is {angle}°."), angle=direction)
+    radius = rotor.planes[k].radius
+    if radius:
+        mass = Leaf(own, abs(found)) / Leaf(Symbol("r", name), radius)
+        yield Found(Symbol("m", name), mass, abs(found) / radius, _("kg"))
+
+
+def _share(rotor: Rotor, number: int, function: str, *, moment: bool) -> Expression:
+    """Of a mass, along an axis; moment: about the first plane."""
+    size, index = complex(rotor.sizes[number]), str(number + 1)
+    angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
+    share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
+    return share * _gap(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
+
+
+def _gap(symbol: Symbol, at: float, rotor: Rotor) -> Expression:
+    """How far beyond the first plane, m."""
+    return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

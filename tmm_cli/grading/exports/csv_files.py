@@ -1,4 +1,4 @@
-"""marks.csv, a row a student, and answers.csv, a row an answer."""
+"""CSV files: marks.csv (a row per student), answers.csv (a row per answer), moodle.csv for the gradebook of Moodle."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from tmm_cli.grading.exports.book import (
     marks_header,
     marks_rows,
     points_text,
+    rounded,
 )
 from tmm_cli.grading.record import Mark
+from tmm_cli.grading.untrusted_tables import shown
 from tmm_cli.reports import csv_cell
 
 
-def files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+def csv_tables(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
     """Both tables."""
     yield "marks.csv", csv_lines(book, marks_header(book), marks_rows(book))
     yield "answers.csv", csv_lines(book, ANSWERS_HEADER, answers_rows(book))
@@ -40,3 +42,10 @@ def _cell(cell: Cell, comma: bool) -> str:
     number = points_text(cell.points) if isinstance(cell, Mark) else f"{cell:.10g}"
     number = number.replace(".", ",") if comma else number
     return f"{number} {cell.state}" if isinstance(cell, Mark) else number
+
+
+def moodle_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+    """Students as the teacher names them (user name, id number or address), and the points."""
+    known = [one for one in book.marks if book.users is None or one.student in book.users]
+    rows = ((shown(student.student), rounded(student.points)) for student in known)
+    yield "moodle.csv", csv_lines(book, ("user", "grade"), rows)

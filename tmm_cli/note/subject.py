@@ -1,9 +1,9 @@
-"""What a chapter writes about: the results, the positions in detail, and drawings by their names."""
+"""The subject of a note: results, detailed positions, drawings and tables of results in the form that chapters use."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -30,15 +30,16 @@ from tmm_cli.drawing.sheets import (
     synthesised,
     whole_scheme,
 )
-from tmm_cli.language import _, language, numeral, signed, typeset
+from tmm_cli.language import _, language, numeral, signed, spelt, typeset
 from tmm_cli.mechanics.analysis import Results, detailed_positions
 from tmm_cli.mechanics.forces import Lever, Reactions, subscript
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.plans import extent, round_scale
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.note.blocks import Block, Figure, Ref, said
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, cells, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
-from tmm_cli.problem import on_paper
+from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.reports import Column, Table, figures, terminal_cells as cells_of
 
 EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
@@ -150,7 +151,7 @@ class Subject:
 
     def figures_of(self, text: str) -> str:
         """Of figures that are there already."""
-        return figures(text, language())
+        return localise_figures(text, language())
 
     def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
         """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
@@ -197,7 +198,7 @@ def edged(drawing: Drawing) -> Drawing:
     return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
-def figures(text: str, spoken: str) -> str:
+def localise_figures(text: str, spoken: str) -> str:
     """Figures with the decimal mark, the minus and the power of ten of a language."""
     text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
     return text.replace("-", "−") if spoken == "en" else text.replace(".", ",").replace("-", "−")
@@ -228,3 +229,71 @@ def by_hand(text: str) -> str:
     """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
     return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")
+
+
+DIGITS = 4
+NONE = "—"
+
+
+def rows_of(
+    subject: Subject, table: Table, caption: str = "", key: str = "", digits: int = DIGITS, *, zeros: bool = False
+) -> Rows:
+    """The same table in the units of the file, a dash in empty cells; columns in which nothing stands are left out.
+
+    zeros: at the end of a number are kept, so that all of a column have as many figures.
+    """
+    units = subject.results.problem.units
+    columns = [
+        (by_hand(on_paper(c.heading(units))), _texts(replace(_on_paper(c), digits=digits), units, zeros), c.dimension)
+        for c in table.columns
+    ]
+    kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
+    shown = [
+        [_cell(by_hand(with_degrees(t)) if dimension is None else subject.figures_of(t)) for t in texts]
+        for __, texts, dimension in kept
+    ]
+    _told_apart(table, shown)
+    rows = tuple(cells(*row) for row in zip(*shown, strict=True))
+    return Rows(caption or table.title, cells(*(head for head, *__ in kept)), rows, key)
+
+
+def over_positions(subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str) -> Rows:
+    """A row a position; columns: the head and the texts of each."""
+    rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
+    head = cells(_("position"), *(head for head, __ in columns))
+    return Rows(caption, head, tuple(cells(*row) for row in rows), key)
+
+
+def unbroken(text: str) -> str:
+    """Kept on one line of a cell."""
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
+
+
+def _told_apart(table: Table, shown: list[list[str]]) -> None:
+    """Units that stand after the names of quantities go into the column of units: "time, s" is "time" and "s"."""
+    headers = [column.header for column in table.columns]
+    if headers != ["what", "value", "unit"] or len(shown) != len(headers):
+        return
+    names, units = shown[0], shown[2]
+    for k, name in enumerate(names):
+        quantity, __, unit = name.rpartition(", ")
+        if units[k] == NONE and unit in (spelt("J"), spelt("s"), "%"):
+            names[k], units[k] = quantity, unit
+
+
+def _texts(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
+    """Without powers of ten as far as people write numbers so."""
+    if column.dimension is None:
+        return cells_of(column, units, range(len(column.values)))
+    write = fixed if zeros else plain
+    told = zip(column.numbers(units).tolist(), figures(column, units).tolist(), strict=True)
+    return [write(rounded(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told]
+
+
+def _cell(text: str) -> str:
+    return NONE if text in ("", "-", "−") else text
+
+
+def _on_paper(column: Column) -> Column:
+    """A column of units as they are printed."""
+    return replace(column, values=[on_paper(unit) for unit in column.values]) if column.header == "unit" else column

@@ -1,0 +1,60 @@
+"""Marks as results of tests: gradescope/<student>.json (results.json of Gradescope) and junit.xml."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from xml.sax.saxutils import escape, quoteattr
+
+from tmm_cli.grading.exports.book import Gradebook, fitting, rounded
+from tmm_cli.grading.exports.feedback import output
+from tmm_cli.grading.record import StudentMarks
+from tmm_cli.grading.untrusted_tables import sentence, shown
+
+
+def gradescope_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+    """A record a student."""
+    for name, student in zip(book.files, book.marks, strict=True):
+        yield f"gradescope/{name}.json", (_gradescope_record(book, student),)
+
+
+def _gradescope_record(book: Gradebook, student: StudentMarks) -> str:
+    tests = [
+        {
+            "name": answer.name,
+            "score": rounded(mark.points),
+            "max_score": rounded(mark.of),
+            "status": "passed" if fitting(mark) else "failed",
+            "output": output(answer, mark, book.task.rules.reveal),
+            "output_format": "text",
+            "visibility": "visible",
+        }
+        for answer, mark in zip(book.answers, student.marks, strict=True)
+    ]
+    told = "\n".join(map(sentence, student.problems))
+    found = {"score": rounded(student.points), "output": told, "output_format": "text", "tests": tests}
+    return json.dumps(found, ensure_ascii=False, allow_nan=False)
+
+
+def junit_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
+    """One file of all students."""
+    yield "junit.xml", _junit_lines(book)
+
+
+def _junit_lines(book: Gradebook) -> Iterator[str]:
+    """classname (the student) and name (the answer) are what a case is known by; texts stand in the elements."""
+    marks = [mark for student in book.marks for mark in student.marks]
+    counted = f'tests="{len(marks)}" failures="{sum(not fitting(mark) for mark in marks)}"'
+    yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites {counted}>\n'
+    yield f"<testsuite name={quoteattr(shown(book.title))} {counted}>\n"
+    for student in book.marks:
+        classname = quoteattr(shown(student.student))
+        for answer, mark in zip(book.answers, student.marks, strict=True):
+            text = escape(output(answer, mark, book.task.rules.reveal))
+            inner = (
+                f"<system-out>{text}</system-out>"
+                if fitting(mark)
+                else (f'<failure message="{mark.state}" type="{mark.state}">{text}</failure>')
+            )
+            yield f"<testcase classname={classname} name={quoteattr(answer.name)}>{inner}</testcase>\n"
+    yield "</testsuite>\n</testsuites>\n"

@@ -1,0 +1,58 @@
+"""Chapters of a few lines: title page with the table of contents, checks of the results, list of literature."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tmm_cli.language import _
+from tmm_cli.note.blocks import Block, Contents, Heading, Items, Source, Sources, Title, paragraph, tabled
+from tmm_cli.note.subject import Subject, rows_of, with_degrees
+from tmm_cli.reports import collect_warnings, walk
+
+
+def write_title_page(subject: Subject) -> Iterable[Block]:
+    """What the block `sheet` of the file gives; lines are left for what it does not."""
+    texts = subject.results.problem.title_texts
+    people = ((_("Student"), texts.student), (_("Group"), texts.group), (_("Teacher"), texts.teacher))
+    above = "\n".join(text for text in (texts.institution, texts.department) if text)
+    yield Title(
+        above,
+        _("Explanatory note to the course project in the theory of mechanisms and machines"),
+        subject.results.problem.title,
+        people,
+        texts.code,
+    )
+    yield Contents()
+
+
+def write_checks(subject: Subject) -> Iterable[Block]:
+    """The table of checks, then what is worth a second look."""
+    results = subject.results
+    tables = list(walk(results, ("checks",)))
+    told = tuple(collect_warnings(results, checked=False))
+    if not tables and not told:
+        return
+    yield Heading(_("Checks"))
+    for table in tables:
+        text = _("The results are checked: table {table} compares each quantity with its limit.")
+        yield from tabled(text, rows_of(subject, table, _("Checks"), "checks"))
+    if told:
+        yield paragraph(_("The following deserves attention:"))
+        yield Items(tuple((with_degrees(text),) for text in told))
+
+
+def write_literature(subject: Subject) -> Iterable[Block]:
+    """A list."""
+    yield Heading(_("Literature"))
+    yield Sources(tuple(Source(key, text) for key, text in _sources()))
+
+
+def _sources() -> Iterable[tuple[str, str]]:
+    yield (
+        "artobolevskii",
+        _("Artobolevskii I. I. Theory of mechanisms and machines. 4th ed. Moscow: Nauka, 1988 (in Russian)."),
+    )
+    yield (
+        "frolov",
+        _("Frolov K. V. (ed.) Theory of mechanisms and machines. Moscow: Vysshaya shkola, 1987 (in Russian)."),
+    )
