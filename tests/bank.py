@@ -9,7 +9,7 @@ from models import PROBLEMS, file_of
 
 from tmm_cli import load, solve
 from tmm_cli.drawing.paper import Drawing
-from tmm_cli.drawing.run import sheets
+from tmm_cli.drawing.run import all_sheets
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.note import Note, note
 
@@ -70,7 +70,7 @@ def solved(name: str) -> Results:
 @cache
 def drawn(name: str) -> dict[str, Drawing]:
     """Its sheets by their stems."""
-    return dict(sheets(solved(name)))
+    return dict(all_sheets(solved(name)))
 
 
 @cache

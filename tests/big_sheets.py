@@ -6,14 +6,14 @@ import functools
 
 from bank import solved
 
-from tmm_cli.drawing.layout import SIZES, chosen, inner, large_sheets
+from tmm_cli.drawing.layout import TITLE_BLOCK_SIZES, choose_positions, frame_corners, large_sheets
 
 COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 
 
 @functools.cache
 def laid_out(name, paper):
-    return dict(large_sheets(chosen(solved(name), every=False), paper))
+    return dict(large_sheets(choose_positions(solved(name), every=False), paper))
 
 
 def drawn(name, paper="A1"):
@@ -27,8 +27,8 @@ def about(name, subject):
 
 def free(sheet):
     """What is within the frame beside the title block, mm²."""
-    low, high = inner(sheet.paper)
-    return (high - low).real * (high - low).imag - SIZES["gost"][0] * SIZES["gost"][1]
+    low, high = frame_corners(sheet.paper)
+    return (high - low).real * (high - low).imag - TITLE_BLOCK_SIZES["gost"][0] * TITLE_BLOCK_SIZES["gost"][1]
 
 
 def used(sheet):

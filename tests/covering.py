@@ -15,7 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper import HALF, UNITS, Area, Circle, Drawing, Line, Text, corners as box_of, drawable, font
+from tmm_cli.drawing.paper import (
+    BASELINE_SHARE,
+    FONT_UNITS,
+    AreaMark,
+    CircleMark,
+    Drawing,
+    LineMark,
+    TextMark,
+    load_font,
+    replace_missing,
+    text_corners as box_of,
+)
 
 TOUCH = 0.05  # mm: less than a thin line is wide
 
@@ -37,7 +48,7 @@ class Covered:
 
 def covered(drawing: Drawing) -> list[Covered]:
     """All pairs of a text and what it covers."""
-    texts = [mark for mark in drawing.marks if isinstance(mark, Text)]
+    texts = [mark for mark in drawing.marks if isinstance(mark, TextMark)]
     if not texts:
         return []
     boxes, found = np.array([ink(text) for text in texts]), []
@@ -61,17 +72,17 @@ def covered(drawing: Drawing) -> list[Covered]:
 
 @cache
 def _reach(letter: str, bold: bool, italic: bool) -> tuple[float, float]:
-    low, high = font(bold, italic).load_char(ord(drawable(letter))).bbox[1::2]
-    return low / 64 / UNITS, high / 64 / UNITS
+    low, high = load_font(bold, italic).load_char(ord(replace_missing(letter))).bbox[1::2]
+    return low / 64 / FONT_UNITS, high / 64 / FONT_UNITS
 
 
-def ink(mark: Text) -> tuple[complex, complex, complex, complex]:
+def ink(mark: TextMark) -> tuple[complex, complex, complex, complex]:
     """Corners of the box that holds the letters themselves: no higher and no lower than they are, mm."""
     reaches = [_reach(letter, mark.bold, mark.italic) for letter in mark.text if letter != " "]
     low, high = min(low for low, __ in reaches), max(high for __, high in reaches)
     first, last, *__ = box_of(mark)
     up = 1j * cmath.rect(mark.size, math.radians(mark.turn))
-    base = (0.5 - HALF) * up
+    base = (0.5 - BASELINE_SHARE) * up
     return first + base + low * up, last + base + low * up, last + base + high * up, first + base + high * up
 
 
@@ -101,9 +112,9 @@ def _inked(drawing: Drawing) -> list[tuple[str, Any, Any, Any]]:
     segments: list[tuple[int, complex, complex, float]] = []
     heads: list[tuple[int, tuple[complex, ...]]] = []
     for number, mark in enumerate(drawing.marks):
-        if isinstance(mark, Line):
+        if isinstance(mark, LineMark):
             segments += [(number, a, b, mark.width) for a, b in pairwise(mark.places)]
-        elif isinstance(mark, Area):
+        elif isinstance(mark, AreaMark):
             if mark.edge is not None:
                 around = pairwise((*mark.corners, mark.corners[0]))
                 segments += [(number, a, b, mark.width) for a, b in around]
@@ -121,7 +132,7 @@ def _inked(drawing: Drawing) -> list[tuple[str, Any, Any, Any]]:
 
 def _rims(drawing: Drawing, boxes: Any) -> list[tuple[int, int, float]]:
     """Boxes that meet the rims of circles: box, number of the mark, depth."""
-    circles = [(n, m.centre, m.radius + m.width / 2) for n, m in enumerate(drawing.marks) if isinstance(m, Circle)]
+    circles = [(n, m.centre, m.radius + m.width / 2) for n, m in enumerate(drawing.marks) if isinstance(m, CircleMark)]
     if not circles:
         return []
     numbers, centres, radii = (np.array(part) for part in zip(*circles, strict=True))
@@ -138,7 +149,7 @@ def _hidden(drawing: Drawing, boxes: Any) -> Any:
     """Whether a mark is hidden from a text, by a filled field about the text that was drawn over the mark."""
     hidden = np.zeros((len(boxes), len(drawing.marks)), bool)
     for number, mark in enumerate(drawing.marks):
-        if isinstance(mark, Area):
+        if isinstance(mark, AreaMark):
             corners = np.array(mark.corners)
             sides = np.roll(corners, -1) - corners
             off = (sides.conj()[:, None, None] * (boxes[None] - corners[:, None, None])).imag

@@ -43,7 +43,7 @@ from pydantic import BaseModel
 
 from tmm_cli import solve
 from tmm_cli.cli import application
-from tmm_cli.drawing.formats import here
+from tmm_cli.drawing.formats import run_in_process
 from tmm_cli.mechanics.accuracy import at, exact
 from tmm_cli.mechanics.numerics import array, exactly, rounded
 from tmm_cli.mechanics.quantities import ANGLE
@@ -489,7 +489,7 @@ def _command(*words: str) -> int:
     """Call a command in this process, drawing in it too; its exit code. What it raises else is a fault."""
     with limited("grade" if words[0] == "grade" else "run"), ExitStack() as stack:
         for module in ("tmm_cli.cli.sheets", "tmm_cli.cli.pictures"):
-            stack.enter_context(mock.patch(f"{module}.by_all_cores", lambda jobs, quiet=False: here(jobs)))
+            stack.enter_context(mock.patch(f"{module}.by_all_cores", lambda jobs, quiet=False: run_in_process(jobs)))
         stack.enter_context(redirect_stdout(StringIO()))
         stack.enter_context(redirect_stderr(StringIO()))
         try:

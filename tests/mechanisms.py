@@ -17,7 +17,7 @@ import yaml
 
 from tmm_cli import load, solve
 from tmm_cli.drawing.formats import write_svg
-from tmm_cli.drawing.run import sheets
+from tmm_cli.drawing.run import all_sheets
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 ROWS = 33
@@ -128,7 +128,7 @@ def drawn(file: Path) -> bytes | None:
     """The scheme of a file with dimensions."""
     if "structure" in read(file):
         return None
-    return write_svg(dict(sheets(solve(load(str(file)), "structure")))["structure"])
+    return write_svg(dict(all_sheets(solve(load(str(file)), "structure")))["structure"])
 
 
 def main() -> None:

@@ -9,9 +9,9 @@ from test_commands import SHAPER
 
 from tmm_cli import solve
 from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.paper import Ground, Label, Sheet, extent, place
-from tmm_cli.drawing.run import files, remarks, sheets
-from tmm_cli.drawing.sheets import all_positions, detailed, draw_motion_plans, position
+from tmm_cli.drawing.paper import DrawingSheet, Label, OccupiedArea, place_labels, text_extent
+from tmm_cli.drawing.run import all_sheets, position_remarks, sheet_files
+from tmm_cli.drawing.sheets import detailed_drawings, draw_all_positions, draw_motion_plans, draw_position
 from tmm_cli.problem import build_problem, read_text
 
 
@@ -29,18 +29,18 @@ def plain(drawing):
 
 
 def test_a_plotted_length_measures_what_the_scale_says():
-    sheet = Sheet("title", "caption", [0j, 0.65 + 0.27j])
+    sheet = DrawingSheet("title", "caption", [0j, 0.65 + 0.27j])
     assert abs(sheet.on(0.5 + 0j) - sheet.on(0j)) * sheet.mu == pytest.approx(0.5)
     assert all(10 < c < 290 for p in (0j, 0.65 + 0.27j) for c in (sheet.on(p).real, sheet.on(p).imag))
 
 
 def test_labels_do_not_cover_each_other_or_lines():
-    ground = Ground(0j, 200 + 200j)
+    ground = OccupiedArea(0j, 200 + 200j)
     ground.line(50 + 100j, 150 + 100j)
     labels = [Label(f"A{k}", 100 + 100j, 10, "k") for k in range(8)]
-    places = [placed.middle for placed in place(ground, labels)]
+    places = [placed.middle for placed in place_labels(ground, labels)]
     for k, (at, label) in enumerate(zip(places, labels, strict=True)):
-        width, height = extent(label.text, label.size)
+        width, height = text_extent(label.text, label.size)
         assert abs(at.imag - 100) > height / 2  # off the line
         for other in places[:k]:
             assert abs(at.real - other.real) > width or abs(at.imag - other.imag) > height
@@ -61,7 +61,7 @@ def test_a_centre_of_mass_that_is_a_point_or_has_the_name_of_one_is_labelled_onc
         ("points: [C, D], length: CD", f"points: [C, D], length: CD, also: {{{name}: [260, 0]}}"),
         ("inertia: 1.1, centre: {on: CD, at: 0.5}", f"inertia: 1.1, centre: {centre}"),
     )
-    ((__, sheet),) = position(detailed(solve(problem))[0])
+    ((__, sheet),) = draw_position(detailed_drawings(solve(problem))[0])
     found = [text for text in sheet.texts() if {"S3", "T"} & set(text.split(", "))]
     assert sorted(found) == labels
 
@@ -69,23 +69,23 @@ def test_a_centre_of_mass_that_is_a_point_or_has_the_name_of_one_is_labelled_onc
 @pytest.mark.parametrize("unit", ["um", "mm", "km"])
 def test_any_size_is_drawn(unit):
     results = solve(shaper(("length: mm", f"length: {unit}")))
-    ram = plain(dict(all_positions(results))["mechanism"])
+    ram = plain(dict(draw_all_positions(results))["mechanism"])
     assert {"O", "A, S2", "C", "D", "E"} <= ram  # every named point, a centre of mass in one of them with it
     assert {"μ", "l"} <= ram and any(text.startswith(" = ") and text.endswith(" m/mm") for text in ram)
-    (here,) = detailed(results)
+    (here,) = detailed_drawings(results)
     assert {"p", "p′"} & plain(dict(draw_motion_plans(here))["velocity-03"])
 
 
 def test_kinematics_alone_has_no_sheets_of_forces():
     results = solve(shaper(), "kinematics")
-    stems = [stem for stem, _ in sheets(results)]
+    stems = [stem for stem, _ in all_sheets(results)]
     cycle = ["mechanism", "diagrams", "pressure"]
     assert stems == ["structure", "groups", *cycle, "position-03", "velocity-03", "acceleration-03"]
 
 
 def test_a_title_is_never_read_as_mathematics_and_is_cut():
     results = solve(shaper(("Crank shaper, variant 7", "'$\\frac{1}{0}$ " + "x" * 150 + "'")), "kinematics")
-    ((_, drawing),) = all_positions(results)
+    ((_, drawing),) = draw_all_positions(results)
     assert all(FORMATS[kind](drawing) for kind in FORMATS)
 
 
@@ -93,7 +93,7 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
     text = SHAPER.read_text(encoding="utf-8")
     text = text[: text.index("masses:")] + text[text.index("output:") :]
     still = build_problem(read_text(text.replace("speed: n1", "speed: 0"), "still.yaml"))
-    drawn = dict(sheets(solve(still)))
+    drawn = dict(all_sheets(solve(still)))
     assert "energy" not in drawn
     assert "everything is at rest" in plain(drawn["velocity-03"])
 
@@ -102,7 +102,7 @@ def test_nothing_moves_and_nothing_weighs_is_drawn_too():
 def test_every_point_of_a_moving_link_is_named(name):
     results = moved(name)
     moving = {point for link in results.linkage.moving for point in results.linkage.links[link].points}
-    labels = plain(dict(all_positions(results))["mechanism"])
+    labels = plain(dict(draw_all_positions(results))["mechanism"])
     assert moving <= {name for label in labels for name in label.split(", ")}  # with a centre of mass that lies there
 
 
@@ -110,7 +110,7 @@ BEGINS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF-", "dxf": b"  0\nSEC
 
 
 def test_a_run_writes_pictures_of_every_sheet():
-    found = dict(files(solved("tangent")))
+    found = dict(sheet_files(solved("tangent")))
     assert {"structure", "mechanism", "diagrams", "reactions", "energy"} <= set(drawn("tangent"))
     assert list(found) == [f"{stem}.{kind}" for stem in drawn("tangent") for kind in ("png", "svg")]
     assert all(data.startswith(BEGINS[name[-3:]]) for name, data in found.items())
@@ -123,15 +123,15 @@ def test_every_sheet_is_written_in_every_other_format(kind):
 
 
 def test_detailed_positions_that_cannot_be_computed_have_no_sheets():
-    stems = [stem for stem, _ in sheets(solve(build_problem(read_text(PARALLELOGRAM, "x.yaml"))))]
+    stems = [stem for stem, _ in all_sheets(solve(build_problem(read_text(PARALLELOGRAM, "x.yaml"))))]
     assert "velocity-01" in stems and "velocity-00" not in stems
 
 
 def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_drawn_in_full_and_named():
     results = solve(shaper((", detail: [3]", "")))
     moments = abs(results.reactions.balance.moment)
-    assert [here.k for here in detailed(results)] == [moments.argmax()]
-    assert list(remarks(results)) == [
+    assert [here.k for here in detailed_drawings(results)] == [moments.argmax()]
+    assert list(position_remarks(results)) == [
         f"note: no positions.detail in the file, drawn in full is position {moments.argmax()}, of the largest "
         f"balancing moment: {moments.max():.4g} N*m"
     ]
@@ -139,12 +139,12 @@ def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_
 
 def test_positions_that_the_file_names_are_drawn_in_full_and_nothing_is_said():
     results = solve(shaper(("detail: [3]", "detail: [3, 5]")))
-    assert [here.k for here in detailed(results)] == [3, 5]
-    assert not list(remarks(results))
+    assert [here.k for here in detailed_drawings(results)] == [3, 5]
+    assert not list(position_remarks(results))
 
 
 def test_where_nothing_acts_the_position_after_the_first_is_drawn_in_full():
     text = SHAPER.read_text(encoding="utf-8")
     text = (text[: text.index("masses:")] + text[text.index("output:") :]).replace(", detail: [3]", "")
-    (here,) = detailed(solve(build_problem(read_text(text, "light.yaml"))))
+    (here,) = detailed_drawings(solve(build_problem(read_text(text, "light.yaml"))))
     assert here.k == 1

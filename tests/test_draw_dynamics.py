@@ -17,9 +17,17 @@ from scipy.integrate import cumulative_trapezoid
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.layout import CONTENTS, chosen
-from tmm_cli.drawing.paper import DARK, INERTIA, LOAD, REACTION, Circle, Line, Text
-from tmm_cli.drawing.sheets import draw_law_of_motion, draw_single_run, stretches_on_paper
+from tmm_cli.drawing.layout import CONTENTS, choose_positions
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    INERTIA_COLOUR,
+    LOAD_COLOUR,
+    REACTION_COLOUR,
+    CircleMark,
+    LineMark,
+    TextMark,
+)
+from tmm_cli.drawing.sheets import draw_law_of_motion, draw_single_run, visible_stretches
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.dynamics import Linear, Rim, SteadyTask
 from tmm_cli.mechanics.linkage import Load
@@ -51,12 +59,12 @@ def drawn(name, kind):
 
 def curve(sheet, colour, style="-"):
     """The line of this look that rises most, mm; one with corners rather than a straight one."""
-    lines = [m for m in sheet.marks if isinstance(m, Line) and m.colour == colour and m.style == style]
+    lines = [m for m in sheet.marks if isinstance(m, LineMark) and m.colour == colour and m.style == style]
     return np.array(max(lines, key=lambda line: (len(line.places) > 2, np.ptp(np.imag(line.places)))).places)
 
 
 def written(sheet):
-    return "\n".join(mark.text for mark in sheet.marks if isinstance(mark, Text))
+    return "\n".join(mark.text for mark in sheet.marks if isinstance(mark, TextMark))
 
 
 CASES = pytest.mark.parametrize("case", TASKS, ids="-".join)
@@ -65,12 +73,14 @@ CASES = pytest.mark.parametrize("case", TASKS, ids="-".join)
 @CASES
 def test_tangents_touch_the_diagram_from_above_and_from_below(case):
     sheet = drawn(*case)["energy-mass"]
-    diagram = curve(sheet, DARK)
-    for colour, side in ((LOAD, 1), (INERTIA, -1)):
+    diagram = curve(sheet, DARK_COLOUR)
+    for colour, side in ((LOAD_COLOUR, 1), (INERTIA_COLOUR, -1)):
         start, *__, end = curve(sheet, colour, "--")
         above = side * ((start - diagram) * np.conj(1j * (end - start) / abs(end - start))).real
         assert above.min() == pytest.approx(0, abs=THIN)
-        point = next(m.centre for m in sheet.marks if isinstance(m, Circle) and m.edge == colour and m.face == "white")
+        point = next(
+            m.centre for m in sheet.marks if isinstance(m, CircleMark) and m.edge == colour and m.face == "white"
+        )
         assert np.abs(diagram - point).min() < 0.5 + THIN
         assert ((point - start) * np.conj(1j * (end - start) / abs(end - start))).real == pytest.approx(0, abs=THIN)
 
@@ -80,7 +90,7 @@ def test_slopes_of_tangents_are_half_of_the_squares_of_the_speeds_at_the_printed
     sheet, steady = drawn(*case)["energy-mass"], running(*case).steady.steady
     energy, inertia = (float(re.search(rf" = (\S+) {unit}/mm", written(sheet))[1]) for unit in ("J", r"\(kg·m²\)"))
     printed = [float(text) for text in re.findall(r" = (\S+)°", written(sheet))]
-    for colour, speed, angle in zip((LOAD, INERTIA), reversed(steady.speeds), printed, strict=True):
+    for colour, speed, angle in zip((LOAD_COLOUR, INERTIA_COLOUR), reversed(steady.speeds), printed, strict=True):
         start, *__, end = curve(sheet, colour, "--")
         slope = (end - start).imag / (end - start).real
         assert slope * energy / inertia == pytest.approx(speed**2 / 2, rel=1e-9)
@@ -91,13 +101,13 @@ def test_slopes_of_tangents_are_half_of_the_squares_of_the_speeds_at_the_printed
 def test_the_segment_between_them_tells_the_flywheel(case):
     sheet, steady = drawn(*case)["energy-mass"], running(*case).steady.steady
     text = written(sheet)
-    a, b = (curve(sheet, colour, "--")[0] for colour in (LOAD, INERTIA))
+    a, b = (curve(sheet, colour, "--")[0] for colour in (LOAD_COLOUR, INERTIA_COLOUR))
     assert float(re.search(r"ab = (\S+) mm", text)[1]) == pytest.approx(abs(a - b), rel=1e-3, abs=1e-6)
     if not steady.law.flywheel:
         assert "kg·m²" not in text.partition("ab")[2]
         return
     mu = float(re.search(r" = (\S+) \(kg·m²\)/mm", text)[1])
-    ways = [np.diff(curve(sheet, colour, "--"))[0] for colour in (LOAD, INERTIA)]
+    ways = [np.diff(curve(sheet, colour, "--"))[0] for colour in (LOAD_COLOUR, INERTIA_COLOUR)]
     upper, lower = (way.imag / way.real for way in ways)
     begins = float((re.search(r" − ([\d.e-]+)$", text, re.M) or [0, 0])[1])
     found = abs(a - b) * mu / (upper - lower) - begins
@@ -108,7 +118,7 @@ def test_the_segment_between_them_tells_the_flywheel(case):
 @CASES
 def test_all_moments_together_do_no_work_over_the_cycle(case):
     sheet = drawn(*case)["law-moments"]
-    work = curve(sheet, INERTIA, "-.")
+    work = curve(sheet, INERTIA_COLOUR, "-.")
     assert work[0].imag == pytest.approx(work[-1].imag, abs=THIN)
     assert np.ptp(work.imag) > 1
 
@@ -123,15 +133,15 @@ def test_a_load_that_jumps_is_drawn_as_a_jump():
     brake = Load("brake", "1", moment=-80.0, when="working stroke")
     loaded = replace(shaper, linkage=replace(shaper.linkage, loads=(*shaper.linkage.loads, brake)), extended=None)
     sheet = dict(draw_law_of_motion(solve(replace(loaded, dynamics=SteadyTask(8.6, 1 / 30)))))["law-moments"]
-    steps = [np.diff(line.places) for line in sheet.marks if isinstance(line, Line) and len(line.places) > 20]
+    steps = [np.diff(line.places) for line in sheet.marks if isinstance(line, LineMark) and len(line.places) > 20]
     steep = [step for every in steps for step in every if abs(step.real) < 0.01 and abs(step.imag) > 1]
-    rings = [m for m in sheet.marks if isinstance(m, Circle) and m.face == "white"]
+    rings = [m for m in sheet.marks if isinstance(m, CircleMark) and m.face == "white"]
     assert not steep and len(rings) > 2
 
 
 def test_a_file_without_the_block_has_none_of_it():
     assert not [stem for stem in sheets_of("sine") if stem.startswith(("law", "energy-mass"))]
-    choice = chosen(solved("sine"), every=False)
+    choice = choose_positions(solved("sine"), every=False)
     assert not [found for source in CONTENTS if source.sheet == 3 for found in source.drawings(choice)]
     assert "Law of motion" not in html(note(solved("sine"), drawn=False)).decode()
 
@@ -151,7 +161,7 @@ def test_a_single_run_is_drawn_from_its_beginning_to_its_end():
     run = results.single.run
     sheet = dict(draw_single_run(results))["single-run"]
     assert not covered(sheet) and not list(draw_law_of_motion(results))
-    energy = curve(sheet, REACTION, ":")
+    energy = curve(sheet, REACTION_COLOUR, ":")
     mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
     assert (energy[-1] - energy[0]).imag * mu == pytest.approx(run.kinetic[-1] - run.kinetic[0], abs=mu * THIN)
     page = html(note(results, drawn=False)).decode()
@@ -190,7 +200,7 @@ def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_
     places = np.linspace(0, 2 * np.pi, 720_001)
     work = cumulative_trapezoid(np.interp(places, phi, torque) - 875.0, places, initial=0.0)  # 875 = (2000 + 1500) / 4
     sheet = dict(draw_law_of_motion(results))["energy-mass"]
-    ends = [curve(sheet, colour, "--")[0] for colour in (LOAD, INERTIA)]
+    ends = [curve(sheet, colour, "--")[0] for colour in (LOAD_COLOUR, INERTIA_COLOUR)]
     mu = float(re.search(r" = (\S+) J/mm", written(sheet))[1])
     assert abs(ends[0] - ends[1]) * mu == pytest.approx(np.ptp(work), rel=1e-6)
     assert (ends[0] - ends[1]).real == 0
@@ -204,10 +214,10 @@ def test_a_flywheel_of_links_without_inertia_is_found_on_the_axis_of_energy(tmp_
 def test_panels_that_paper_does_not_show_apart_are_one_stretch_or_a_jump():
     """Of a way of 2, 0.001 is the finest: four panels of 0.0002 are a jump, six of 0.0005 a stretch."""
     jump, slope = 0.5 + 0.0002 * np.arange(5), 1.5 + 0.0005 * np.arange(7)
-    lows, highs = stretches_on_paper(np.concatenate([[0, 0.25], jump, [1.0], slope, [2.0]]))
+    lows, highs = visible_stretches(np.concatenate([[0, 0.25], jump, [1.0], slope, [2.0]]))
     assert lows == pytest.approx([0, 0.25, 0.5008, 1.0, 1.5, 1.503])
     assert highs == pytest.approx([0.25, 0.5, 1.0, 1.5, 1.503, 2.0])
-    assert [len(part) for part in stretches_on_paper(np.linspace(0, 1, 10_001))] == [1, 1]
+    assert [len(part) for part in visible_stretches(np.linspace(0, 1, 10_001))] == [1, 1]
 
 
 def test_rows_a_thousandth_of_a_millimetre_apart_are_drawn_as_a_jump(tmp_path):
@@ -215,8 +225,8 @@ def test_rows_a_thousandth_of_a_millimetre_apart_are_drawn_as_a_jump(tmp_path):
     results = solve(load(DATA / "steep-table.yaml"))
     assert len(results.steady.steady.law.energy.edges) > 1000
     sheet = dict(draw_law_of_motion(results))["law-moments"]
-    assert max(len(mark.places) for mark in sheet.marks if isinstance(mark, Line)) < 2000
-    jumps = [mark for mark in sheet.marks if isinstance(mark, Circle) and mark.face == "white"]
+    assert max(len(mark.places) for mark in sheet.marks if isinstance(mark, LineMark)) < 2000
+    jumps = [mark for mark in sheet.marks if isinstance(mark, CircleMark) and mark.face == "white"]
     assert 0 < len(jumps) < 20
     for command in ("run", "note", "sheets"):
         assert tmm(command, DATA / "steep-table.yaml", "-o", tmp_path).returncode == 0

@@ -9,20 +9,30 @@ import pytest
 from bank import solved
 from test_draw import plain
 
-from tmm_cli.drawing.paper import DARK, INERTIA, LOAD, REACTION, Area, Line, Sheet, plain as line, wrapped
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    INERTIA_COLOUR,
+    LOAD_COLOUR,
+    REACTION_COLOUR,
+    AreaMark,
+    DrawingSheet,
+    LineMark,
+    plain_text as line,
+    wrap_symbols,
+)
 from tmm_cli.drawing.sheets import (
-    ARM,
-    Beneath,
-    Forces,
-    Table,
-    detailed,
+    ARM_COLOUR,
+    CaptionTable,
+    DrawingCaption,
+    ForceArrows,
+    detailed_drawings,
+    draw_force_plans,
     draw_group_loads,
-    figure,
+    equation_lines,
     force_plan_rows,
-    forces,
-    lanes,
-    table_of_forces,
-    written,
+    forces_table,
+    format_figures,
+    lane_offsets,
 )
 from tmm_cli.mechanics.forces import Acting, Symbol, loaded_parts
 from tmm_cli.mechanics.plans import NamedVector, force_plans
@@ -31,7 +41,7 @@ from tmm_cli.note import fixed, rounded
 
 def sheets_of(name, kind):
     """Sheets of one kind of the first position in detail, by their stems."""
-    return dict(kind(detailed(solved(name))[0]))
+    return dict(kind(detailed_drawings(solved(name))[0]))
 
 
 @pytest.fixture(scope="module")
@@ -42,9 +52,9 @@ def loaded():
 @pytest.fixture(scope="module")
 def equations():
     """Of the shaper's parts by their links, as they are written."""
-    (here,) = detailed(solved("shaper"))
+    (here,) = detailed_drawings(solved("shaper"))
     parts = loaded_parts(here.motion, here.results.reactions, here.k)
-    return {part.links: [line(words) for e in part.equations for words in written(e)] for part in parts}
+    return {part.links: [line(words) for e in part.equations for words in equation_lines(e)] for part in parts}
 
 
 def test_each_group_and_the_crank_have_a_sheet_under_their_loads(loaded):
@@ -52,7 +62,7 @@ def test_each_group_and_the_crank_have_a_sheet_under_their_loads(loaded):
 
 
 def test_loads_and_parts_of_reactions_are_drawn_as_many_as_act(loaded):
-    arrows = [mark for mark in loaded["group-loads-03-links-4-5"].marks if isinstance(mark, Area) and is_head(mark)]
+    arrows = [mark for mark in loaded["group-loads-03-links-4-5"].marks if isinstance(mark, AreaMark) and is_head(mark)]
     assert len(arrows) >= len(["G4", "U4", "M4", "G5", "U5", "F", "R34n", "R34t", "R05"])
     assert {"R", "34", "05", "τ", "n", "F"} <= plain(loaded["group-loads-03-links-4-5"])
     assert {"R", "01", "21", "M", "b", "G", "1"} <= plain(loaded["group-loads-03-link-1"])
@@ -60,7 +70,7 @@ def test_loads_and_parts_of_reactions_are_drawn_as_many_as_act(loaded):
 
 def is_head(area):
     """Of an arrow of a force."""
-    return len(area.corners) == 3 and area.face in {LOAD, INERTIA, REACTION}
+    return len(area.corners) == 3 and area.face in {LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR}
 
 
 def test_equations_of_moments_stand_beneath_in_letters_then_with_numbers(loaded, equations):
@@ -81,7 +91,7 @@ def test_arms_are_listed_with_their_length_and_as_they_measure_on_paper(loaded):
     lengths = [
         abs(mark.places[0] - mark.places[-1])
         for mark in loaded["group-loads-03-links-4-5"].marks
-        if isinstance(mark, Line) and mark.colour == ARM and len(mark.places) == 2
+        if isinstance(mark, LineMark) and mark.colour == ARM_COLOUR and len(mark.places) == 2
     ]
     assert min(abs(length - 0.228613 / scale) for length in lengths) < 0.01  # drawn as long as the scale says
 
@@ -93,15 +103,15 @@ def test_groups_of_every_class_are_drawn(name):
 
 
 def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
-    table = Table(("name", "N"), [(f"R{n}", "100") for n in range(30)])
-    one, wide, narrow = (left(Beneath((), (table,)), across) for across in (20.0, 270.0, 60.0))
+    table = CaptionTable(("name", "N"), [(f"R{n}", "100") for n in range(30)])
+    one, wide, narrow = (left(DrawingCaption((), (table,)), across) for across in (20.0, 270.0, 60.0))
     assert one < narrow < wide
-    assert left(Beneath(("x " * 200,)), 100.0) < left(Beneath(("x ",)), 100.0) - 4
+    assert left(DrawingCaption(("x " * 200,)), 100.0) < left(DrawingCaption(("x ",)), 100.0) - 4
 
 
 def test_tables_aside_leave_all_of_the_height():
-    table = Table(("name", "N"), [(f"R{n}", "100") for n in range(10)])
-    below, aside = (Beneath((), (table,), aside=aside).left(0j, 100 + 100j) for aside in (False, True))
+    table = CaptionTable(("name", "N"), [(f"R{n}", "100") for n in range(10)])
+    below, aside = (DrawingCaption((), (table,), aside=aside).left(0j, 100 + 100j) for aside in (False, True))
     assert aside.imag > below.imag and aside.real < below.real == 100
 
 
@@ -112,7 +122,7 @@ def left(written, across):
 
 @pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])
 def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
-    here = detailed(solved(name))[0]
+    here = detailed_drawings(solved(name))[0]
     for plan in force_plans(here.results.reactions, here.k, here.motion):
         rows = [row.cells for row in force_plan_rows(plan, 7.5) if not row.head]
         vectors = [*plan.plan.vectors, *plan.full]
@@ -127,7 +137,7 @@ def test_tables_of_force_plans_list_every_vector_to_the_digits_they_show(name):
 
 
 def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
-    here = detailed(solved("shaper"))[0]
+    here = detailed_drawings(solved("shaper"))[0]
     reactions = here.results.reactions
     found = {v.name: v.value for plan in force_plans(reactions, here.k) for v in plan.full}
     wanted = {f"R{r.by}{r.on}": complex(r.force[here.k]) for r in reactions.all if r.tangential is not None}
@@ -137,7 +147,7 @@ def test_reactions_are_the_sums_of_their_parts_and_equal_what_was_computed():
 
 
 def test_leads_of_a_group_of_class_iii_are_parted_as_those_of_dyads_are():
-    here = detailed(solved("press-class-iii"))[0]
+    here = detailed_drawings(solved("press-class-iii"))[0]
     reactions = here.results.reactions
     plan = next(p for p in force_plans(reactions, here.k, here.motion) if len(p.links) == 4)
     assert {"R₁₂ⁿ", "R₁₂ᵗ", "R₀₆ⁿ", "R₀₆ᵗ", "R₀₇ⁿ", "R₀₇ᵗ"} <= {v.name for v in plan.plan.vectors}
@@ -156,15 +166,15 @@ def test_vectors_of_a_polygon_that_is_a_line_are_drawn_side_by_side():
         [NamedVector("", 0j, 300j, "load")],
         [NamedVector("", 300j - 100j * n, 200j - 100j * n, "load") for n in range(3)],
     )
-    aside = lanes([*up, *down], 300.0)
+    aside = lane_offsets([*up, *down], 300.0)
     assert aside[0] == 0 and len({abs(off) for off in aside[1:]}) == 1 and abs(aside[1]) > 3
     square = [0j, 1 + 0j, 1 + 1j, 1j, 0j]
-    assert lanes([NamedVector("", a, b, "load") for a, b in pairwise(square)], 1.0) == [0, 0, 0, 0]
+    assert lane_offsets([NamedVector("", a, b, "load") for a, b in pairwise(square)], 1.0) == [0, 0, 0, 0]
 
 
 def test_engine_s_forces_on_one_line_are_spread_apart():
-    for stem, sheet in sheets_of("engine-four", forces).items():
-        shafts = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "vectors" and m.style == "-"]
+    for stem, sheet in sheets_of("engine-four", draw_force_plans).items():
+        shafts = [m.places for m in sheet.marks if isinstance(m, LineMark) and m.layer == "vectors" and m.style == "-"]
         for n, one in enumerate(shafts):
             for other in shafts[:n]:
                 assert not lie_together(one, other), stem
@@ -184,31 +194,35 @@ def test_couples_are_listed_by_size_and_sense_as_the_equations_take_them():
         Acting(Symbol("M", "2"), "inertia", "2", 0j, 0j, -0.25),
         Acting(Symbol("G", "3"), "load", "3", 0j, -10j),
     )
-    cells = [row[1:] for row in table_of_forces([forward, backward, force]).rows]
+    cells = [row[1:] for row in forces_table([forward, backward, force]).rows]
     assert cells == [("0.5 N·m", "ccw"), ("0.25 N·m", "cw"), ("10 N", "270.0°")]
 
 
 @pytest.mark.parametrize("ways", [(1, -1, 1), (-1, 1, -1), (1, 1, -1), (1, 1, 1)])
 def test_forces_on_one_line_do_not_hide_one_another(ways):
-    sheet = Sheet("T", "S", [0j, 1 + 0j])
-    sheet.line([sheet.on(0j), sheet.on(0j) - 40j], DARK)  # a link: what goes down begins there at some cost
-    forces = Forces(sheet)
+    sheet = DrawingSheet("T", "S", [0j, 1 + 0j])
+    sheet.line([sheet.on(0j), sheet.on(0j) - 40j], DARK_COLOUR)  # a link: what goes down begins there at some cost
+    forces = ForceArrows(sheet)
     forces.draw(Acting(Symbol("F", str(k)), "load", "1", 0j, 1j * way) for k, way in enumerate(ways))
-    tips = [sum(mark.corners) / 3 for mark in sheet.marks if isinstance(mark, Area) and is_head(mark)]
+    tips = [sum(mark.corners) / 3 for mark in sheet.marks if isinstance(mark, AreaMark) and is_head(mark)]
     assert len(tips) == 3 and all(abs(one - other) > 5 for one, other in combinations(tips, 2))
 
 
 def test_a_unit_is_not_left_alone_on_a_line():
     text = "M = 11.77·0.02707 + 6.867·0.06766 = 125.8 N·m"
     for most in range(20, 100):
-        *__, last = wrapped(text, 3.0, float(most))
+        *__, last = wrap_symbols(text, 3.0, float(most))
         assert len(line(last).split()) > 1
 
 
 def test_a_half_is_rounded_up_on_whichever_side_of_it_binary_numbers_are():
-    assert figure(1.5 * 9.81) == figure(14.715000000000002) == "14.72"
+    assert format_figures(1.5 * 9.81) == format_figures(14.715000000000002) == "14.72"
     assert fixed(35 * 9.81, 4) == fixed(343.35000000000002, 4) == "343.4" and rounded(31384.6, 4) == 31385
 
 
 def test_small_numbers_are_written_out():
-    assert figure(9.447e-05) == "0.00009447" and figure(12345.6) == "12346" and figure(4e-9) == "4e-09"
+    assert (
+        format_figures(9.447e-05) == "0.00009447"
+        and format_figures(12345.6) == "12346"
+        and format_figures(4e-9) == "4e-09"
+    )

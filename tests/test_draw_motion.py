@@ -8,8 +8,8 @@ from functools import cache
 import pytest
 from bank import solved
 
-from tmm_cli.drawing.paper import Circle, Text, corners, plain
-from tmm_cli.drawing.sheets import detailed, draw_motion_plans, motion_plan_rows, sorts
+from tmm_cli.drawing.paper import CircleMark, TextMark, plain_text, text_corners
+from tmm_cli.drawing.sheets import detailed_drawings, draw_motion_plans, motion_plan_kinds, motion_plan_rows
 
 NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-lever", "planetary-dwell-press")
 
@@ -18,8 +18,8 @@ NAMES = ("shaper", "course-3", "six-bar", "press-class-iii", "excavator", "cam-l
 def plans(name):
     """The first position in detail, and its two sheets with what they are of."""
     results = solved(name)
-    here = detailed(results)[0]
-    return here, [(sort, sheet) for sort, (__, sheet) in zip(sorts(), draw_motion_plans(here), strict=True)]
+    here = detailed_drawings(results)[0]
+    return here, [(sort, sheet) for sort, (__, sheet) in zip(motion_plan_kinds(), draw_motion_plans(here), strict=True)]
 
 
 def scale(sheet):
@@ -33,8 +33,8 @@ def test_points_of_a_plan_are_as_far_from_the_pole_as_the_scale_says(name):
     here, drawn = plans(name)
     for sort, sheet in drawn:
         mu, plan = scale(sheet), sort.plan(here.motion, here.k)
-        spots = [mark.centre for mark in sheet.marks if isinstance(mark, Circle)]
-        (pole,) = [mark.centre for mark in sheet.marks if isinstance(mark, Circle) and mark.radius == 0.9]
+        spots = [mark.centre for mark in sheet.marks if isinstance(mark, CircleMark)]
+        (pole,) = [mark.centre for mark in sheet.marks if isinstance(mark, CircleMark) and mark.radius == 0.9]
         for end in plan.ends.values():
             # letters that coincide on paper have one spot
             assert min(abs(pole + end / mu - spot) for spot in spots) < 0.5
@@ -49,7 +49,7 @@ def test_the_table_has_the_results_to_the_digits_it_shows(name):
     for sort, sheet in drawn:
         mu = scale(sheet)
         rows = motion_plan_rows(here, sort, sort.plan(motion, k), mu)
-        found = {sign: row.cells for row in rows if not row.head for sign in plain(row.cells[0]).split(" = ")}
+        found = {sign: row.cells for row in rows if not row.head for sign in plain_text(row.cells[0]).split(" = ")}
         for point in motion.linkage.moving_points:
             value = abs(getattr(motion.named(point), sort.letter)[k])
             _, segment, length, shown = found[f"{sort.letter}_{point}"]
@@ -68,12 +68,12 @@ def test_the_table_has_the_results_to_the_digits_it_shows(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_block_with_the_table_covers_nothing_of_the_plan(name):
     for __, sheet in plans(name)[1]:
-        (scales,) = [mark for mark in sheet.marks if isinstance(mark, Text) and mark.text == "μ"]
-        left, top = corners(scales)[0].real, corners(scales)[2].imag
-        cells = [m for m in sheet.marks if isinstance(m, Text) and m.size == pytest.approx(8 * 25.4 / 72)]
-        right, low = max(corners(m)[1].real for m in cells), min(corners(m)[0].imag for m in cells)
+        (scales,) = [mark for mark in sheet.marks if isinstance(mark, TextMark) and mark.text == "μ"]
+        left, top = text_corners(scales)[0].real, text_corners(scales)[2].imag
+        cells = [m for m in sheet.marks if isinstance(m, TextMark) and m.size == pytest.approx(8 * 25.4 / 72)]
+        right, low = max(text_corners(m)[1].real for m in cells), min(text_corners(m)[0].imag for m in cells)
         for mark in sheet.marks:
-            if isinstance(mark, Circle):
+            if isinstance(mark, CircleMark):
                 inside = left < mark.centre.real < right and low < mark.centre.imag < top
                 assert not inside
 
@@ -90,7 +90,7 @@ def test_a_vector_too_short_to_be_seen_is_in_the_table_with_its_value():
     here, drawn = plans("shaper")
     sort, sheet = drawn[1]
     rows = {
-        plain(row.cells[0]): row.cells
+        plain_text(row.cells[0]): row.cells
         for row in motion_plan_rows(here, sort, sort.plan(here.motion, here.k), scale(sheet))
     }
     assert float(rows["a^n_ED"][2]) < 4 and float(rows["a^n_ED"][3]) == pytest.approx(

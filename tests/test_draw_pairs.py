@@ -10,9 +10,18 @@ import pytest
 from higher import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.drawing.paper import Line, Sheet
-from tmm_cli.drawing.run import sheets
-from tmm_cli.drawing.symbols import AROUND, BARREL, Cylinder, Scene, contact, extent, outline, springs
+from tmm_cli.drawing.paper import DrawingSheet, LineMark
+from tmm_cli.drawing.run import all_sheets
+from tmm_cli.drawing.symbols import (
+    BARREL_HALF_WIDTH,
+    CIRCLE_ANGLES,
+    Cylinder,
+    MechanismScene,
+    contact_point,
+    draw_springs,
+    higher_pair_outline,
+    outline_extent,
+)
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import cross, dot
 from tmm_cli.mechanics.plans import acceleration_plan, force_plans, letters, lever_plan, velocity_plan
@@ -30,16 +39,16 @@ def solved(name):
 @cache
 def drawn(name):
     """Every sheet of a problem."""
-    return dict(sheets(solved(name)))
+    return dict(all_sheets(solved(name)))
 
 
 def scene(results, k):
-    return Scene(results.linkage, results.structure, results.motion.poses, k)
+    return MechanismScene(results.linkage, results.structure, results.motion.poses, k)
 
 
 def shaped(name, k):
     results = solved(name)
-    return outline(scene(results, k), results.linkage.meshes[0])
+    return higher_pair_outline(scene(results, k), results.linkage.meshes[0])
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -48,7 +57,7 @@ def test_nothing_lies_outside_of_the_sheets_in_millimetres(name):
     assert {"structure", "groups", "mechanism", "position", "velocity"} <= {stem.split("-0")[0] for stem in found}
     for stem, figure in found.items():
         width, height = figure.paper
-        for line in (mark for mark in figure.marks if isinstance(mark, Line)):
+        for line in (mark for mark in figure.marks if isinstance(mark, LineMark)):
             assert all(0 < place.real < width and 0 < place.imag < height for place in line.places), (stem, line)
 
 
@@ -132,7 +141,7 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
     text = PROBLEMS["flat follower"].replace("offset: 60", "offset: 5")
     text = text.replace("B: [0, 140]", "B: [0, 85]").replace("D: [120, 230]", "D: [120, 175]")
     results = solve(build_problem(read_text(text.replace("C: [40, 230]", "C: [40, 165]"), "x.yaml")))
-    found = outline(scene(results, 0), results.linkage.meshes[0])
+    found = higher_pair_outline(scene(results, 0), results.linkage.meshes[0])
     assert not found.true
     turns = np.unwrap(np.angle(np.diff(found.disk[::6])))
     assert np.all(np.diff(turns) < 0.05) or np.all(np.diff(turns) > -0.05)  # convex all the same
@@ -140,9 +149,11 @@ def test_a_flat_face_that_no_convex_cam_could_have_is_only_a_sign():
 
 def test_wheels_far_larger_than_the_mechanism_do_not_decide_its_scale():
     found = shaped("inner", 0)  # radii 60 and 120 mm, axes 60 mm apart
-    assert len(extent([found], 1.0)) == 2 * len(AROUND)
+    assert len(outline_extent([found], 1.0)) == 2 * len(CIRCLE_ANGLES)
     large = replace(found, discs=tuple(replace(disc, radius=disc.radius + 0.1) for disc in found.discs))
-    assert len(extent([large], 0.0)) == len(AROUND) and len(extent([large], 0.08)) == 2 * len(AROUND)
+    assert len(outline_extent([large], 0.0)) == len(CIRCLE_ANGLES) and len(outline_extent([large], 0.08)) == 2 * len(
+        CIRCLE_ANGLES
+    )
 
 
 def test_a_group_of_one_wheel_is_drawn_as_large_as_the_wheel():
@@ -159,7 +170,7 @@ def test_a_higher_pair_is_named_where_the_links_touch(name):
     results = solved(name)
     here = scene(results, 2)
     pair = next(p for p in results.structure.pairs if not p.lower)
-    assert here.at(pair) == pytest.approx(contact(shaped(name, 2)))
+    assert here.at(pair) == pytest.approx(contact_point(shaped(name, 2)))
 
 
 def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
@@ -167,13 +178,13 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
     slide = results.linkage.slides[0]
     runs = results.motion.slide(slide).run
     runs_of_piston = []
-    sheet = Sheet("t", "c", [0j, 0.5 + 0.3j])
+    sheet = DrawingSheet("t", "c", [0j, 0.5 + 0.3j])
     for k in range(len(runs)):
         here = scene(results, k)
         found, along = Cylinder.of(sheet, here, slide), here.along(slide)
         length, run, end = (dot(along, place - found.back) for place in (found.front, found.piston, found.end))
-        assert 0 < run < length - BARREL / 2
-        assert end > length + BARREL  # the rod comes out of it
+        assert 0 < run < length - BARREL_HALF_WIDTH / 2
+        assert end > length + BARREL_HALF_WIDTH  # the rod comes out of it
         assert all(abs(cross(along, place - found.back)) < 1e-9 for place in (found.front, found.piston, found.end))
         assert found.end == pytest.approx(sheet.on(results.motion.named("A").x[k]))
         runs_of_piston.append(run)
@@ -182,10 +193,10 @@ def test_a_piston_stays_in_its_cylinder_and_goes_with_its_rod():
 
 def test_a_spring_is_drawn_from_end_to_end():
     results = solved("cylinder")
-    sheet = Sheet("t", "c", [0j, 0.6 + 0.3j])
+    sheet = DrawingSheet("t", "c", [0j, 0.6 + 0.3j])
     place = scene(results, 4).place
-    springs(sheet, scene(results, 4))
-    zigzag = max((mark.places for mark in sheet.marks if isinstance(mark, Line)), key=len)
+    draw_springs(sheet, scene(results, 4))
+    zigzag = max((mark.places for mark in sheet.marks if isinstance(mark, LineMark)), key=len)
     ends = [sheet.on(place("0", 0.52 - 0.12j)), sheet.on(place("3", 0.2 + 0j))]
     assert [zigzag[0], zigzag[-1]] == pytest.approx(ends)
     assert [label.text for label in sheet.labels] == ["s"]

@@ -12,10 +12,18 @@ from bank import NAMES, moved, solved
 from test_commands import ROOT, SHAPER, imported, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper import Circle, Line, Sheet, Text, corners
-from tmm_cli.drawing.run import sheets
-from tmm_cli.drawing.sheets import Legend, at_sketch, groups, parts, scheme, side_by_side, whole_scheme
-from tmm_cli.drawing.symbols import STRUCTURAL, Scene, by_pairs, outline, replacement
+from tmm_cli.drawing.paper import CircleMark, DrawingSheet, LineMark, TextMark, text_corners
+from tmm_cli.drawing.run import all_sheets
+from tmm_cli.drawing.sheets import (
+    Legend,
+    draw_groups,
+    draw_scheme,
+    groups_sheet,
+    mechanism_parts,
+    scheme_sheet,
+    sketch_scene,
+)
+from tmm_cli.drawing.symbols import STRUCTURAL, MechanismScene, form_by_pairs, higher_pair_outline, replacement_link
 from tmm_cli.mechanics.groups import Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
 from tmm_cli.mechanics.structure import analyse
@@ -55,7 +63,7 @@ def scene(points, links, slides=(), driver="O", turn=0.4):
         Sketch(0.0),
     )
     moved = {name: Pose(np.array([origin]), np.array([z])) for name, (origin, z) in poses.items()}
-    return Scene(linkage, analyse(linkage), moved)
+    return MechanismScene(linkage, analyse(linkage), moved)
 
 
 TRIAD = scene(
@@ -110,8 +118,8 @@ def chain(number):
 
 def written(figure):
     """Texts with their true boxes, mm."""
-    for text in (mark for mark in figure.marks if isinstance(mark, Text)):
-        low, __, high, __ = corners(text)  # none is turned
+    for text in (mark for mark in figure.marks if isinstance(mark, TextMark)):
+        low, __, high, __ = text_corners(text)  # none is turned
         yield text.text, (low.real, high.real, low.imag, high.imag)
 
 
@@ -122,7 +130,7 @@ def texts(figure):
 def inside(figure):
     """Every line inside the sheet."""
     width, height = figure.paper
-    for line in (mark for mark in figure.marks if isinstance(mark, Line)):
+    for line in (mark for mark in figure.marks if isinstance(mark, LineMark)):
         assert all(8 < place.real < width - 8 and 8 < place.imag < height - 8 for place in line.places)
 
 
@@ -139,10 +147,10 @@ def legible(figure):
 
 @pytest.mark.parametrize("name", [*NAMES[1::2], *HAND_MADE])
 def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_group(name):
-    here = HAND_MADE[name] if name in HAND_MADE else at_sketch(solved(name))[1]
-    every = parts(here.structure)
-    whole = scheme("title", "crank at 30 deg", here).finish()
-    apart = side_by_side("title", "crank at 30 deg", here, every, {}).finish()
+    here = HAND_MADE[name] if name in HAND_MADE else sketch_scene(solved(name))[1]
+    every = mechanism_parts(here.structure)
+    whole = scheme_sheet("title", "crank at 30 deg", here).finish()
+    apart = groups_sheet("title", "crank at 30 deg", here, every, {}).finish()
     for figure in (whole, apart):
         legible(figure)
         inside(figure)
@@ -167,14 +175,14 @@ def test_the_legend_counts_mobility_after_chebyshev():
 
 
 def test_a_compound_hinge_has_a_circle_for_every_pair():
-    figure = scheme("title", "", at_sketch(moved("six-bar"))[1]).finish()
-    circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
+    figure = scheme_sheet("title", "", sketch_scene(moved("six-bar"))[1]).finish()
+    circles = [mark for mark in figure.marks if isinstance(mark, CircleMark)]
     assert len(circles) == 6  # turning pairs
     assert len({(round(c.centre.real, 3), round(c.centre.imag, 3)) for c in circles}) == 5
 
 
 def test_the_driver_and_every_group_have_colours_of_their_own():
-    colours = [part.colour for part in parts(chain(6).structure)]
+    colours = [part.colour for part in mechanism_parts(chain(6).structure)]
     assert len(set(colours)) == 7
 
 
@@ -186,40 +194,40 @@ def test_the_driver_and_every_group_have_colours_of_their_own():
     ],
 )
 def test_what_the_formula_leaves_out_is_drawn_and_marked(name, redundant_links, mark):
-    here = at_sketch(moved(name))[1]
-    every = parts(here.structure)
-    whole = scheme("title", "", here).finish()
+    here = sketch_scene(moved(name))[1]
+    every = mechanism_parts(here.structure)
+    whole = scheme_sheet("title", "", here).finish()
     in_one_line = " ".join(" ".join(text.split()) for text in texts(whole))
     assert f"{mark} W of the formula of structure: 3·3 − 2·4 = 1" in in_one_line
     redundant = [part for part in every if part.redundant is not None]
     assert [part.links for part in redundant] == redundant_links
     assert not {part.colour for part in redundant} & {part.colour for part in every if part not in redundant}
-    apart = set(texts(side_by_side("title", "", here, every, {}).finish()))
+    apart = set(texts(groups_sheet("title", "", here, every, {}).finish()))
     assert {p.name for p in here.structure.pairs if {p.i, p.j} == {"2", "3"}} <= apart
 
 
 def test_a_ternary_link_is_a_plate_and_a_binary_one_a_bar():
-    sheet = Sheet("", "", [0j, 0.25 + 0.15j])
-    assert len(by_pairs(sheet, TRIAD, "3").hull) == 3
-    assert len(by_pairs(sheet, TRIAD, "2").hull) == 2
-    ends = by_pairs(sheet, TRIAD, "2").hull
+    sheet = DrawingSheet("", "", [0j, 0.25 + 0.15j])
+    assert len(form_by_pairs(sheet, TRIAD, "3").hull) == 3
+    assert len(form_by_pairs(sheet, TRIAD, "2").hull) == 2
+    ends = form_by_pairs(sheet, TRIAD, "2").hull
     assert abs(ends[0] - ends[1]) * sheet.mu == pytest.approx(abs(80 + 30j) / 1000)
 
 
 def test_a_hinge_beside_a_guide_is_joined_to_it_square():
-    sheet = Sheet("", "", [0j, 0.25 + 0.15j])
-    shape = by_pairs(sheet, OFFSET, "3")
+    sheet = DrawingSheet("", "", [0j, 0.25 + 0.15j])
+    shape = form_by_pairs(sheet, OFFSET, "3")
     ((start, end),) = shape.struts
     assert ((end - start) * np.conj(shape.bars[0].along)).real == pytest.approx(0, abs=1e-9)
     assert len(shape.welds) == 2  # at the guide, and at the hinge: one link, not two
 
 
 def test_a_link_goes_on_beyond_a_hinge_in_its_middle():
-    here = at_sketch(moved("whitworth"))[1]
-    sheet = Sheet("", "", here.extent(here.structure.links))
+    here = sketch_scene(moved("whitworth"))[1]
+    sheet = DrawingSheet("", "", here.extent(here.structure.links))
     pivot = next(p for p in here.structure.pairs if p.name == "C")
-    assert by_pairs(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
-    assert by_pairs(sheet, here, "1").through(sheet.on(here.at(pivot))) is None
+    assert form_by_pairs(sheet, here, "3").through(sheet.on(here.at(pivot))) is not None
+    assert form_by_pairs(sheet, here, "1").through(sheet.on(here.at(pivot))) is None
 
 
 def test_symbols_shrink_where_pairs_are_near_one_another():
@@ -227,8 +235,8 @@ def test_symbols_shrink_where_pairs_are_near_one_another():
         {"O": 0j, "A": 6 + 4j, "B": 230 + 30j, "C": 260 - 60j},
         {FRAME: "O C", "1": "O A", "2": "A B", "3": "B C"},
     )
-    figure = scheme("title", "", near).finish()
-    circles = [mark for mark in figure.marks if isinstance(mark, Circle)]
+    figure = scheme_sheet("title", "", near).finish()
+    circles = [mark for mark in figure.marks if isinstance(mark, CircleMark)]
     o, a = sorted(circles, key=lambda c: c.centre.real)[:2]
     assert o.radius < STRUCTURAL.hinge
     assert abs(o.centre - a.centre) > o.radius + a.radius
@@ -237,10 +245,10 @@ def test_symbols_shrink_where_pairs_are_near_one_another():
 
 def test_many_groups_are_on_more_than_one_sheet():
     here = chain(8)
-    found = dict(groups("title", "", here))
+    found = dict(draw_groups("title", "", here))
     assert list(found) == ["groups", "groups-sheet-2"]
     told = [text for figure in found.values() for text in texts(figure)]
-    assert all(told.count(part.title) == 1 for part in parts(here.structure))
+    assert all(told.count(part.title) == 1 for part in mechanism_parts(here.structure))
     for figure in found.values():
         legible(figure)
 
@@ -250,14 +258,14 @@ def test_links_may_have_any_names():
         {"O": 0j, "A": 40 + 30j, "B": 120 + 60j, "D": 160 + 0j},
         {FRAME: "O D", "1": "O A", "../шатун $x_1$": "A B", "a/b": "D B"},
     )
-    legible(scheme("title", "", odd).finish())
+    legible(scheme_sheet("title", "", odd).finish())
 
 
 def test_where_the_sketch_hides_a_pair_another_place_of_the_driver_is_drawn():
     def drawn_at(at):
         text = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
         text = text.replace("output: 3", f"sketch: {{at: {at} deg}}\noutput: 3")
-        words, _ = at_sketch(solve(build_problem(read_text(text, "x.yaml")), "structure"))
+        words, _ = sketch_scene(solve(build_problem(read_text(text, "x.yaml")), "structure"))
         return float(words.removeprefix("crank at ").removesuffix(" deg"))
 
     assert drawn_at(40) == pytest.approx(40)
@@ -269,8 +277,8 @@ def test_what_cannot_be_assembled_is_not_drawn(tmp_path):
     problem = tmp_path / "apart.yaml"
     problem.write_text(text, encoding="utf-8")
     results = solve(load(str(problem)), "structure")
-    assert at_sketch(results) is None
-    assert list(sheets(results)) == []
+    assert sketch_scene(results) is None
+    assert list(all_sheets(results)) == []
     done = tmm("structure", problem, "--drawings", cwd=tmp_path)
     assert done.returncode == 0
     assert "not drawn: the groups of apart cannot be assembled at the sketch" in done.stderr
@@ -299,9 +307,9 @@ def test_drawings_of_the_structure_leave_what_a_run_has_written(tmp_path):
 
 def test_a_run_draws_them_too_and_the_same_each_time():
     results = moved("shaper")
-    assert [stem for stem, _ in islice(sheets(results), 2)] == ["structure", "groups"]
-    here = at_sketch(results)
-    assert texts(scheme("", *here).finish()) == texts(scheme("", *here).finish())
+    assert [stem for stem, _ in islice(all_sheets(results), 2)] == ["structure", "groups"]
+    here = sketch_scene(results)
+    assert texts(scheme_sheet("", *here).finish()) == texts(scheme_sheet("", *here).finish())
 
 
 @pytest.mark.parametrize(
@@ -321,9 +329,9 @@ def test_the_link_in_place_of_a_higher_pair_leaves_the_velocities_as_they_are(na
     results = solved(name)
     motion, linkage = results.motion, results.linkage
     for k in (1, 4):
-        scene = Scene(linkage, results.structure, motion.poses, k)
+        scene = MechanismScene(linkage, results.structure, motion.poses, k)
         for mesh in linkage.meshes:
-            link = replacement(outline(scene, mesh))
+            link = replacement_link(higher_pair_outline(scene, mesh))
             along = (link.end - link.start) / abs(link.end - link.start)
             speeds = []
             for body, place in ((mesh.i, link.start), (mesh.j, link.end)):
@@ -337,8 +345,6 @@ def test_the_link_in_place_of_a_higher_pair_leaves_the_velocities_as_they_are(na
 
 
 def test_the_scheme_shows_the_links_that_replace_higher_pairs():
-    with_gears, without = (
-        dict(whole_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper")
-    )
+    with_gears, without = (dict(draw_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper"))
     assert "Dashed: the links that replace higher pairs" in with_gears
     assert "Dashed: the links that replace higher pairs" not in without

@@ -8,20 +8,28 @@ import numpy as np
 import pytest
 from bank import NAMES, solved
 
-from tmm_cli.drawing.paper import DARK, THIN, Area, Circle, Line, Sheet, gather_labels
-from tmm_cli.drawing.sheets import at_sketch
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    THIN_COLOUR,
+    AreaMark,
+    CircleMark,
+    DrawingSheet,
+    LineMark,
+    gather_coincident,
+)
+from tmm_cli.drawing.sheets import sketch_scene
 from tmm_cli.drawing.symbols import (
     MEASURED,
-    PLATE,
+    PLATE_COLOUR,
     STRUCTURAL,
-    WELD,
-    fitted,
+    WELD_LEG,
+    draw_mass_centre,
+    fit_links,
     free_runs,
-    mass_centre,
+    points_to_scale,
     render_scene,
     support_side,
-    tint,
-    to_scale,
+    tint_colour,
 )
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import cross, dot
@@ -33,15 +41,15 @@ NEAR = 0.35  # mm
 @cache
 def drawn(name, look):
     """A mechanism at its sketch, with its sheet."""
-    scene, links = at_sketch(solved(name))[1], solved(name).structure.links
+    scene, links = sketch_scene(solved(name))[1], solved(name).structure.links
     if look.measured:
         linkage = scene.linkage
         places = [scene.point(name) for link in linkage.links.values() for name in link.points]
-        sheet = Sheet("", "", to_scale(scene, places))
+        sheet = DrawingSheet("", "", points_to_scale(scene, places))
     else:
-        sheet = Sheet("", "")
-        scene = fitted(sheet, scene, links, 20, 150)
-    found = render_scene(sheet, scene, links, scene.structure.pairs, look, dict.fromkeys((FRAME, *links), DARK))
+        sheet = DrawingSheet("", "")
+        scene = fit_links(sheet, scene, links, 20, 150)
+    found = render_scene(sheet, scene, links, scene.structure.pairs, look, dict.fromkeys((FRAME, *links), DARK_COLOUR))
     return sheet, found
 
 
@@ -76,7 +84,9 @@ def meet(ones, others):
 @every
 def test_no_rod_runs_through_hatching(name, look):
     sheet, found = drawn(name, look)
-    strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
+    strokes = [
+        m.places for m in sheet.marks if isinstance(m, LineMark) and m.layer == "supports" and m.colour == THIN_COLOUR
+    ]
     for pair in found.scene.structure.pairs:
         if pair.lower and FRAME in (pair.i, pair.j):
             at = sheet.on(found.scene.at(pair))
@@ -101,8 +111,10 @@ def test_all_parts_of_a_link_touch_one_another(name, look):
 @every
 def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(name, look):
     sheet, found = drawn(name, look)
-    lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
-    plates = [m.corners for m in sheet.marks if isinstance(m, Area) and m.face in (PLATE, tint(DARK))]
+    lines = [m.places for m in sheet.marks if isinstance(m, LineMark) and m.layer == "links"]
+    plates = [
+        m.corners for m in sheet.marks if isinstance(m, AreaMark) and m.face in (PLATE_COLOUR, tint_colour(DARK_COLOUR))
+    ]
     linkage = found.scene.linkage
     for slide in linkage.slides:
         if slide.carrier == FRAME or slide.name in {d.joint for d in linkage.drivers}:
@@ -119,8 +131,8 @@ def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(name, lo
 @every
 def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(name, look):
     sheet, found = drawn(name, look)
-    circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links"]
-    lines = [m for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
+    circles = [m for m in sheet.marks if isinstance(m, CircleMark) and m.layer == "links"]
+    lines = [m for m in sheet.marks if isinstance(m, LineMark) and m.layer == "links"]
     for pair in found.scene.structure.pairs:
         at = sheet.on(found.scene.at(pair))
         circle = max((m for m in circles if abs(m.centre - at) < NEAR), key=lambda m: m.z, default=None)
@@ -138,18 +150,18 @@ def test_a_lever_goes_through_its_hinge_in_one_line_over_the_circle(name, look):
 @every
 def test_a_hinge_has_a_circle_for_every_pair_in_it(name, look):
     sheet, found = drawn(name, look)
-    circles = [m for m in sheet.marks if isinstance(m, Circle) and m.layer == "links" and m.face == "white"]
-    hinges = gather_labels((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
+    circles = [m for m in sheet.marks if isinstance(m, CircleMark) and m.layer == "links" and m.face == "white"]
+    hinges = gather_coincident((sheet.on(found.scene.at(p)), p) for p in found.scene.structure.pairs if p.kind == "R")
     for at, pairs in hinges:
         radii = {round(m.radius, 3) for m in circles if abs(m.centre - at) < NEAR}
         assert len(radii) >= len(pairs), pairs
 
 
 def test_a_centre_of_mass_is_a_circle_with_two_dark_quarters():
-    sheet = Sheet("", "")
-    mass_centre(sheet, 100 + 100j)
-    quarters = [m for m in sheet.marks if isinstance(m, Area)]
-    (circle,) = (m for m in sheet.marks if isinstance(m, Circle))
+    sheet = DrawingSheet("", "")
+    draw_mass_centre(sheet, 100 + 100j)
+    quarters = [m for m in sheet.marks if isinstance(m, AreaMark)]
+    (circle,) = (m for m in sheet.marks if isinstance(m, CircleMark))
     assert circle.face == "white" and len(quarters) == 2
     middles = [np.mean(m.corners) - circle.centre for m in quarters]
     assert middles[0] == pytest.approx(-middles[1])
@@ -173,15 +185,15 @@ def test_a_rail_is_open_where_rods_go_through_it():
     ],
 )
 def test_a_support_is_where_no_rod_runs_through_it(ends, side):
-    sheet = Sheet("", "")
+    sheet = DrawingSheet("", "")
     assert support_side(sheet, 100 + 100j, [(100 + 100j, 100 + 100j + end) for end in ends]) == pytest.approx(side)
 
 
 @every
 def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(name, look):
     sheet, found = drawn(name, look)
-    lines = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "links"]
-    barrels = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 4 and m.z > 4.5]
+    lines = [m.places for m in sheet.marks if isinstance(m, LineMark) and m.layer == "links"]
+    barrels = [m.corners for m in sheet.marks if isinstance(m, AreaMark) and len(m.corners) == 4 and m.z > 4.5]
     driven = [d for d in found.scene.linkage.drivers if d.kind == "slide" and d.base != FRAME]
     assert len(barrels) == len(driven)
     for driver, corners in zip(driven, barrels, strict=True):
@@ -196,11 +208,13 @@ def test_a_cylinder_is_a_barrel_with_a_piston_and_its_rod(name, look):
 @every
 def test_a_wheel_is_welded_to_the_bar_of_its_link(name, look):
     sheet, found = drawn(name, look)
-    marks = [m.corners for m in sheet.marks if isinstance(m, Area) and len(m.corners) == 3 and m.face == DARK]
+    marks = [
+        m.corners for m in sheet.marks if isinstance(m, AreaMark) and len(m.corners) == 3 and m.face == DARK_COLOUR
+    ]
     for pair in found.scene.structure.pairs:
         for disc in getattr(found.scene.higher(pair), "discs", ()) if not pair.lower else ():
             centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
-            if disc.link in found.forms and radius > 2 * WELD:
+            if disc.link in found.forms and radius > 2 * WELD_LEG:
                 barred = any(distance(centre, line) < 0.1 for line in found.forms[disc.link].edges)
                 rims = [corners for corners in marks if abs(abs(corners[0] - centre) - radius) < 0.1]
                 assert not barred or rims, disc.link

@@ -8,8 +8,16 @@ import numpy as np
 import pytest
 from bank import moved
 
-from tmm_cli.drawing.paper import LOAD, THIN, Area, Line, Text, border, corners
-from tmm_cli.drawing.sheets import PAD, SMALLER, draw_construction, draw_synthesis, granted, inside, rename
+from tmm_cli.drawing.paper import LOAD_COLOUR, THIN_COLOUR, AreaMark, LineMark, TextMark, leave_field, text_corners
+from tmm_cli.drawing.sheets import (
+    CONSTRUCTION_PAD,
+    MOST_REDUCTION,
+    draw_construction,
+    draw_synthesis,
+    pieces_inside,
+    points_on_sheet,
+    use_problem_names,
+)
 from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.problem import UnitSystem
 from tmm_cli.synthesis import (
@@ -104,8 +112,8 @@ CASES = {
 def boxes(drawing):
     """Boxes of all texts, mm, by text."""
     found = []
-    for text in (mark for mark in drawing.marks if isinstance(mark, Text)):
-        xs, ys = zip(*((corner.real, corner.imag) for corner in corners(text)), strict=True)
+    for text in (mark for mark in drawing.marks if isinstance(mark, TextMark)):
+        xs, ys = zip(*((corner.real, corner.imag) for corner in text_corners(text)), strict=True)
         found.append((text.text, min(xs), max(xs), min(ys), max(ys)))
     return found
 
@@ -134,7 +142,9 @@ def test_points_and_labels_are_on_the_sheet_and_no_two_labels_overlap(case):
 @pytest.mark.parametrize("k", [1.02, 1.1, 1.3, 2.0])
 def test_the_mechanism_is_large_however_large_the_circle_is(k):
     (one,) = rocker(k, 60, 110)
-    assert sheet_scale(granted(one), PAD)[1] <= SMALLER * sheet_scale(one.places(), PAD)[1] * (1 + 1e-9)
+    assert sheet_scale(points_on_sheet(one), CONSTRUCTION_PAD)[1] <= MOST_REDUCTION * sheet_scale(
+        one.places(), CONSTRUCTION_PAD
+    )[1] * (1 + 1e-9)
 
 
 def test_the_centre_of_a_circle_that_is_too_large_is_told_by_an_arrow_and_the_radius():
@@ -171,11 +181,11 @@ def test_given_pivots_are_turned_back_with_the_coupler_to_its_first_position():
 def test_joints_are_called_as_in_the_file_and_the_centre_otherwise():
     results = moved("press-synthesis")
     (one,) = slider(1.08, 3.5)
-    named, letters = rename(one, results.linkage, {"r": "OA", "l": "AB", "e": "e"})
+    named, letters = use_problem_names(one, results.linkage, {"r": "OA", "l": "AB", "e": "e"})
     assert letters == {"O": "O", "A": "A", "B": "B", "M": "M"}
     assert {s.name for s in named.segments if s.name} == {"OA", "AB", "AB − OA"}
     (other,) = slider(1.3, 2.2)  # not the mechanism of the file
-    assert rename(other, results.linkage, {})[1] == {"O": "O", "A": "A", "B": "B", "M": "M"}
+    assert use_problem_names(other, results.linkage, {})[1] == {"O": "O", "A": "A", "B": "B", "M": "M"}
 
 
 def test_both_extreme_positions_have_letters():
@@ -187,8 +197,8 @@ def test_both_extreme_positions_have_letters():
 
 def test_a_curve_is_cut_where_it_leaves_the_field():
     square = (0j, 10 + 10j)
-    assert border(5 + 5j, 25 + 5j, *square) == 10 + 5j
-    pieces = inside([-5 + 5j, 5 + 5j, 5 + 15j, 9 + 15j, 9 + 5j], *square)
+    assert leave_field(5 + 5j, 25 + 5j, *square) == 10 + 5j
+    pieces = pieces_inside([-5 + 5j, 5 + 5j, 5 + 15j, 9 + 15j, 9 + 5j], *square)
     assert pieces == [[0 + 5j, 5 + 5j, 5 + 10j], [9 + 10j, 9 + 5j]]
 
 
@@ -216,7 +226,11 @@ def test_the_history_is_never_empty():
 def test_neither_label_nor_rod_stands_on_the_hatching_of_a_guide(k):
     for (one,) in (drawn(shaper, stroke=0.4, k=k, frame_ratio=0.5, rod_ratio=r) for r in (0.3, 0.6)):
         sheet = draw_construction("", one, UnitSystem())
-        strokes = [m.places for m in sheet.marks if isinstance(m, Line) and m.layer == "supports" and m.colour == THIN]
+        strokes = [
+            m.places
+            for m in sheet.marks
+            if isinstance(m, LineMark) and m.layer == "supports" and m.colour == THIN_COLOUR
+        ]
         middles = [(stroke[0] + stroke[-1]) / 2 for stroke in strokes]
         stones = [sheet.on(spot.at) for spot in one.spots if spot.mark == "slider"]
         middles = [at for at in middles if min(abs(at - stone) for stone in stones) < 13]
@@ -286,6 +300,6 @@ def test_an_arc_ends_in_an_arrow_where_the_edge_cuts_it(k, ratio, cut):
     bold = [a for a in one.arcs if a.style == "bold"]
     ends = [sheet.on(a.centre + a.radius * np.exp(1j * t)) for a in bold for t in (a.start, a.end)]
     assert sum(not (low.real < z.real < high.real and low.imag < z.imag < high.imag) for z in ends) == cut
-    tips = [mark.corners[0] for mark in sheet.marks if isinstance(mark, Area) and mark.face == LOAD]
+    tips = [mark.corners[0] for mark in sheet.marks if isinstance(mark, AreaMark) and mark.face == LOAD_COLOUR]
     assert len(tips) == cut
     assert all(min((z - low).real, (high - z).real, (z - low).imag, (high - z).imag) < 1e-6 for z in tips)

@@ -8,8 +8,8 @@ import pytest
 from bank import moved
 
 from tmm_cli.cli import FEW, by_all_cores, drawing
-from tmm_cli.drawing.layout import files_of_sheets
-from tmm_cli.drawing.run import files, parts
+from tmm_cli.drawing.layout import large_sheet_files
+from tmm_cli.drawing.run import sheet_files, sheet_jobs
 
 
 @pytest.fixture(autouse=True)
@@ -36,14 +36,14 @@ def lasting(folder, n):
 
 def test_several_processes_write_the_same_files_in_the_same_order():
     results = moved("sine")
-    assert len(parts(results)) >= FEW
-    assert list(files(results, way=by_all_cores)) == list(files(results))
+    assert len(sheet_jobs(results)) >= FEW
+    assert list(sheet_files(results, way=by_all_cores)) == list(sheet_files(results))
 
 
 def test_large_sheets_are_the_same_whoever_draws_and_writes_them():
     results = moved("sine")
     asked = (results, "A3", ["pdf", "svg"], lambda note: None)
-    assert list(files_of_sheets(*asked, by_all_cores, every=False)) == list(files_of_sheets(*asked, every=False))
+    assert list(large_sheet_files(*asked, by_all_cores, every=False)) == list(large_sheet_files(*asked, every=False))
 
 
 def test_jobs_of_a_process_that_was_ended_are_done_here():

@@ -8,7 +8,7 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.sheets import reactions
+from tmm_cli.drawing.sheets import draw_reaction_hodographs
 from tmm_cli.mechanics.analysis import at_places, with_extremes
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -71,6 +71,6 @@ def test_extremes_and_hodographs_stand_beside_a_whole_run(tmp_path):
 
 def test_hodographs_stand_in_axes_that_turn_with_each_link_and_in_polar_axes():
     results, __ = found("crank-slider", "forces")
-    drawn = dict(reactions(results))
+    drawn = dict(draw_reaction_hodographs(results))
     assert {"hodograph-A", "hodograph-A-link-1", "hodograph-A-link-2", "polar-A", "reaction-A"} <= drawn.keys()
     assert "hodograph-x-link-3" not in drawn  # a slider does not turn

@@ -15,7 +15,7 @@ from test_commands import tmm
 from tests import messages
 from tmm_cli import load, solve
 from tmm_cli.cli import bounds_of, each, opened, speaking
-from tmm_cli.drawing.paper import filling
+from tmm_cli.drawing.paper import filling_axis
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
 from tmm_cli.mechanics.forces import balance_symbol, load_symbols
 from tmm_cli.mechanics.quantities import KINDS
@@ -214,7 +214,7 @@ def test_numbers_for_people_have_a_comma_where_the_language_has_one():
     for tongue in ("ru", "sr"):
         with spoken(tongue):
             assert numeral(1234.5678, ".6g") == "1234,57"
-            assert [text for __, text in filling(0, 1, 0, 100).ticks(5)][1] == "0,05"
+            assert [text for __, text in filling_axis(0, 1, 0, 100).ticks(5)][1] == "0,05"
 
 
 def test_letters_are_those_of_the_course():

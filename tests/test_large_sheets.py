@@ -13,20 +13,30 @@ from covering import covered
 from hypothesis import given, settings, strategies as st
 
 from tmm_cli import solve
-from tmm_cli.drawing.layout import PAPERS, SIZES, Field, chosen, field_of, inner, large_sheets, pack, spread
-from tmm_cli.drawing.paper import Circle, Drawing, Line, Text, cut, wrap
-from tmm_cli.drawing.run import sheets
+from tmm_cli.drawing.layout import (
+    PAPERS,
+    TITLE_BLOCK_SIZES,
+    PackingField,
+    choose_positions,
+    drawing_field,
+    frame_corners,
+    large_sheets,
+    pack_boxes,
+    spread_boxes,
+)
+from tmm_cli.drawing.paper import CircleMark, Drawing, LineMark, TextMark, cut_text, wrap_text
+from tmm_cli.drawing.run import all_sheets
 from tmm_cli.mechanics.plans import ROUND
 
 
 @given(st.lists(st.tuples(st.floats(10, 300), st.floats(10, 200)), min_size=1, max_size=12))
 @settings(max_examples=30)
 def test_packed_boxes_are_in_the_field_beside_the_title_block_and_do_not_overlap(sizes):
-    field = Field(816.0, 584.0, (185.0, 55.0))
-    places = pack(sizes, field)
+    field = PackingField(816.0, 584.0, (185.0, 55.0))
+    places = pack_boxes(sizes, field)
     if places is None:
         return
-    for arrangement in (places, spread(places, sizes, field)):
+    for arrangement in (places, spread_boxes(places, sizes, field)):
         found = [(complex(x, y), complex(x + w, y + h)) for (x, y), (w, h) in zip(arrangement, sizes, strict=True)]
         taken = (complex(816 - 185, 584 - 55), 816 + 584j)
         slack = 1e-6 * (1 + 1j)
@@ -47,8 +57,11 @@ def test_packed_boxes_are_in_the_field_beside_the_title_block_and_do_not_overlap
 def test_sheets_are_full_and_nothing_on_them_overlaps(name, paper):
     """On the cylinder's, the hanger's and the positioner's, drawings of which nothing or only text is large end it."""
     for stem, sheet in drawn(name, paper).items():
-        low, high = inner(sheet.paper)
-        block = complex(high.real - SIZES["gost"][0], low.imag), complex(high.real, low.imag + SIZES["gost"][1])
+        low, high = frame_corners(sheet.paper)
+        block = (
+            complex(high.real - TITLE_BLOCK_SIZES["gost"][0], low.imag),
+            complex(high.real, low.imag + TITLE_BLOCK_SIZES["gost"][1]),
+        )
         found = boxes(sheet)
         assert all(apart(one, other) for one, other in combinations([*found, block], 2)), stem
         assert all(a.real >= low.real and a.imag >= low.imag for a, __ in found), stem
@@ -60,7 +73,7 @@ def test_sheets_are_full_and_nothing_on_them_overlaps(name, paper):
 def test_each_large_sheet_begins_in_its_upper_left_corner_with_what_a_course_begins_with(name):
     for subject, first in (("structure", "structure"), ("kinematics", "mechanism"), ("forces", "position")):
         sheet = about(name, subject)
-        low, high = inner(sheet.paper)
+        low, high = frame_corners(sheet.paper)
         at, picture = sheet.pictures[0]
         assert picture.stem.startswith(first)
         assert abs(at + 1j * picture.paper[1] - complex(low.real, high.imag)) < 10
@@ -70,9 +83,11 @@ def test_each_large_sheet_begins_in_its_upper_left_corner_with_what_a_course_beg
 def test_no_text_of_a_large_sheet_covers_another_one_a_head_of_an_arrow_or_a_line(name):
     for stem, sheet in drawn(name).items():
         found = [pair for __, one in sheet.pictures for pair in covered(one)]
-        block = complex(sheet.paper[0] - 5 - SIZES["gost"][0], 5 + SIZES["gost"][1])
-        titles = [m for m in sheet.marks if isinstance(m, Text) and m.at.real > block.real and m.at.imag < block.imag]
-        lines = [mark for mark in sheet.marks if isinstance(mark, Line) and mark.layer == "frame"]
+        block = complex(sheet.paper[0] - 5 - TITLE_BLOCK_SIZES["gost"][0], 5 + TITLE_BLOCK_SIZES["gost"][1])
+        titles = [
+            m for m in sheet.marks if isinstance(m, TextMark) and m.at.real > block.real and m.at.imag < block.imag
+        ]
+        lines = [mark for mark in sheet.marks if isinstance(mark, LineMark) and mark.layer == "frame"]
         assert titles
         assert not [f"{stem}: {pair}" for pair in [*found, *covered(Drawing(sheet.paper, (*lines, *titles)))]]
 
@@ -116,19 +131,20 @@ def test_letters_of_the_tables_of_a_sheet_differ_by_a_tenth_at_most(name):
     for stem, sheet in drawn(name).items():
         tables = [one for __, one in sheet.pictures if one.stem.startswith("table")]
         sizes = [
-            max(mark.size for mark in one.marks if isinstance(mark, Text) and _in_a_cell(mark, one)) for one in tables
+            max(mark.size for mark in one.marks if isinstance(mark, TextMark) and _in_a_cell(mark, one))
+            for one in tables
         ]
         assert max(sizes) <= 1.1 * min(sizes), (stem, sizes)
 
 
 def _in_a_cell(mark, table):
     """Whether a text stands between the lines of a table; headings and notes stand above them."""
-    return mark.at.imag < max(place.imag for line in table.marks if isinstance(line, Line) for place in line.places)
+    return mark.at.imag < max(place.imag for line in table.marks if isinstance(line, LineMark) for place in line.places)
 
 
 def test_sheets_count_from_one_and_say_structure_where_nothing_is_synthesised():
     titles = {
-        name: [{mark.text for mark in sheet.marks if isinstance(mark, Text)} for sheet in drawn(name).values()]
+        name: [{mark.text for mark in sheet.marks if isinstance(mark, TextMark)} for sheet in drawn(name).values()]
         for name in ("shaper", "log-generator")
     }
     for texts in titles.values():
@@ -148,25 +164,25 @@ def test_scales_are_round(name):
 
 def test_every_drawing_of_a_run_stands_on_a_large_sheet():
     kinds = {one.stem.partition("-")[0] for sheet in drawn("shaper").values() for __, one in sheet.pictures}
-    run = {stem.partition("-")[0] for stem, one in sheets(solved("shaper")) if isinstance(one, Drawing)}
+    run = {stem.partition("-")[0] for stem, one in all_sheets(solved("shaper")) if isinstance(one, Drawing)}
     assert len(run) > 8 and run <= kinds
 
 
 def test_a_text_is_cut_where_its_cell_ends():
-    assert cut("short", 3.0, 50.0) == "short"
-    assert cut("x" * 10_000, 3.0, 20.0).endswith("…")
-    lines = wrap("one two three four five six seven eight nine ten", 3.0, 20.0, 2)
+    assert cut_text("short", 3.0, 50.0) == "short"
+    assert cut_text("x" * 10_000, 3.0, 20.0).endswith("…")
+    lines = wrap_text("one two three four five six seven eight nine ten", 3.0, 20.0, 2)
     assert len(lines) == 2 and lines[-1].endswith("…")
 
 
 def test_plans_of_all_positions_go_on_on_further_sheets():
     sine = problem("sine")
     results = solve(replace(sine, request=replace(sine.request, count=6)))
-    pages = dict(large_sheets(chosen(results, every=True), "A3"))
+    pages = dict(large_sheets(choose_positions(results, every=True), "A3"))
     assert sum(name.endswith("kinematics") for name in pages) > 1
     stems = [one.stem for sheet in pages.values() for __, one in sheet.pictures]
     assert {f"velocity-{number:02d}" for number in results.numbers} <= set(stems)
-    assert field_of(PAPERS["A3"], "gost").area > 0
+    assert drawing_field(PAPERS["A3"], "gost").area > 0
     assert not [
-        mark for sheet in pages.values() for mark in sheet.marks if isinstance(mark, Circle) and mark.radius < 0
+        mark for sheet in pages.values() for mark in sheet.marks if isinstance(mark, CircleMark) and mark.radius < 0
     ]

@@ -12,7 +12,7 @@ from test_commands import ROOT, tmm
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.batch import Task, prepare_batch as prepare_all
-from tmm_cli.drawing.sheets import closely
+from tmm_cli.drawing.sheets import dense_coordinates
 from tmm_cli.mechanics.accuracy import bounds, judged
 from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.mechanics.dynamics import reduced_machine
@@ -396,7 +396,7 @@ def test_many_positions_at_once_and_digits_know_a_table_that_jumps():
 
 def test_a_diagram_draws_the_jump_at_its_place_with_both_values():
     results = slider("stroke", SAW, more=" ", turns="ccw")
-    q, borders = closely(results)
+    q, borders = dense_coordinates(results)
     moments = at_places(results, q).reactions.balance.moment
     first = results.strokes.strokes[0]
     for argument, (before, after) in JUMPS:

@@ -13,7 +13,7 @@ import pytest
 from tests.test_language import Cyrillic
 from tmm_cli import load, solve
 from tmm_cli.animation import charts
-from tmm_cli.drawing.run import remarks, sheets
+from tmm_cli.drawing.run import all_sheets, position_remarks
 from tmm_cli.language import CATALOGUES, spoken
 from tmm_cli.note import html, note
 from tmm_cli.reports import (
@@ -67,7 +67,7 @@ def of_tables(found, units):
 
 
 def drawn(results, problem):
-    return chain.from_iterable(drawing.texts() for __, drawing in sheets(results))
+    return chain.from_iterable(drawing.texts() for __, drawing in all_sheets(results))
 
 
 def tabled(results, problem):
@@ -81,7 +81,7 @@ def said(results, problem):
         *doubts(results.problem),
         *collect_warnings(results),
         *in_words(results),
-        *remarks(results),
+        *position_remarks(results),
     )
 
 

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tmm_cli.drawing.paper import Drawing, Line, Text
+from tmm_cli.drawing.paper import Drawing, LineMark, TextMark
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import (
     FORMATS,
@@ -62,9 +62,9 @@ TURNED = Found(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.04719755119
 DRAWING = Drawing(
     (80.0, 60.0),
     (
-        Line((0j, 40 + 30j), "#000000", 0.3),
-        Line((0j, 80j), "#000000", 0.3, "--"),
-        Text(10 + 10j, "Ползун", 4.0, "#000000"),
+        LineMark((0j, 40 + 30j), "#000000", 0.3),
+        LineMark((0j, 80j), "#000000", 0.3, "--"),
+        TextMark(10 + 10j, "Ползун", 4.0, "#000000"),
     ),
 )
 NOTE = Note(

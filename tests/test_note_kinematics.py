@@ -9,7 +9,7 @@ from models import PROBLEMS, solved_text
 from test_jams import planets
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.paper import Picture
+from tmm_cli.drawing.paper import SheetPicture
 from tmm_cli.note import Equation, Found, Heading, Here, Letter, Paragraph, Row, Subject
 from tmm_cli.note.kinematics import chapter as kinematics
 
@@ -79,7 +79,7 @@ def test_scales_are_those_of_the_drawings(name):
     k = subject(name).detail[0]
     for stem in ("velocity", "acceleration"):
         (drawing,) = subject(name, drawn=True).drawings(stem, k).values()
-        assert isinstance(drawing, Picture)
+        assert isinstance(drawing, SheetPicture)
         here = Here(subject(name), k, first=True)
         assert (here.v if stem == "velocity" else here.a).mu == drawing.mu
 

@@ -8,7 +8,7 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
-from tmm_cli.drawing.sheets import detailed, draw_lever, draw_motion_plans
+from tmm_cli.drawing.sheets import detailed_drawings, draw_lever, draw_motion_plans
 from tmm_cli.mechanics.accuracy import quantities
 from tmm_cli.mechanics.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
 from tmm_cli.problem import build_problem, read_text
@@ -105,7 +105,7 @@ def test_units_are_written_one_way_in_tables_and_the_schema_and_one_way_on_drawi
     """As they are typed, and as they are printed."""
     told = [column.heading(shaper.problem.units) for table in tables(shaper) for column in table.columns]
     described = json.dumps(schema(), ensure_ascii=False)
-    position = detailed(shaper)[0]
+    position = detailed_drawings(shaper)[0]
     notes = [text for draw in (draw_motion_plans, draw_lever) for __, sheet in draw(position) for text in sheet.texts()]
     assert "a, m/s^2" in told and "m/s^2" in described and any(note.endswith("(m/s²)/mm") for note in notes)
     assert any(note.endswith(" N·m") for note in notes)

@@ -16,7 +16,7 @@ from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.bench import NAMED, Saving, Savings, all_orders, counted, no_closed_form, savings_charts
-from tmm_cli.drawing.run import files as drawings
+from tmm_cli.drawing.run import sheet_files as drawings
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.groups import DriverMotion, NotComputed, towards
 from tmm_cli.mechanics.kinematics import move

@@ -19,7 +19,7 @@ from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.cli import named_types, schemes as scheme_files, skeleton
-from tmm_cli.drawing.sheets import EXAMPLES
+from tmm_cli.drawing.sheets import GROUP_EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure import ROMAN, analyse, group_class
 from tmm_cli.problem import UnitSystem, build_problem, read_text
@@ -347,7 +347,7 @@ def test_the_list_of_schemes_says_which_groups_it_does_not_enumerate():
     assert json.loads(tmm("schemes", "-n", "3", "--json").stdout)["not_enumerated"] == []
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda e: f"{ROMAN[e.group_class]}-{e.order}-{e.name}")
+@pytest.mark.parametrize("example", GROUP_EXAMPLES, ids=lambda e: f"{ROMAN[e.group_class]}-{e.order}-{e.name}")
 def test_a_group_of_the_table_is_of_the_class_and_order_under_which_it_stands(example):
     """3n - 2p = 0 with its leads; the class by the count of the report, the order by its leads."""
     joined = example.pairs

@@ -13,11 +13,19 @@ from big_sheets import about
 from pypdf import PdfReader
 from test_commands import ROOT, SHAPER, tmm
 
-from tmm_cli.drawing.formats import FORMATS, plain
-from tmm_cli.drawing.layout import PAPERS, SIZES, Titles, field_of, files_of_sheets, framed, inner
-from tmm_cli.drawing.paper import Drawing, Text, corners
-from tmm_cli.drawing.sheets import detailed
-from tmm_cli.drawing.symbols import Scene
+from tmm_cli.drawing.formats import FORMATS, escape_codes
+from tmm_cli.drawing.layout import (
+    PAPERS,
+    TITLE_BLOCK_SIZES,
+    TitleBlockTexts,
+    drawing_field,
+    frame_corners,
+    frame_pictures,
+    large_sheet_files,
+)
+from tmm_cli.drawing.paper import Drawing, TextMark, text_corners
+from tmm_cli.drawing.sheets import detailed_drawings
+from tmm_cli.drawing.symbols import MechanismScene
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SINE = ROOT / "problems" / "sine.yaml"
@@ -60,13 +68,15 @@ def dxf_places(data):
 def test_a_named_segment_measures_what_its_scale_says(name, kind, places_of):
     results = solved(name)
     sheet = about(name, "kinematics")
-    lines = Drawing(sheet.paper, tuple(mark for mark in sheet.marks if not isinstance(mark, Text)))  # letters cost time
+    lines = Drawing(
+        sheet.paper, tuple(mark for mark in sheet.marks if not isinstance(mark, TextMark))
+    )  # letters cost time
     places = places_of(FORMATS[kind](lines))
     ((at, picture),) = [(at, one) for at, one in sheet.pictures if one.stem == "mechanism"]
     high = at + complex(*picture.paper)
     places = places[(places.real > at.real) & (places.real < high.real)]
     places = places[(places.imag > at.imag) & (places.imag < high.imag)]
-    scene = Scene(results.linkage, results.structure, results.motion.poses, detailed(results)[0].k)
+    scene = MechanismScene(results.linkage, results.structure, results.motion.poses, detailed_drawings(results)[0].k)
     for link in results.linkage.moving:
         for first, last in combinations(results.linkage.links[link].points, 2):
             wanted = (scene.point(last) - scene.point(first)) / picture.mu
@@ -88,12 +98,12 @@ def test_texts_of_the_title_block_stay_in_it_whatever_they_are(block):
     texts = ", ".join(f"{key}: {value!r}" for key, value in HOSTILE.items())
     text = SHAPER.read_text(encoding="utf-8") + f"sheet: {{{texts}, block: {block}}}\n"
     problem = build_problem(read_text(text, "x.yaml"))
-    titles = Titles(problem.title_texts, "$x$ " * 50, "Forces", 2, 7)
-    sheet = framed([], field_of(PAPERS["A3"], block), PAPERS["A3"], titles)
-    __, high = inner(sheet.paper)
-    low = complex(high.real - SIZES[block][0], 5)
-    end = complex(high.real, 5 + SIZES[block][1])
-    written = [corners(mark) for mark in sheet.marks if isinstance(mark, Text) and _within(mark.at, low, end)]
+    titles = TitleBlockTexts(problem.title_texts, "$x$ " * 50, "Forces", 2, 7)
+    sheet = frame_pictures([], drawing_field(PAPERS["A3"], block), PAPERS["A3"], titles)
+    __, high = frame_corners(sheet.paper)
+    low = complex(high.real - TITLE_BLOCK_SIZES[block][0], 5)
+    end = complex(high.real, 5 + TITLE_BLOCK_SIZES[block][1])
+    written = [text_corners(mark) for mark in sheet.marks if isinstance(mark, TextMark) and _within(mark.at, low, end)]
     assert len(written) > 8
     assert all(_within(corner, low - 0.01, end + 0.01) for one in written for corner in one)
     assert all(FORMATS[kind](sheet) for kind in FORMATS)
@@ -114,14 +124,14 @@ def test_a_text_of_the_title_block_that_is_none_is_refused(given):
 def test_no_code_of_dxf_comes_alive():
     text = pytest.importorskip("ezdxf.tools.text")
     for words in ("%%c", "50%", "a^Ib", "%%%%d", "\\U+0041", "\\M+5ABCD"):
-        shown = text.plain_text(plain(words)).replace("\N{HAIR SPACE}", "")
+        shown = text.plain_text(escape_codes(words)).replace("\N{HAIR SPACE}", "")
         assert shown == words
 
 
 def test_a_dxf_has_layers_millimetres_and_cyrillic_letters_and_no_errors():
     ezdxf = pytest.importorskip("ezdxf")
     sheet = about("shaper", "forces")
-    words = Text(100 + 100j, "Ползун, µ = 0,5 Н/мм", 3.5, "#1a1a1a")
+    words = TextMark(100 + 100j, "Ползун, µ = 0,5 Н/мм", 3.5, "#1a1a1a")
     document = ezdxf.read(io.StringIO(FORMATS["dxf"](Drawing(sheet.paper, (*sheet.marks, words))).decode()))
     audit = document.audit()
     assert not audit.errors and not audit.fixes
@@ -152,7 +162,7 @@ def test_an_unknown_format_and_a_missing_library_are_said_in_a_line(tmp_path, mo
 
 
 def test_a_pdf_has_a_page_for_every_sheet():
-    written = dict(files_of_sheets(solved("sine"), "A3", ["pdf", "svg"], lambda note: None, every=False))
+    written = dict(large_sheet_files(solved("sine"), "A3", ["pdf", "svg"], lambda note: None, every=False))
     pages = PdfReader(io.BytesIO(written["sheets.pdf"])).pages
     assert len(pages) == len(written) - 1
     assert [float(side) * 25.4 / 72 for side in pages[0].mediabox[2:]] == pytest.approx([420, 297], abs=1e-3)
@@ -161,6 +171,6 @@ def test_a_pdf_has_a_page_for_every_sheet():
 
 def test_where_nothing_acts_there_is_no_sheet_of_forces():
     said = []
-    names = [name for name, __ in files_of_sheets(solved("log-generator"), "A3", ["svg"], said.append, every=False)]
+    names = [name for name, __ in large_sheet_files(solved("log-generator"), "A3", ["svg"], said.append, every=False)]
     assert names == ["sheet-1-structure.svg", "sheet-2-kinematics.svg"]
     assert said == ["note: nothing has a weight and no load acts, so there is no sheet of forces"]

@@ -12,7 +12,7 @@ from test_commands import tmm
 from test_loads import MACHINE
 
 from tmm_cli.batch import Task
-from tmm_cli.drawing.paper import contour, hatching, region
+from tmm_cli.drawing.paper import contour_lines, hatch_polygons, region_polygons
 from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.problem import ProblemError, problem_of, read_file, read_text, with_settings
 from tmm_cli.sweep import (
@@ -271,16 +271,16 @@ def test_more_mechanisms_than_a_minute_has_room_for_are_refused_before_they_star
 
 def test_a_contour_joins_the_places_of_equal_value():
     x, y = np.meshgrid(np.arange(9.0), np.arange(7.0), indexing="ij")
-    (line,) = contour(x + 2 * y, 7.5)
+    (line,) = contour_lines(x + 2 * y, 7.5)
     assert np.allclose(line.real + 2 * line.imag, 7.5) and len(line) > 5
-    (ring,) = contour((x - 4) ** 2 + (y - 3) ** 2, 4.5)
+    (ring,) = contour_lines((x - 4) ** 2 + (y - 3) ** 2, 4.5)
     assert ring[0] == ring[-1]
 
 
 def test_hatching_stays_in_its_region_and_goes_on_from_piece_to_piece():
     inside = np.add.outer(np.arange(6), np.arange(6)) >= 5
-    pieces = list(region(inside, lambda one, other: 0.5))
-    lines = hatching(pieces, 0.7)
+    pieces = list(region_polygons(inside, lambda one, other: 0.5))
+    lines = hatch_polygons(pieces, 0.7)
     assert all(min(a.real + a.imag, b.real + b.imag) >= 4.5 - 1e-9 for a, b in lines)
     area = sum(abs(b - a) for a, b in lines) * 0.7
     assert area == pytest.approx(25 - 4.5**2 / 2, rel=0.08)

@@ -11,7 +11,7 @@ from test_commands import ROOT, tmm
 from test_synthesis_crank_slider import LINKAGE, MET
 
 from tmm_cli import load, solve
-from tmm_cli.drawing.sheets import diagram
+from tmm_cli.drawing.sheets import synthesis_diagram
 from tmm_cli.problem import ProblemError, TaskProblem, UnitSystem, read_text
 from tmm_cli.synthesis import TASKS, Diagram, DiagramLine, build_synthesised
 
@@ -236,7 +236,7 @@ def test_a_diagram_of_a_task_is_drawn_in_the_units_of_the_file():
     line = DiagramLine("largest pressure angle", np.array([0.1, 0.2]), np.array([0.0, np.pi]))
     dots = DiagramLine("k", np.array([0.15]), np.array([1.0]), dots=True)
     drawn = Diagram("family", "A family", ("stroke", "length"), axis, (line, dots))
-    sheet = diagram("A task", drawn, UnitSystem())
+    sheet = synthesis_diagram("A task", drawn, UnitSystem())
     assert {"largest pressure angle, deg", "stroke, mm", "100", "200", "180", "k"} <= set(sheet.texts())
 
 

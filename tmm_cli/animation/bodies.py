@@ -12,8 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper import DARK, Area, Circle, Line, Mark, Sheet
-from tmm_cli.drawing.symbols import BOX, MOVING, ON_LINE, SPRING_OF, Form, Scene, cylinders, mass_centre, render_scene
+from tmm_cli.drawing.paper import DARK_COLOUR, AreaMark, CircleMark, DrawingSheet, LineMark, Mark
+from tmm_cli.drawing.symbols import (
+    BOX_BODY,
+    MOVING,
+    ON_LINE,
+    SPRING_BODY,
+    LinkForm,
+    MechanismScene,
+    cylinder_drivers,
+    draw_mass_centre,
+    render_scene,
+)
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, Vector, unit
@@ -46,11 +56,11 @@ class Body:
 
 def _turned(mark: Mark, own: Callable[[complex], complex]) -> Mark:
     match mark:
-        case Line():
+        case LineMark():
             return replace(mark, places=tuple(map(own, mark.places)))
-        case Area():
+        case AreaMark():
             return replace(mark, corners=tuple(map(own, mark.corners)))
-        case Circle():
+        case CircleMark():
             return replace(mark, centre=own(mark.centre))
     return replace(mark, at=own(mark.at))
 
@@ -59,17 +69,17 @@ def _turned(mark: Mark, own: Callable[[complex], complex]) -> Mark:
 class Picture:
     """A mechanism taken apart into bodies by their names; links have theirs, the frame is one too."""
 
-    sheet: Sheet
+    sheet: DrawingSheet
     motion: Motion
-    scene: Scene
+    scene: MechanismScene
     bodies: dict[str, Body]
-    forms: Mapping[str, Form]
+    forms: Mapping[str, LinkForm]
 
     @classmethod
-    def of(cls, sheet: Sheet, motion: Motion, scene: Scene) -> Picture:
+    def of(cls, sheet: DrawingSheet, motion: Motion, scene: MechanismScene) -> Picture:
         """A scene in its first frame, drawn on a sheet; what belongs to no body, as the touch of two wheels, is not."""
         linkage, pairs = scene.linkage, scene.structure.pairs
-        drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK))
+        drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK_COLOUR))
         picture = cls(sheet, motion, scene, {}, drawn.forms)
         picture._masses()
         parts, alike = {name for name, __ in sheet.parts}, np.ones(motion.q.shape)
@@ -79,15 +89,15 @@ class Picture:
             angle = pose.turned if pose.unwrapped is not None else np.unwrap(pose.turned)
             picture.bodies[link] = Body(sheet.origin + pose.x / sheet.mu, angle, alike)
         for slide in linkage.slides:
-            if BOX.format(slide.name) in parts:
+            if BOX_BODY.format(slide.name) in parts:
                 angle = picture.bodies[slide.carrier].angle + float(np.angle(unit(slide.direction)))
-                picture.bodies[BOX.format(slide.name)] = Body(picture._spots(slide.runner, slide.at), angle, alike)
+                picture.bodies[BOX_BODY.format(slide.name)] = Body(picture._spots(slide.runner, slide.at), angle, alike)
         for spring in linkage.springs:
             start, end = picture._spots(spring.i, spring.at_i), picture._spots(spring.j, spring.at_j)
             length = np.abs(end - start)
-            if SPRING_OF.format(spring.name) in parts and length.min() > 0:
+            if SPRING_BODY.format(spring.name) in parts and length.min() > 0:
                 angle = np.unwrap(np.angle(end - start))
-                picture.bodies[SPRING_OF.format(spring.name)] = Body(start, angle, length / length[0])
+                picture.bodies[SPRING_BODY.format(spring.name)] = Body(start, angle, length / length[0])
         for name, which in sheet.parts:
             if name in picture.bodies:
                 picture.bodies[name].take(sheet.marks[which])
@@ -99,7 +109,7 @@ class Picture:
             own = self.scene.linkage.links[link]
             if np.any(own.mass != 0) and all(abs(own.centre - local) > 0 for local in own.points.values()):
                 with self.sheet.part(link):
-                    mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(own.centre))))
+                    draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(own.centre))))
 
     def _spots(self, link: str, local: complex) -> Vector:
         """Places of a point of a link on the sheet."""
@@ -145,7 +155,7 @@ def labels(picture: Picture, names: Sequence[str]) -> list[dict[str, Any]]:
 def _beyond(picture: Picture, link: str, local: complex) -> complex:
     """Where the name of a point is, in its link's axes: away from the middle of the link, outside a slider's box."""
     sheet, scene = picture.sheet, picture.scene
-    at, driven = sheet.on(scene.place(link, local)), cylinders(scene.linkage)
+    at, driven = sheet.on(scene.place(link, local)), cylinder_drivers(scene.linkage)
     slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
     boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
     own = picture.bodies[link].own(at)

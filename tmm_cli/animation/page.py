@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture, labels, pair
-from tmm_cli.drawing.formats import element
-from tmm_cli.drawing.paper import COLOURS, THIN, Sheet, mark_corners, with_unit
-from tmm_cli.drawing.sheets import Quantities, Sort, balances, output, sorts
-from tmm_cli.drawing.symbols import Scene, fit, fixed_pivots, to_scale
+from tmm_cli.drawing.formats import svg_element
+from tmm_cli.drawing.paper import THIN_COLOUR, VECTOR_COLOURS, DrawingSheet, mark_corners, with_unit
+from tmm_cli.drawing.sheets import MotionPlanKind, QuantityPlot, balancing_plots, motion_plan_kinds, output_plots
+from tmm_cli.drawing.symbols import MechanismScene, fit_points, frame_pivots, points_to_scale
 from tmm_cli.language import ENGLISH, _, language, spelt
 from tmm_cli.mechanics.analysis import Results, at_places
 from tmm_cli.mechanics.forces import subscript
@@ -33,7 +33,7 @@ MOST_LETTERS = 4  # at one point of a plan
 LEAST = 1e-6  # of a plan: nearer points are one
 
 
-def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
+def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
     """A plan in all frames: its points (SI, y up), vectors between them, letters at them; units a SI unit, its view."""
     plans = [sort.plan(motion, k) for k in range(len(motion.q))]
     first = plans[0]
@@ -59,10 +59,10 @@ def plan_data(motion: Motion, sort: Sort) -> dict[str, Any]:
             vectors[ends] = {
                 "from": ends[0],
                 "to": ends[1],
-                "colour": THIN if mass else COLOURS[vector.kind],
+                "colour": THIN_COLOUR if mass else VECTOR_COLOURS[vector.kind],
                 "width": 0.45 if mass or vector.kind != "absolute" else 0.7,
             }
-    below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN)
+    below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN_COLOUR)
     every = np.concatenate(points)
     every = every[np.abs(every) <= USUAL * size]
     scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
@@ -90,15 +90,15 @@ def _together(letters: list[str]) -> str:
     return ", ".join(map(in_letters, few))
 
 
-def charts(results: Results, whole: Results) -> Iterable[Quantities]:
+def charts(results: Results, whole: Results) -> Iterable[QuantityPlot]:
     """Motion of the first outputs, and what balances the drivers."""
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
-        yield from output(results, whole.motion, link)
-    yield from balances(whole, results)
+        yield from output_plots(results, whole.motion, link)
+    yield from balancing_plots(whole, results)
 
 
-def chart_data(results: Results, quantities: Quantities) -> dict[str, Any]:
+def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
     """A diagram in the units of the file."""
 
     def values(si: Real) -> list[float | None]:
@@ -166,7 +166,7 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
         },
         "bodies": [body_data(picture.bodies[name]) for name in names],
         "labels": labels(picture, names),
-        "plans": [plan_data(motion, sort) for sort in sorts()],
+        "plans": [plan_data(motion, sort) for sort in motion_plan_kinds()],
         "charts": [chart_data(results, one) for one in charts(results, whole)],
         "marks": position_marks(results, motion),
     }
@@ -175,10 +175,10 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
 def picture_of(whole: Results, motion: Motion) -> Picture:
     """The mechanism in the first frame on a sheet that has room for all of its ways."""
     linkage = whole.linkage
-    scene = Scene(linkage, whole.structure, motion.poses, 0)
-    places = [*fixed_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
-    sheet = Sheet("", "", paper=PAPER)
-    fit(sheet, to_scale(scene, places), 0.0, LARGEST)
+    scene = MechanismScene(linkage, whole.structure, motion.poses, 0)
+    places = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
+    sheet = DrawingSheet("", "", paper=PAPER)
+    fit_points(sheet, points_to_scale(scene, places), 0.0, LARGEST)
     return Picture.of(sheet, motion, scene)
 
 
@@ -232,7 +232,7 @@ def _page(results: Results, count: int) -> str:
     picture = picture_of(whole, whole.motion)
     names = list(picture.bodies)
     bodies = "\n".join(
-        f'<g data-body="{names.index(name)}">{"".join(element(mark, 0.0) for mark in marks)}</g>'
+        f'<g data-body="{names.index(name)}">{"".join(svg_element(mark, 0.0) for mark in marks)}</g>'
         for name, marks in picture.layers()
     )
     return filled(

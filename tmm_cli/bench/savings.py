@@ -10,7 +10,7 @@ from typing import Any
 
 from tmm_cli.bench.counting import all_orders, counted, no_closed_form
 from tmm_cli.bench.measured import Measured
-from tmm_cli.drawing.run import files
+from tmm_cli.drawing.run import sheet_files
 from tmm_cli.mechanics.analysis import Results, at_positions, with_forces
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.forces import applied
@@ -206,4 +206,4 @@ def _loaded(results: Results, linkage: Linkage) -> int:
 
 def _pictures(results: Results) -> int:
     """How many pictures are made."""
-    return sum(1 for __ in files(with_forces(results)))
+    return sum(1 for __ in sheet_files(with_forces(results)))

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from tmm_cli.batch import begin
 from tmm_cli.cli.common import bars
-from tmm_cli.drawing.formats import here
+from tmm_cli.drawing.formats import run_in_process
 from tmm_cli.language import _, course, speaking
 
 FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
@@ -28,7 +28,7 @@ def by_all_cores(jobs: Sequence[Callable[[], Found]], *, quiet: bool = False) ->
     """
     others = min(os.cpu_count() or 1, len(jobs)) - 1
     if others < 1 or len(jobs) < FEW:
-        yield from here(jobs)
+        yield from run_in_process(jobs)
         return
     with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), begin) as pool:
         futures = [

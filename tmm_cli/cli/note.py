@@ -11,7 +11,7 @@ from tmm_cli import solve
 from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
 from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.talk import OK, printable, say, warn
-from tmm_cli.drawing.run import remarks
+from tmm_cli.drawing.run import position_remarks
 from tmm_cli.language import _
 from tmm_cli.note import FORMATS, formats_of, note as note_of
 from tmm_cli.reports import collect_warnings, folder_name, write_whole
@@ -32,7 +32,7 @@ def note(
         problem = opened(file, variant_settings(file, variants, variant, settings))
         afford(problem.whole, None, detail=count_detail(problem.whole))
         results = solve(problem)
-        for remark in remarks(results):
+        for remark in position_remarks(results):
             say(remark)
         for warning in collect_warnings(results):
             warn(warning)

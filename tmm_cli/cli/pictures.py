@@ -10,24 +10,24 @@ from tmm_cli.cli.common import Pictures
 from tmm_cli.cli.drawing import by_all_cores
 from tmm_cli.cli.talk import say
 from tmm_cli.drawing import run as draw
-from tmm_cli.drawing.formats import Drawn, files
+from tmm_cli.drawing.formats import NamedDrawings, drawing_files
 from tmm_cli.drawing.sheets import assemblies, centres, group_table, hodographs, synthesis
 from tmm_cli.mechanics.analysis import Results
 
 
 def _whole(results: Results, *, quiet: bool = False) -> Pictures:
-    return draw.files(results, say, partial(by_all_cores, quiet=quiet))
+    return draw.sheet_files(results, say, partial(by_all_cores, quiet=quiet))
 
 
-def _sheets(made: Callable[..., Drawn], *given: Any) -> Pictures:
-    return files(made(*given), say)
+def _sheets(made: Callable[..., NamedDrawings], *given: Any) -> Pictures:
+    return drawing_files(made(*given), say)
 
 
 PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names
     "whole": _whole,
-    "hodographs": partial(_sheets, hodographs.reactions),
+    "hodographs": partial(_sheets, hodographs.draw_reaction_hodographs),
     "centres": partial(_sheets, centres.draw_centres),
-    "assemblies": partial(_sheets, assemblies.sheets),
+    "assemblies": partial(_sheets, assemblies.draw_assemblies),
     "synthesis": partial(_sheets, synthesis.draw_synthesis),
-    "group-table": partial(_sheets, group_table.sheets),
+    "group-table": partial(_sheets, group_table.draw_group_table),
 }

@@ -15,8 +15,8 @@ from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.drawing.formats import FORMATS
-from tmm_cli.drawing.layout import files_of_sheets, formats_of, refuse_plans
-from tmm_cli.drawing.run import remarks
+from tmm_cli.drawing.layout import large_sheet_files, parse_formats, refuse_plans
+from tmm_cli.drawing.run import position_remarks
 from tmm_cli.reports import collect_warnings
 
 
@@ -35,19 +35,19 @@ def sheets(
     """Draw the sheets to hand in, framed and to scale, into DIR/<problem>/."""
 
     def work(file: str) -> int:
-        wanted = formats_of(formats)
+        wanted = parse_formats(formats)
         problem = opened(file, variant_settings(file, variants, variant, settings))
         request = problem.whole.request
         detail, plans = count_detail(problem.whole), (len(request.places) or request.count) * (positions == "all")
         refuse_plans(max(detail, plans))
         afford(problem.whole, None, detail=detail, large=True, plans=plans)
         results = solve(problem, "forces")
-        for remark in remarks(results):
+        for remark in position_remarks(results):
             say(remark)
         for warning in collect_warnings(results):
             warn(warning)
         way = partial(by_all_cores, quiet=len(files) > 1)
-        write_sheets(results, out, files_of_sheets(results, paper, wanted, say, way, every=positions == "all"))
+        write_sheets(results, out, large_sheet_files(results, paper, wanted, say, way, every=positions == "all"))
         return OK
 
     each(files, work, out=out, headed=False)

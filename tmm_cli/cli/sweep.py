@@ -12,7 +12,7 @@ from tmm_cli.batch import Task, cluster, processes
 from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
 from tmm_cli.cli.opening import introduce, tree_of
 from tmm_cli.cli.talk import OK, printable, say, warn
-from tmm_cli.drawing.formats import files as drawings
+from tmm_cli.drawing.formats import drawing_files as drawings
 from tmm_cli.language import _, words_of_files
 from tmm_cli.problem import Problem
 from tmm_cli.reports import (

@@ -7,63 +7,63 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from itertools import chain
 
-from tmm_cli.drawing.formats import Drawn, Way, here, in_parts
+from tmm_cli.drawing.formats import JobRunner, NamedDrawings, files_of_parts, run_in_process
 from tmm_cli.drawing.sheets import (
     Position,
-    all_positions,
-    at_sketch,
-    balancing as shaking,
+    draw_all_positions,
     draw_centres as centres,
     draw_diagrams,
+    draw_force_plans,
     draw_group_loads,
+    draw_groups,
     draw_intermittent,
     draw_law_of_motion,
     draw_lever,
     draw_motion_plans,
+    draw_position,
+    draw_problem_synthesis,
+    draw_shaking_hodograph as shaking,
     draw_single_run,
-    forces,
-    groups,
-    position,
-    scheme,
-    synthesised,
+    scheme_sheet,
+    sketch_scene,
 )
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results, balancing, chosen_here, detailed_positions
 from tmm_cli.mechanics.quantities import FORCE, MOMENT
 
-OF_POSITION = (position, draw_motion_plans, draw_group_loads, forces, draw_lever)
-MOST_PARTS = 32  # of the positions in detail, each of which takes the results to another process
+POSITION_DRAWINGS = (draw_position, draw_motion_plans, draw_group_loads, draw_force_plans, draw_lever)
+MOST_POSITION_PARTS = 32  # of the positions in detail, each of which takes the results to another process
 
-Part = Callable[[], Drawn]  # may be pickled
+DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 
 
-def sheets(results: Results) -> Drawn:
+def all_sheets(results: Results) -> NamedDrawings:
     """Every sheet with its file's stem: those of the structure, of the cycle, then of each position in detail."""
-    return chain.from_iterable(part() for part in parts(results))
+    return chain.from_iterable(part() for part in sheet_jobs(results))
 
 
-def parts(results: Results) -> list[Part]:
+def sheet_jobs(results: Results) -> list[DrawingJob]:
     """All sheets in parts that can be drawn apart, in their order."""
     if results.motion is None:
-        return [partial(_of_mechanism, results)]
+        return [partial(_draw_mechanism, results)]
     chosen = detailed_positions(results)
-    size = math.ceil(len(chosen) / MOST_PARTS) or 1
+    size = math.ceil(len(chosen) / MOST_POSITION_PARTS) or 1
     of_positions = [
-        partial(_of_positions, results, chosen[first : first + size]) for first in range(0, len(chosen), size)
+        partial(_draw_positions, results, chosen[first : first + size]) for first in range(0, len(chosen), size)
     ]
-    return [partial(_of_mechanism, results), *of_positions]
+    return [partial(_draw_mechanism, results), *of_positions]
 
 
-def _of_mechanism(results: Results) -> Drawn:
-    found = at_sketch(results)
+def _draw_mechanism(results: Results) -> NamedDrawings:
+    found = sketch_scene(results)
     if found is not None:
-        yield "structure", scheme(results.problem.title, *found).finish()
-        yield from groups(results.problem.title, *found, results.roles)
+        yield "structure", scheme_sheet(results.problem.title, *found).finish()
+        yield from draw_groups(results.problem.title, *found, results.roles)
     if results.motion is None:
         return
-    yield from synthesised(results)
+    yield from draw_problem_synthesis(results)
     if bool(results.motion.placed.any()):
-        yield from all_positions(results)
+        yield from draw_all_positions(results)
         yield from centres(results)
         yield from draw_diagrams(results)
         yield from shaking(results)
@@ -72,29 +72,29 @@ def _of_mechanism(results: Results) -> Drawn:
         yield from draw_intermittent(results)
 
 
-def _of_positions(results: Results, chosen: Sequence[int]) -> Drawn:
+def _draw_positions(results: Results, chosen: Sequence[int]) -> NamedDrawings:
     assert results.motion is not None
     for k in chosen:
-        for sheets_of in OF_POSITION:
+        for sheets_of in POSITION_DRAWINGS:
             yield from sheets_of(Position(results, results.motion, k))
 
 
-def files(
-    results: Results, say: Callable[[str], None] = lambda note: None, way: Way = here
+def sheet_files(
+    results: Results, say: Callable[[str], None] = lambda note: None, way: JobRunner = run_in_process
 ) -> Iterable[tuple[str, bytes]]:
     """Every sheet in every format of a run; say: where a note on them goes; way: who draws."""
-    for remark in remarks(results):
+    for remark in position_remarks(results):
         say(remark)
-    yield from in_parts(parts(results), say, way)
+    yield from files_of_parts(sheet_jobs(results), say, way)
 
 
-def remarks(results: Results) -> Iterable[str]:
+def position_remarks(results: Results) -> Iterable[str]:
     """Which position is drawn in full where the file names none, and why."""
     if results.motion is not None and chosen_here(results):
-        yield from (_chosen(results, k) for k in detailed_positions(results))
+        yield from (_default_position_note(results, k) for k in detailed_positions(results))
 
 
-def _chosen(results: Results, k: int) -> str:
+def _default_position_note(results: Results, k: int) -> str:
     number, size = results.numbers[k], float(balancing(results)[k])
     if size == 0:
         return _("note: no positions.detail in the file, drawn in full is position {number}").format(number=number)

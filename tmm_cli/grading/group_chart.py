@@ -8,8 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from tmm_cli.batch import Task
-from tmm_cli.drawing.formats import files as pictures
-from tmm_cli.drawing.paper import DARK, FINE, POINT, Drawing, Panel, Sheet, filling, width
+from tmm_cli.drawing.formats import drawing_files as pictures
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    GRID_COLOUR,
+    POINT,
+    Drawing,
+    DrawingSheet,
+    Panel,
+    filling_axis,
+    text_width,
+)
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.record import State, StudentMarks
 from tmm_cli.grading.statistics import STEP, Difficulty, commonest, handed_in, hardest, histogram, percents
@@ -42,18 +51,18 @@ def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
         median=np.median(own) if own.size else 0,
         mean=own.mean() if own.size else 0,
     )
-    sheet = Sheet(task.problem.title, caption, paper=LANDSCAPE)
+    sheet = DrawingSheet(task.problem.title, caption, paper=LANDSCAPE)
     difficulties, mistakes = hardest(task, marks)[:MOST], commonest(marks)[:MOST]
     rows = max(len(difficulties), len(mistakes), FEWEST)
     low, high = sheet.ground.low, sheet.ground.high
     half = ((high - low).real - GAP) / 2
     counts = histogram(marks)
-    upper = filling(0, 1.12 * max(1, counts.max(initial=0)), high.imag - 8 - UPPER, UPPER)
-    _spread(Panel(sheet, filling(0, 100, low.real + LEFT, (high - low).real - LEFT - 2), upper), counts, own)
-    down = filling(rows, 0, low.imag + GAP, LOWER)
-    _difficulties(Panel(sheet, filling(0, 100, low.real + NAMES, half - NAMES), down), difficulties)
+    upper = filling_axis(0, 1.12 * max(1, counts.max(initial=0)), high.imag - 8 - UPPER, UPPER)
+    _spread(Panel(sheet, filling_axis(0, 100, low.real + LEFT, (high - low).real - LEFT - 2), upper), counts, own)
+    down = filling_axis(rows, 0, low.imag + GAP, LOWER)
+    _difficulties(Panel(sheet, filling_axis(0, 100, low.real + NAMES, half - NAMES), down), difficulties)
     most = 1.12 * mistakes[0][1] if mistakes else 1.0
-    _mistakes(Panel(sheet, filling(0, most, low.real + half + GAP + NAMES, half - NAMES), down), mistakes)
+    _mistakes(Panel(sheet, filling_axis(0, most, low.real + half + GAP + NAMES, half - NAMES), down), mistakes)
     return sheet.finish()
 
 
@@ -75,7 +84,7 @@ def _spread(panel: Panel, counts: Real, own: Real) -> None:
             top = float(panel.y.on(count))
             _area(panel, first, last, panel.y.start, top, BLUE)
             panel.text(complex((first + last) / 2, top + 2), f"{count}", "center")
-    panel.level(panel.y.start, DARK, 0.7, 3)
+    panel.level(panel.y.start, DARK_COLOUR, 0.7, 3)
     for share in range(0, 101, STEP):
         panel.text(complex(float(panel.x.on(share)), panel.y.start - 3), f"{share} %", "center")
 
@@ -85,7 +94,7 @@ def _counts(panel: Panel) -> None:
     for value, text in panel.y.ticks(6):
         if value == round(value):
             height = float(panel.y.on(value))
-            panel.level(height, FINE, 0.5, 0.5)
+            panel.level(height, GRID_COLOUR, 0.5, 0.5)
             panel.text(complex(panel.x.start - 1.5, height), text, "right")
 
 
@@ -125,7 +134,7 @@ def _across(panel: Panel, ticks: Iterable[tuple[float, str]]) -> None:
     """Lines at these values, which stand below the panel."""
     for value, text in ticks:
         place = float(panel.x.on(value))
-        panel.upright(place, FINE, 0.5, z=0.5)
+        panel.upright(place, GRID_COLOUR, 0.5, z=0.5)
         panel.text(complex(place, panel.y.start - 3), text, "center")
 
 
@@ -154,7 +163,7 @@ def _legend(panel: Panel, entries: Iterable[tuple[str, str]], at: complex) -> No
 
 def _room(entries: Iterable[tuple[str, str]]) -> float:
     """Width of a legend, mm."""
-    return sum(11 + width(text, SMALL * POINT) for text, __ in entries)
+    return sum(11 + text_width(text, SMALL * POINT) for text, __ in entries)
 
 
 def _area(panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0) -> None:

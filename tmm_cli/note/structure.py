@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tmm_cli.drawing.sheets import counted, parts
+from tmm_cli.drawing.sheets import count_pair_letters, mechanism_parts
 from tmm_cli.language import _, printed, typeset
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.structure import Group, Structure
@@ -185,7 +185,7 @@ def _apart(subject: Subject) -> Iterable[Block]:
             _("The parts of the mechanism are shown in figures {first} to {last}."),
             list(drawn),
         )
-    for part, (stem, drawing) in zip(parts(subject.results.structure), drawn.items(), strict=False):
+    for part, (stem, drawing) in zip(mechanism_parts(subject.results.structure), drawn.items(), strict=False):
         text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
         text = _("Redundant link {title}") if part.redundant else text
         yield Figure(text.format(title=part.title), drawing, stem)
@@ -198,5 +198,5 @@ def _group(group: Group) -> tuple[Line, ...]:
     outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known)
     inner = ", ".join(pair.name for pair in group.inner) or NONE
     roman, order = group.roman, str(group.order)
-    kind = counted(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")
+    kind = count_pair_letters(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")
     return cells(group.title, roman, order, kind, inner, outer, own)

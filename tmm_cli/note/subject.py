@@ -10,25 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.formats import Drawn
-from tmm_cli.drawing.paper import Drawing, Space, within
+from tmm_cli.drawing.formats import NamedDrawings
+from tmm_cli.drawing.paper import Drawing, PictureSpace, drawing_within
 from tmm_cli.drawing.sheets import (
     Position,
-    all_groups,
-    all_positions,
     centres,
+    draw_all_groups,
+    draw_all_positions,
     draw_diagrams,
+    draw_force_plans,
     draw_group_loads,
     draw_lever,
     draw_motion_plans,
+    draw_position,
+    draw_problem_synthesis,
+    draw_scheme,
     draw_single_run,
-    forces,
+    driver_caption,
     hodographs,
     law_of_motion,
-    place_of_driver,
-    position,
-    synthesised,
-    whole_scheme,
 )
 from tmm_cli.language import _, language, numeral, signed, spelt, typeset
 from tmm_cli.mechanics.analysis import Results, detailed_positions
@@ -46,24 +46,24 @@ WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawin
 
 
 # names that chapters use: what draws them, and the longest side (mm) of what is to scale
-OF_MECHANISM: Mapping[str, tuple[Callable[[Results], Drawn], float]] = {
-    "structure": (whole_scheme, 100),
-    "groups": (all_groups, 45),
-    "synthesis": (synthesised, 110),
-    "positions": (all_positions, 130),
+OF_MECHANISM: Mapping[str, tuple[Callable[[Results], NamedDrawings], float]] = {
+    "structure": (draw_scheme, 100),
+    "groups": (draw_all_groups, 45),
+    "synthesis": (draw_problem_synthesis, 110),
+    "positions": (draw_all_positions, 130),
     "diagrams": (draw_diagrams, 170),
-    "law": (law_of_motion.over_cycle, 225),
-    "energy-mass": (law_of_motion.diagram, 190),
+    "law": (law_of_motion.draw_law_curves, 225),
+    "energy-mass": (law_of_motion.draw_energy_mass, 190),
     "run": (draw_single_run, 225),
     "centres": (centres.draw_centres, 130),
-    "shaking": (hodographs.balancing, 110),
+    "shaking": (hodographs.draw_shaking_hodograph, 110),
 }
-OF_POSITION: Mapping[str, tuple[Callable[[Position], Drawn], float]] = {
-    "position": (position, 120),
+OF_POSITION: Mapping[str, tuple[Callable[[Position], NamedDrawings], float]] = {
+    "position": (draw_position, 120),
     "velocity": (draw_motion_plans, 120),
     "acceleration": (draw_motion_plans, 120),
     "group-loads": (draw_group_loads, 90),
-    "forces": (forces, 100),
+    "forces": (draw_force_plans, 100),
     "lever": (draw_lever, 110),
 }
 
@@ -109,7 +109,7 @@ class Subject:
 
     def at_position(self, k: int) -> str:
         """Which position, and where the driver stands."""
-        place = with_degrees(place_of_driver(self.results, float(self.motion.q[k]), 4))
+        place = with_degrees(driver_caption(self.results, float(self.motion.q[k]), 4))
         return _("position {number}, {place}").format(number=self.called(k), place=place)
 
     def rate(self, k: int) -> float:
@@ -159,7 +159,7 @@ class Subject:
             return {}
         draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
         if (draw, k) not in self._drawings:
-            with within(Space(longest, (WIDTH, HEIGHT), written=False)):
+            with drawing_within(PictureSpace(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
                 self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
         several = draw is draw_motion_plans

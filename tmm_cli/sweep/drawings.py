@@ -9,35 +9,35 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.drawing.paper import (
-    DARK,
-    INERTIA,
-    LEFT,
-    LOAD,
-    PLAIN,
+    DARK_COLOUR,
+    INERTIA_COLOUR,
+    LEFT_MARGIN,
+    LOAD_COLOUR,
+    PLAIN_TEXT,
     POINT,
-    RIGHT,
-    ROW,
-    SMALL,
-    THIN,
-    TICKS,
-    Across,
-    Curve,
+    RIGHT_MARGIN,
+    SMALL_TEXT,
+    TEXT_ROW,
+    THIN_COLOUR,
+    TICK_STEPS,
+    ChartCurve,
+    CommonAxis,
     Drawing,
+    DrawingSheet,
     Panel,
-    Plot,
-    Sheet,
+    PlotContent,
     Style,
-    axis_room,
-    borders,
-    contour,
+    axis_extent,
+    contour_lines,
     draw_chart,
-    filling,
-    hatching,
-    limits,
-    region,
+    file_safe_name,
+    filling_axis,
+    finite_limits,
+    hatch_polygons,
+    region_borders,
+    region_polygons,
     round_up,
-    safe,
-    width,
+    text_width,
     with_unit,
 )
 from tmm_cli.language import _, numeral, spelt, translated
@@ -52,7 +52,7 @@ PANELS = 4  # of a sheet
 LEVELS = 12  # lines of equal value at most
 NODES = 150  # of a grid that are drawn in each direction; of more of them a part
 PITCH = {True: 1.8, False: 3.2}  # mm of hatching: where no mechanism goes, where a limit is exceeded
-COLOURS = {True: THIN, False: "#e3b27a"}
+COLOURS = {True: THIN_COLOUR, False: "#e3b27a"}
 NAMED = 5  # borders that have their values written
 SAMPLE = 6.0  # mm of a field in the legend
 LEAST = 15.0  # mm of a line that gets its value
@@ -67,25 +67,25 @@ def sheets(title: str, sweep: Swept, units: UnitSystem) -> Iterable[tuple[str, D
         return
     for k, one in enumerate(sweep.shown):
         if np.any(np.isfinite(sweep.values[:, k])):
-            yield f"sweep-{safe(one.name)}", contours(title, sweep, k, units)
+            yield f"sweep-{file_safe_name(one.name)}", contours(title, sweep, k, units)
 
 
 def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> Drawing:
     """Some of the quantities over the one parameter, each in a panel."""
     (axis,) = sweep.axes
     caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
-    sheet = Sheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
-    start, most = axis_room(sheet)
-    over = filling(float(axis.values[0]), float(axis.values[-1]), start, most)
+    sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
+    start, most = axis_extent(sheet)
+    over = filling_axis(float(axis.values[0]), float(axis.values[-1]), start, most)
     plots = []
     for k in part:
         one = sweep.shown[k]
         values = sweep.values[:, k] / units.factor(one.dimension)
-        plots.append(Plot(_words(one, units), [Curve(axis.values, values)], degrees=_degrees(one, units)))
+        plots.append(PlotContent(_words(one, units), [ChartCurve(axis.values, values)], degrees=_degrees(one, units)))
     ends = [float(axis.values[0]), *(mark.at[0] for mark in sweep.marks), float(axis.values[-1])]
     goes = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
     spans = [(low, high, translated(WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
-    panels = draw_chart(sheet, plots, Across(over, _axis_words(axis), spans=spans if sweep.marks else ()))
+    panels = draw_chart(sheet, plots, CommonAxis(over, _axis_words(axis), spans=spans if sweep.marks else ()))
     for panel, plot in zip(panels, plots, strict=True):
         for curve in plot.curves:
             sheet.ground.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
@@ -106,7 +106,7 @@ def _stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
         complex(right, panel.y.end),
         complex(left, panel.y.end),
     ]
-    for start, end in hatching([corners], PITCH[fails]):
+    for start, end in hatch_polygons([corners], PITCH[fails]):
         panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
 
 
@@ -114,24 +114,29 @@ def _value(panel: Panel, axis: Axis, mark: Mark) -> None:
     """Of a border, beside it in the first panel."""
     place = float(panel.x.on(mark.at[0]))
     text = f"{numeral(mark.at[0], '.6g')} {spelt(axis.unit)}".strip()
-    panel.sheet.label(text, complex(place, panel.y.end - ROW), SMALL, DARK)
+    panel.sheet.label(text, complex(place, panel.y.end - TEXT_ROW), SMALL_TEXT, DARK_COLOUR)
 
 
 def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     """A quantity over both parameters."""
     one = sweep.shown[k]
     caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_words(one, units))
-    sheet = Sheet(title, caption, paper=LANDSCAPE)
+    sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
     low, high = sheet.ground.low, sheet.ground.high
     across, up = sweep.axes
-    x = filling(float(across.values[0]), float(across.values[-1]), low.real + LEFT, (high - low).real - LEFT - RIGHT)
-    bottom = low.imag + 2.6 * ROW
-    y = filling(float(up.values[0]), float(up.values[-1]), bottom, high.imag - 1.6 * ROW - bottom)
+    x = filling_axis(
+        float(across.values[0]),
+        float(across.values[-1]),
+        low.real + LEFT_MARGIN,
+        (high - low).real - LEFT_MARGIN - RIGHT_MARGIN,
+    )
+    bottom = low.imag + 2.6 * TEXT_ROW
+    y = filling_axis(float(up.values[0]), float(up.values[-1]), bottom, high.imag - 1.6 * TEXT_ROW - bottom)
     panel = Panel(sheet, x, y)
     panel.grid()
-    panel.numbers_across(0.2 * ROW)
-    sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_words(across), PLAIN, ha="center")
-    sheet.text(complex(low.real, high.imag - ROW / 2), _axis_words(up), PLAIN)
+    panel.numbers_across(0.2 * TEXT_ROW)
+    sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_words(across), PLAIN_TEXT, ha="center")
+    sheet.text(complex(low.real, high.imag - TEXT_ROW / 2), _axis_words(up), PLAIN_TEXT)
     columns, rows = (_drawn(len(axis.values)) for axis in sweep.axes)
     values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
     state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
@@ -185,38 +190,38 @@ class _Grid:
     def hatched(self, state: Any, *, fails: bool) -> None:
         """Where no mechanism goes, or a limit is exceeded, with the outline against what works."""
         inside, outline = (state >= STOPS, state >= STOPS) if fails else (state == LIMIT, state != WORKS)
-        pieces = [self.on(piece).tolist() for piece in region(inside, self.share)]
-        for start, end in hatching(pieces, PITCH[fails]):
+        pieces = [self.on(piece).tolist() for piece in region_polygons(inside, self.share)]
+        for start, end in hatch_polygons(pieces, PITCH[fails]):
             self.panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, faint=True)
         style: Style = "-" if fails else "--"
-        colour, z = (DARK, 2.5) if fails else (LOAD, 2.4)
-        for line in borders(outline, self.share):
+        colour, z = (DARK_COLOUR, 2.5) if fails else (LOAD_COLOUR, 2.4)
+        for line in region_borders(outline, self.share):
             self.panel.sheet.line(self.on(line).tolist(), colour, 1.1 if fails else 0.9, style, z, blocks=False)
 
 
 def _levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
     """Lines of equal value at round values, each with its value on its longest stretch."""
-    low, high = limits([values])
+    low, high = finite_limits([values])
     if not high > low:
         return
     sheet = lines.panel.sheet
-    step = round_up((high - low) / LEVELS, TICKS)
+    step = round_up((high - low) / LEVELS, TICK_STEPS)
     for n in range(int(np.ceil(low / step)), int(np.floor(high / step)) + 1):
-        found = [lines.on(line) for line in contour(values, n * step)]
+        found = [lines.on(line) for line in contour_lines(values, n * step)]
         lengths = [float(np.sum(np.abs(np.diff(line)))) for line in found]
         for line in found:
-            sheet.line(line.tolist(), INERTIA, 0.9, z=2, faint=True)
+            sheet.line(line.tolist(), INERTIA_COLOUR, 0.9, z=2, faint=True)
         if found and max(lengths) > LEAST:
             line = found[int(np.argmax(lengths))]
             k = len(line) // 2
             text = numeral(n * step, ".10g") + ("°" if degrees else "")
-            sheet.text(complex(line[k]), text, SMALL, colour=INERTIA, ha="center")
+            sheet.text(complex(line[k]), text, SMALL_TEXT, colour=INERTIA_COLOUR, ha="center")
 
 
 def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
     """What the hatching means, above the panel on the right."""
-    at = panel.x.end - sum(SAMPLE + 5 + width(text, SMALL * POINT) for __, text in drawn)
-    height = panel.sheet.ground.high.imag - ROW / 2
+    at = panel.x.end - sum(SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT) for __, text in drawn)
+    height = panel.sheet.ground.high.imag - TEXT_ROW / 2
     for fails, text in drawn:
         field = [
             complex(at, height - 1.3),
@@ -224,11 +229,11 @@ def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
             complex(at + SAMPLE, height + 1.3),
             complex(at, height + 1.3),
         ]
-        for start, end in hatching([field], PITCH[fails] / 1.5):
+        for start, end in hatch_polygons([field], PITCH[fails] / 1.5):
             panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
-        panel.sheet.line([*field, field[0]], DARK, 0.5, blocks=False)
+        panel.sheet.line([*field, field[0]], DARK_COLOUR, 0.5, blocks=False)
         panel.text(complex(at + SAMPLE + 1.5, height), text)
-        at += SAMPLE + 5 + width(text, SMALL * POINT)
+        at += SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT)
 
 
 def _degrees(one: Shown, units: UnitSystem) -> bool:

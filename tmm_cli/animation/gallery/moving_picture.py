@@ -12,8 +12,8 @@ import numpy as np
 
 from tmm_cli.animation.bodies import Body, Picture
 from tmm_cli.animation.page import SECONDS, picture_of, view
-from tmm_cli.drawing.formats import element
-from tmm_cli.drawing.paper import DARK, GREY_TEXT, Area, Circle, Line, Mark, Text
+from tmm_cli.drawing.formats import svg_element
+from tmm_cli.drawing.paper import DARK_COLOUR, GREY_TEXT, AreaMark, CircleMark, LineMark, Mark, TextMark
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
@@ -51,7 +51,7 @@ def turning(results: Results) -> Turning:
     drawn = list(picture.layers())
     moving = [] if still else [name for name in dict.fromkeys(name for name, __ in drawn) if name != FRAME]
     svg = "".join(
-        f"<g{_attributes(picture, name, moving)}>{''.join(element(mark, 0.0) for mark in marks)}</g>"
+        f"<g{_attributes(picture, name, moving)}>{''.join(svg_element(mark, 0.0) for mark in marks)}</g>"
         for name, marks in drawn
     )
     bodies = tuple(_courses(picture.bodies[name]) for name in moving)
@@ -120,15 +120,15 @@ def scheme(chain: SpatialChain) -> Turning:
         bow, share = (BOW, 0.5) if start.imag == end.imag else (0.0, NEAR if start.imag < end.imag else 1 - NEAR)
         middle = start + share * (end - start) + 1j * bow + between[ends] * HIGH
         between[ends] += 1
-        marks.append(Line((start, middle, end), DARK, 0.5))
-        marks.append(Circle(middle, 2.3, "white", DARK, 0.3))
-        marks.append(Text(middle, str(pair.freedoms), 3.2, GREY_TEXT, "center"))
+        marks.append(LineMark((start, middle, end), DARK_COLOUR, 0.5))
+        marks.append(CircleMark(middle, 2.3, "white", DARK_COLOUR, 0.3))
+        marks.append(TextMark(middle, str(pair.freedoms), 3.2, GREY_TEXT, "center"))
     for name, place in places.items():
         marks += _box(name, place)
     xs, ys = [abs(z.real) for z in places.values()], [z.imag for z in places.values()]
     half, top = max(max(xs) + APART / 2 + EDGE, LEAST / 2), max(ys) + BOW + EDGE
     sides = (-half, -top, 2 * half, top - min(ys) + HIGH + EDGE)
-    return Turning("".join(element(mark, 0.0) for mark in marks), sides)
+    return Turning("".join(svg_element(mark, 0.0) for mark in marks), sides)
 
 
 def _box(name: str, place: complex) -> list[Mark]:
@@ -138,7 +138,7 @@ def _box(name: str, place: complex) -> list[Mark]:
     half = max(SHARE * LETTER * len(text), HIGH) / 2 + 0.5 + 0.5j * HIGH
     corners = (place - half, place + half.conjugate(), place + half, place - half.conjugate())
     face = "#c4c4c4" if name == FRAME else "white"
-    return [Area(corners, face, DARK, 0.4), Text(place, text, LETTER, DARK, "center")]
+    return [AreaMark(corners, face, DARK_COLOUR, 0.4), TextMark(place, text, LETTER, DARK_COLOUR, "center")]
 
 
 def places_of(chain: SpatialChain) -> dict[str, complex]:

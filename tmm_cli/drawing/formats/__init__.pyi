@@ -1,17 +1,17 @@
 """Formats of drawings."""
 
-from .dxf import plain as plain
+from .dxf import escape_codes as escape_codes
 from .emf import write_emf as write_emf
-from .pdf import cut as cut, write_pdf as write_pdf
+from .pdf import subset_font as subset_font, write_pdf as write_pdf
 from .png import write_png as write_png
 from .register import (
     FORMATS as FORMATS,
     WITH_PAGES as WITH_PAGES,
-    Drawn as Drawn,
-    Way as Way,
-    files as files,
-    here as here,
-    in_parts as in_parts,
-    lacking_in as lacking_in,
+    JobRunner as JobRunner,
+    NamedDrawings as NamedDrawings,
+    drawing_files as drawing_files,
+    files_of_parts as files_of_parts,
+    missing_character_notes as missing_character_notes,
+    run_in_process as run_in_process,
 )
-from .svg import NOT_XML as NOT_XML, element as element, write_svg as write_svg
+from .svg import NOT_XML as NOT_XML, svg_element as svg_element, write_svg as write_svg

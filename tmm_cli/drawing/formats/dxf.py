@@ -6,25 +6,25 @@ import io
 import re
 from typing import TYPE_CHECKING, get_args
 
-from tmm_cli.drawing.paper import DASHES, Area, Circle, Drawing, Layer, Line, Style, Text
+from tmm_cli.drawing.paper import DASHES, AreaMark, CircleMark, Drawing, Layer, LineMark, Style, TextMark
 
 if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
 
 
-CAPITALS = 0.729  # height of the capital letters of DejaVu Sans, which DXF counts, of its size
-LINETYPES: dict[Style, str] = {"-": "CONTINUOUS", "--": "TMM_DASHED", ":": "TMM_DOTTED", "-.": "TMM_DASHDOT"}
-FONTS = {  # bold, italic: style and file
+CAPITAL_HEIGHT = 0.729  # height of the capital letters of DejaVu Sans, which DXF counts, of its size
+LINE_TYPES: dict[Style, str] = {"-": "CONTINUOUS", "--": "TMM_DASHED", ":": "TMM_DOTTED", "-.": "TMM_DASHDOT"}
+TEXT_STYLES = {  # bold, italic: style and file
     (False, False): ("TMM", "DejaVuSans.ttf"),
     (True, False): ("TMM_BOLD", "DejaVuSans-Bold.ttf"),
     (False, True): ("TMM_ITALIC", "DejaVuSans-Oblique.ttf"),
     (True, True): ("TMM_BOLD_ITALIC", "DejaVuSans-BoldOblique.ttf"),
 }
 FOREGROUND = 7  # black on paper, white on a dark screen
-DARKEST = 0x30  # of each part of a colour that is meant as black
-WIDTHS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
-MILLIMETRES = 4
-APART = "\N{HAIR SPACE}"
+BLACK_BELOW = 0x30  # of each part of a colour that is meant as black
+LINE_WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
+UNIT_MILLIMETRES = 4
+CODE_BREAKER = "\N{HAIR SPACE}"
 
 
 def write_dxf(drawing: Drawing) -> bytes:
@@ -33,15 +33,15 @@ def write_dxf(drawing: Drawing) -> bytes:
     from ezdxf.enums import TextEntityAlignment
 
     ezdxf.options.write_fixed_meta_data_for_testing = True
-    document = ezdxf.new("R2010", units=MILLIMETRES)
+    document = ezdxf.new("R2010", units=UNIT_MILLIMETRES)
     document.header["$LIMMAX"] = drawing.paper
     for layer in get_args(Layer):
         document.layers.add(layer)
     for style, dashes in DASHES.items():
         if dashes:
             signed = [length if n % 2 == 0 else -length for n, length in enumerate(dashes)]
-            document.linetypes.add(LINETYPES[style], [sum(dashes), *signed])
-    for name, font in FONTS.values():
+            document.linetypes.add(LINE_TYPES[style], [sum(dashes), *signed])
+    for name, font in TEXT_STYLES.values():
         document.styles.add(name, font=font)
     aligned = {
         "left": TextEntityAlignment.MIDDLE_LEFT,
@@ -50,17 +50,17 @@ def write_dxf(drawing: Drawing) -> bytes:
     }
     space = document.modelspace()
     for mark in drawing.marks:
-        if isinstance(mark, Text):
+        if isinstance(mark, TextMark):
             about = {
                 "layer": mark.layer,
-                **_colour(mark.colour),
-                "style": FONTS[mark.bold, mark.italic][0],
+                **_colour_attributes(mark.colour),
+                "style": TEXT_STYLES[mark.bold, mark.italic][0],
                 "rotation": mark.turn,
             }
-            text = space.add_text(plain(mark.text), height=CAPITALS * mark.size, dxfattribs=about)
+            text = space.add_text(escape_codes(mark.text), height=CAPITAL_HEIGHT * mark.size, dxfattribs=about)
             text.set_placement(_xy(mark.at), align=aligned[mark.align])
         else:
-            _add(space, mark)
+            _add_shape(space, mark)
     document.set_modelspace_vport(height=drawing.paper[1], center=(drawing.paper[0] / 2, drawing.paper[1] / 2))
     for kind in sorted(document.entitydb.dxf_types_in_use()):  # ezdxf itself takes them in the order of a set
         document.classes.add_class(kind)
@@ -69,43 +69,43 @@ def write_dxf(drawing: Drawing) -> bytes:
     return stream.getvalue().encode("utf-8", "replace")
 
 
-def plain(text: str) -> str:
+def escape_codes(text: str) -> str:
     """A text in which no code of DXF is read: %%c, ^I, \\U+0416 and their like."""
     text = "".join(letter if letter.isprintable() else " " for letter in text)
-    return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + APART, text).replace("^", "^ ")
+    return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + CODE_BREAKER, text).replace("^", "^ ")
 
 
-def _add(space: Modelspace, mark: Line | Area | Circle) -> None:
+def _add_shape(space: Modelspace, mark: LineMark | AreaMark | CircleMark) -> None:
     """A line, or a filled figure and its outline."""
     about = {"layer": mark.layer}
-    if isinstance(mark, Line):
-        pen = about | _pen(mark.colour, mark.width)
+    if isinstance(mark, LineMark):
+        pen = about | _pen_attributes(mark.colour, mark.width)
         if mark.dashes:
-            pen |= {"linetype": LINETYPES[mark.style], "ltscale": mark.width}
+            pen |= {"linetype": LINE_TYPES[mark.style], "ltscale": mark.width}
         if len(mark.places) == 2:
             space.add_line(_xy(mark.places[0]), _xy(mark.places[1]), dxfattribs=pen)
         else:
             space.add_lwpolyline([_xy(place) for place in mark.places], dxfattribs=pen)
         return
-    fill = space.add_hatch(dxfattribs=about | _colour(mark.face))
-    if isinstance(mark, Area):
+    fill = space.add_hatch(dxfattribs=about | _colour_attributes(mark.face))
+    if isinstance(mark, AreaMark):
         corners = [_xy(corner) for corner in mark.corners]
         fill.paths.add_polyline_path(corners, is_closed=True)
         if mark.edge:
-            space.add_lwpolyline(corners, close=True, dxfattribs=about | _pen(mark.edge, mark.width))
+            space.add_lwpolyline(corners, close=True, dxfattribs=about | _pen_attributes(mark.edge, mark.width))
     else:
         left, right = mark.centre - mark.radius, mark.centre + mark.radius
         fill.paths.add_polyline_path([(*_xy(left), 1.0), (*_xy(right), 1.0)], is_closed=True)
-        space.add_circle(_xy(mark.centre), mark.radius, dxfattribs=about | _pen(mark.edge, mark.width))
+        space.add_circle(_xy(mark.centre), mark.radius, dxfattribs=about | _pen_attributes(mark.edge, mark.width))
 
 
-def _pen(colour: str, width: float) -> dict[str, object]:
-    return {**_colour(colour), "lineweight": min(WIDTHS, key=lambda known: abs(known - 100 * width))}
+def _pen_attributes(colour: str, width: float) -> dict[str, object]:
+    return {**_colour_attributes(colour), "lineweight": min(LINE_WEIGHTS, key=lambda known: abs(known - 100 * width))}
 
 
-def _colour(colour: str) -> dict[str, object]:
+def _colour_attributes(colour: str) -> dict[str, object]:
     value = int(colour[1:], 16) if colour.startswith("#") else 0xFFFFFF
-    if max(value >> 16, value >> 8 & 0xFF, value & 0xFF) < DARKEST:
+    if max(value >> 16, value >> 8 & 0xFF, value & 0xFF) < BLACK_BELOW:
         return {"color": FOREGROUND}
     return {"color": FOREGROUND, "true_color": value}
 

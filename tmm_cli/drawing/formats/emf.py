@@ -15,29 +15,37 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper import Area, Circle, Drawing, Line, Mark, Text, foot, glyph_outline
+from tmm_cli.drawing.paper import AreaMark, CircleMark, Drawing, LineMark, Mark, TextMark, baseline, glyph_outline
 from tmm_cli.mechanics.numerics import Vector
 
-UNIT = 100  # a millimetre
-DEVICE = 30000  # of pixels, over DEVICE / UNIT millimetres
+UNITS_PER_MM = 100  # a millimetre
+DEVICE_PIXELS = 30000  # of pixels, over DEVICE / UNIT millimetres
 NO_PEN, NO_BRUSH = 0x80000008, 0x80000005  # stock objects
-HEADER, END, BACKGROUND, FILL, SELECT, BRUSH, ELLIPSE = 1, 14, 18, 19, 37, 39, 42
-POLYGON, POLYLINE, POLYGONS, PEN = 86, 87, 91, 95
-TRANSPARENT, WINDING, GEOMETRIC = 1, 2, 0x10000
+HEADER_RECORD, END_RECORD, BACKGROUND_MODE, FILL_MODE, SELECT_OBJECT, CREATE_BRUSH, DRAW_ELLIPSE = (
+    1,
+    14,
+    18,
+    19,
+    37,
+    39,
+    42,
+)
+DRAW_POLYGON, DRAW_POLYLINE, DRAW_POLYGONS, CREATE_PEN = 86, 87, 91, 95
+TRANSPARENT, WINDING_FILL, GEOMETRIC_PEN = 1, 2, 0x10000
 
 
 def write_emf(drawing: Drawing) -> bytes:
     """Places are rounded to a hundredth of a millimetre."""
-    pen = _Pens(drawing.paper[1])
-    body = [_record(BACKGROUND, "I", TRANSPARENT), _record(FILL, "I", WINDING)]
+    pen = _RecordWriter(drawing.paper[1])
+    body = [_record(BACKGROUND_MODE, "I", TRANSPARENT), _record(FILL_MODE, "I", WINDING_FILL)]
     for mark in drawing.marks:
         body += pen.mark(mark)
-    records = [*body, _record(END, "3I", 0, 16, 20)]
-    width, height = (round(side * UNIT) for side in drawing.paper)
+    records = [*body, _record(END_RECORD, "3I", 0, 16, 20)]
+    width, height = (round(side * UNITS_PER_MM) for side in drawing.paper)
     size = 108 + sum(map(len, records))
     box = (0, 0, width, height)
     header = _record(
-        HEADER,
+        HEADER_RECORD,
         "8i4I2H3I4i3I2I",
         *box,
         *box,
@@ -50,19 +58,19 @@ def write_emf(drawing: Drawing) -> bytes:
         0,
         0,
         0,
-        DEVICE,
-        DEVICE,
-        DEVICE // UNIT,
-        DEVICE // UNIT,
+        DEVICE_PIXELS,
+        DEVICE_PIXELS,
+        DEVICE_PIXELS // UNITS_PER_MM,
+        DEVICE_PIXELS // UNITS_PER_MM,
         0,
         0,
         0,
-        *[1000 * DEVICE // UNIT] * 2,
+        *[1000 * DEVICE_PIXELS // UNITS_PER_MM] * 2,
     )
     return b"".join((header, *records))
 
 
-class _Pens:
+class _RecordWriter:
     """Records of marks on a paper of this height; pens and brushes are made once each."""
 
     def __init__(self, height: float) -> None:
@@ -72,44 +80,50 @@ class _Pens:
 
     def mark(self, mark: Mark) -> Iterable[bytes]:
         match mark:
-            case Line():
+            case LineMark():
                 yield from self._pen(mark.colour, mark.width)
-                yield from self._polylines(_dashed(np.array(mark.places), mark.dashes))
-            case Area():
+                yield from self._polylines(_dash_polyline(np.array(mark.places), mark.dashes))
+            case AreaMark():
                 yield from self._brush(mark.face)
                 yield from self._pen(mark.edge, mark.width)
-                yield _points(POLYGON, self._places(np.array(mark.corners)))
-            case Circle():
+                yield _points_record(DRAW_POLYGON, self._places(np.array(mark.corners)))
+            case CircleMark():
                 yield from self._brush(mark.face)
                 yield from self._pen(mark.edge, mark.width)
                 corner = mark.radius * (1 + 1j)
                 (x0, y1), (x1, y0) = self._places(np.array([mark.centre - corner, mark.centre + corner])).tolist()
-                yield _record(ELLIPSE, "4i", x0, y0, x1, y1)
-            case Text():
+                yield _record(DRAW_ELLIPSE, "4i", x0, y0, x1, y1)
+            case TextMark():
                 yield from self._brush(mark.colour)
                 yield from self._pen(None, 0.0)
                 yield from self._letters(mark)
 
     def _places(self, places: Vector) -> NDArray[np.int16]:
-        return _rounded(np.column_stack([places.real, self.height - places.imag]) * UNIT)
+        return _rounded(np.column_stack([places.real, self.height - places.imag]) * UNITS_PER_MM)
 
     def _polylines(self, lines: Iterable[Vector]) -> Iterable[bytes]:
-        return (_points(POLYLINE, self._places(line)) for line in lines)
+        return (_points_record(DRAW_POLYLINE, self._places(line)) for line in lines)
 
-    def _letters(self, mark: Text) -> Iterable[bytes]:
+    def _letters(self, mark: TextMark) -> Iterable[bytes]:
         places, codes = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
         if not len(places):
             return
-        start, along = foot(mark)
+        start, along = baseline(mark)
         placed = start + mark.size * along * places
         path = Path(np.column_stack([placed.real, placed.imag]), codes)
-        turned = Affine2D().scale(UNIT, -UNIT).translate(0, UNIT * self.height)
+        turned = Affine2D().scale(UNITS_PER_MM, -UNITS_PER_MM).translate(0, UNITS_PER_MM * self.height)
         polygons = [np.asarray(polygon) for polygon in path.to_polygons(turned)]
         if polygons:
             counts = [len(p) for p in polygons]
             points = _rounded(np.concatenate(polygons))
             yield _record(
-                POLYGONS, f"4iII{len(counts)}I", *_box(points), len(counts), len(points), *counts, data=points.tobytes()
+                DRAW_POLYGONS,
+                f"4iII{len(counts)}I",
+                *_bounding_box(points),
+                len(counts),
+                len(points),
+                *counts,
+                data=points.tobytes(),
             )
 
     def _pen(self, colour: str | None, width: float) -> Iterable[bytes]:
@@ -119,24 +133,24 @@ class _Pens:
         key = (colour, max(width, 0.01))
         if key not in self.handles:
             self.handles[key] = len(self.handles) + 1
-            style = (GEOMETRIC, round(key[1] * UNIT), 0, _colour(colour), 0, 0)
-            yield _record(PEN, "5I6I", self.handles[key], 0, 0, 0, 0, *style)
+            style = (GEOMETRIC_PEN, round(key[1] * UNITS_PER_MM), 0, _colour_number(colour), 0, 0)
+            yield _record(CREATE_PEN, "5I6I", self.handles[key], 0, 0, 0, 0, *style)
         yield from self._select(True, self.handles[key])
 
     def _brush(self, colour: str) -> Iterable[bytes]:
         key = (colour, 0.0)
         if key not in self.handles:
             self.handles[key] = len(self.handles) + 1
-            yield _record(BRUSH, "4I", self.handles[key], 0, _colour(colour), 0)
+            yield _record(CREATE_BRUSH, "4I", self.handles[key], 0, _colour_number(colour), 0)
         yield from self._select(False, self.handles[key])
 
     def _select(self, pen: bool, handle: int) -> Iterable[bytes]:
         if self.selected.get(pen) != handle:
             self.selected[pen] = handle
-            yield _record(SELECT, "I", handle)
+            yield _record(SELECT_OBJECT, "I", handle)
 
 
-def _dashed(places: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
+def _dash_polyline(places: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
     """A polyline, or what of it is drawn where it is dashed; dashes: lengths drawn and left out by turns, mm."""
     if not dashes or len(places) < 2:
         yield places
@@ -155,16 +169,16 @@ def _rounded(places: NDArray[Any]) -> NDArray[np.int16]:
     return np.asarray(np.clip(np.rint(places), -32768, 32767), "<i2")
 
 
-def _colour(name: str) -> int:
+def _colour_number(name: str) -> int:
     red, green, blue = (round(255 * part) for part in to_rgb(name))
     return red | green << 8 | blue << 16
 
 
-def _points(kind: int, points: NDArray[np.int16]) -> bytes:
-    return _record(kind, "4iI", *_box(points), len(points), data=points.tobytes())
+def _points_record(kind: int, points: NDArray[np.int16]) -> bytes:
+    return _record(kind, "4iI", *_bounding_box(points), len(points), data=points.tobytes())
 
 
-def _box(points: NDArray[np.int16]) -> tuple[int, int, int, int]:
+def _bounding_box(points: NDArray[np.int16]) -> tuple[int, int, int, int]:
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return x0, y0, x1, y1
 

@@ -14,62 +14,68 @@ from matplotlib.colors import to_rgb
 
 from tmm_cli.drawing.paper import (
     POINT,
-    Area,
-    Circle,
+    AreaMark,
+    CircleMark,
     Drawing,
-    Line,
+    LineMark,
     Mark,
-    Text,
-    advance,
-    drawable,
-    font,
+    TextMark,
+    baseline,
     font_file,
-    foot,
+    letter_advance,
+    load_font,
+    replace_missing,
 )
 
-AS_THEY_ARE = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
-WORDS, SCALED, MORE, TWO_SCALES, TWO_BY_TWO = 0x01, 0x08, 0x20, 0x40, 0x80  # of a part of a composite letter
-HEAD, MAXP = 54, 32  # bytes
-MAGIC = 0xB1B0AFBA  # what the sum of a font is subtracted from
+HINT_TABLES = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
+ARGUMENTS_ARE_WORDS, HAS_SCALE, MORE_COMPONENTS, HAS_TWO_SCALES, HAS_MATRIX = (
+    0x01,
+    0x08,
+    0x20,
+    0x40,
+    0x80,
+)  # of a part of a composite letter
+HEAD_BYTES, MAXP_BYTES = 54, 32  # bytes
+CHECKSUM_BASE = 0xB1B0AFBA  # what the sum of a font is subtracted from
 
 
-def cut(path: str, wanted: Sequence[int]) -> bytes:
+def subset_font(path: str, wanted: Sequence[int]) -> bytes:
     """The font with these glyphs alone, in this order; parts of which they are composed come after them."""
-    tables = _tables(path)
+    tables = _read_tables(path)
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
     offsets *= 1 if tables["head"][51] else 2
     order, shapes = list(wanted), list[bytes]()
     for glyph in order:  # grows while its parts are met
         shape = bytearray(tables["glyf"][offsets[glyph] : offsets[glyph + 1]])
-        for at in _parts(shape):
+        for at in _component_offsets(shape):
             order.append(struct.unpack_from(">H", shape, at)[0])
             struct.pack_into(">H", shape, at, len(order) - 1)
         shapes.append(bytes(shape) + bytes(-len(shape) % 4))
     (measured,) = struct.unpack_from(">H", tables["hhea"], 34)
     measures = [tables["hmtx"][4 * k : 4 * k + 4] for k in (min(glyph, measured - 1) for glyph in order)]
     count = struct.pack(">H", len(order))
-    return _joined(
+    return _build_font(
         {
-            **{name: tables[name] for name in AS_THEY_ARE if name in tables},
+            **{name: tables[name] for name in HINT_TABLES if name in tables},
             "glyf": b"".join(shapes),
-            "head": tables["head"][:8] + bytes(4) + tables["head"][12:50] + b"\x00\x01" + tables["head"][52:HEAD],
+            "head": tables["head"][:8] + bytes(4) + tables["head"][12:50] + b"\x00\x01" + tables["head"][52:HEAD_BYTES],
             "hhea": tables["hhea"][:34] + count,
             "hmtx": b"".join(measures),
             "loca": np.cumsum([0, *map(len, shapes)]).astype(">u4").tobytes(),
-            "maxp": tables["maxp"][:4] + count + tables["maxp"][6:MAXP],
+            "maxp": tables["maxp"][:4] + count + tables["maxp"][6:MAXP_BYTES],
         }
     )
 
 
 @lru_cache(4)
-def _tables(path: str) -> dict[str, bytes]:
+def _read_tables(path: str) -> dict[str, bytes]:
     data = Path(path).read_bytes()
     (count,) = struct.unpack_from(">H", data, 4)
     entries = (struct.unpack_from(">4s4xII", data, 12 + 16 * k) for k in range(count))
     return {name.decode("latin-1"): data[start : start + length] for name, start, length in entries}
 
 
-def _parts(shape: bytearray) -> Iterator[int]:
+def _component_offsets(shape: bytearray) -> Iterator[int]:
     """Where a composite glyph says the numbers of its parts."""
     if len(shape) < 10 or shape[0] < 0x80:  # its number of contours is not negative
         return
@@ -77,12 +83,12 @@ def _parts(shape: bytearray) -> Iterator[int]:
     while more:
         (flags,) = struct.unpack_from(">H", shape, at)
         yield at + 2
-        at += 8 if flags & WORDS else 6
-        at += 2 if flags & SCALED else 4 if flags & TWO_SCALES else 8 if flags & TWO_BY_TWO else 0
-        more = bool(flags & MORE)
+        at += 8 if flags & ARGUMENTS_ARE_WORDS else 6
+        at += 2 if flags & HAS_SCALE else 4 if flags & HAS_TWO_SCALES else 8 if flags & HAS_MATRIX else 0
+        more = bool(flags & MORE_COMPONENTS)
 
 
-def _joined(tables: dict[str, bytes]) -> bytes:
+def _build_font(tables: dict[str, bytes]) -> bytes:
     """A font of these tables."""
     power = len(tables).bit_length() - 1
     head = struct.pack(">IHHHH", 0x10000, len(tables), 16 << power, power, 16 * (len(tables) - (1 << power)))
@@ -90,38 +96,41 @@ def _joined(tables: dict[str, bytes]) -> bytes:
     start = place = len(head) + 16 * len(tables)
     for name, table in sorted(tables.items()):
         padded = table + bytes(-len(table) % 4)
-        entries.append(struct.pack(">4sIII", name.encode(), _sum(padded), start, len(table)))
+        entries.append(struct.pack(">4sIII", name.encode(), _checksum(padded), start, len(table)))
         place = start if name == "head" else place
         body.append(padded)
         start += len(padded)
     font = bytearray(b"".join(entries + body))
-    struct.pack_into(">I", font, place + 8, (MAGIC - _sum(font)) % 2**32)
+    struct.pack_into(">I", font, place + 8, (CHECKSUM_BASE - _checksum(font)) % 2**32)
     return bytes(font)
 
 
-def _sum(data: bytes | bytearray) -> int:
+def _checksum(data: bytes | bytearray) -> int:
     return int(np.frombuffer(data, ">u4").sum(dtype=np.uint64)) % 2**32
 
 
 # Pages of drawings: PDF with vectors; texts can be searched, the letters of their fonts are in the file.
 
 
-ARC = 0.5522847498  # of the radius: how long the handles of a quarter of a circle are
-ROUND = "1 J 1 j\n"  # ends and corners of lines
-SYMBOLIC, ITALIC = 4, 64
-CAPITALS, STEM = 729, 100  # thousandths of the size: height of capital letters, and about the width of a stroke
+CIRCLE_HANDLE = 0.5522847498  # of the radius: how long the handles of a quarter of a circle are
+ROUND_LINES = "1 J 1 j\n"  # ends and corners of lines
+SYMBOLIC_FLAG, ITALIC_FLAG = 4, 64
+CAPITAL_HEIGHT, STEM_WIDTH = (
+    729,
+    100,
+)  # thousandths of the size: height of capital letters, and about the width of a stroke
 Slant = tuple[bool, bool]  # bold, italic
 
 
 def write_pdf(*drawings: Drawing) -> bytes:
     """A page for each drawing, without a date: the same drawings give the same bytes."""
-    file, fonts = _File(), _Fonts()
-    contents = [file.add(_stream(_page(drawing, fonts))) for drawing in drawings]
-    used = "".join(f"/F{n} {_font(file, slant, codes)} 0 R" for n, (slant, codes) in enumerate(fonts.codes.items()))
+    file, fonts = _PdfObjects(), _FontCodes()
+    contents = [file.add(_stream(_page_content(drawing, fonts))) for drawing in drawings]
+    used = "".join(f"/F{n} {_add_font(file, slant, codes)} 0 R" for n, (slant, codes) in enumerate(fonts.codes.items()))
     parent = file.count + len(drawings) + 1
     pages = [
         file.add(
-            f"<</Type/Page/Parent {parent} 0 R/MediaBox[0 0 {_number(drawing.paper[0])} {_number(drawing.paper[1])}]"
+            f"<</Type/Page/Parent {parent} 0 R/MediaBox[0 0 {' '.join(map(_format_length, drawing.paper))}]"
             f"/Resources<</Font<<{used}>>>>/Contents {content} 0 R>>"
         )
         for drawing, content in zip(drawings, contents, strict=True)
@@ -131,7 +140,7 @@ def write_pdf(*drawings: Drawing) -> bytes:
     return file.closed(file.add(f"<</Type/Catalog/Pages {parent} 0 R>>"))
 
 
-class _File:
+class _PdfObjects:
     """Objects in their order, numbered from one on."""
 
     def __init__(self) -> None:
@@ -153,7 +162,7 @@ class _File:
         return b"".join([*self.parts, form % (len(self.parts), table, len(self.parts), root, end)])
 
 
-class _Fonts:
+class _FontCodes:
     """Codes of the letters of each font, as they are met; characters of one shape have two."""
 
     def __init__(self) -> None:
@@ -162,35 +171,37 @@ class _Fonts:
     def told(self, text: str, slant: Slant) -> tuple[int, str]:
         """The number of the font, and the codes of the letters as hexadecimals."""
         own = self.codes.setdefault(slant, {})
-        return list(self.codes).index(slant), "".join(f"{own.setdefault(x, len(own) + 1):04x}" for x in drawable(text))
+        return list(self.codes).index(slant), "".join(
+            f"{own.setdefault(x, len(own) + 1):04x}" for x in replace_missing(text)
+        )
 
 
-def _font(file: _File, slant: Slant, codes: Iterable[str]) -> int:
+def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
     """A font of these letters, which have the codes from one on: outlines, widths, and which characters they are."""
-    face, letters = font(*slant), list(codes)
-    outlines = cut(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
+    face, letters = load_font(*slant), list(codes)
+    outlines = subset_font(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
     name = "".join(chr(ord("A") + tag // 26**k % 26) for k in range(6)) + f"+{face.postscript_name}"
     box = " ".join(f"{per * side:.0f}" for side in face.bbox)
     embedded = file.add(_stream(outlines, f"/Length1 {len(outlines)}"))
     descriptor = file.add(
-        f"<</Type/FontDescriptor/FontName/{name}/Flags {SYMBOLIC + ITALIC * slant[1]}/FontBBox[{box}]"
+        f"<</Type/FontDescriptor/FontName/{name}/Flags {SYMBOLIC_FLAG + ITALIC_FLAG * slant[1]}/FontBBox[{box}]"
         f"/ItalicAngle {-11 * slant[1]}/Ascent {per * face.ascender:.0f}/Descent {per * face.descender:.0f}"
-        f"/CapHeight {CAPITALS}/StemV {STEM}/FontFile2 {embedded} 0 R>>"
+        f"/CapHeight {CAPITAL_HEIGHT}/StemV {STEM_WIDTH}/FontFile2 {embedded} 0 R>>"
     )
-    widths = " ".join(f"{1000 * advance(letter, *slant):.2f}" for letter in letters)
+    widths = " ".join(f"{1000 * letter_advance(letter, *slant):.2f}" for letter in letters)
     own = file.add(
         f"<</Type/Font/Subtype/CIDFontType2/BaseFont/{name}/CIDToGIDMap/Identity/W[1[{widths}]]"
         f"/CIDSystemInfo<</Registry(Adobe)/Ordering(Identity)/Supplement 0>>/FontDescriptor {descriptor} 0 R>>"
     )
-    characters = file.add(_stream(_characters(letters)))
+    characters = file.add(_stream(_character_map(letters)))
     return file.add(
         f"<</Type/Font/Subtype/Type0/BaseFont/{name}/Encoding/Identity-H/DescendantFonts[{own} 0 R]"
         f"/ToUnicode {characters} 0 R>>"
     )
 
 
-def _characters(letters: Sequence[str]) -> str:
+def _character_map(letters: Sequence[str]) -> str:
     """Which characters the codes from one on are, a block of at most a hundred after the other."""
     lines = [f"<{code:04x}><{letter.encode('utf-16-be').hex()}>\n" for code, letter in enumerate(letters, 1)]
     blocks = [lines[k : k + 100] for k in range(0, len(lines), 100)]
@@ -212,12 +223,12 @@ def _bytes(content: str | bytes) -> bytes:
     return content.encode("ascii") if isinstance(content, str) else content
 
 
-def _page(drawing: Drawing, fonts: _Fonts) -> str:
+def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
     """What draws the marks, one after the other; a pen or a colour is told where it is another one."""
     told: dict[str, str] = {}
-    lines = [ROUND]
+    lines = [ROUND_LINES]
     for mark in drawing.marks:
-        states, shape = _shape(mark, fonts)
+        states, shape = _mark_operators(mark, fonts)
         for kind, state in states:
             if told.get(kind) != state:
                 told[kind] = state
@@ -226,32 +237,36 @@ def _page(drawing: Drawing, fonts: _Fonts) -> str:
     return "".join(lines)
 
 
-def _shape(mark: Mark, fonts: _Fonts) -> tuple[list[tuple[str, str]], str]:
+def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]], str]:
     """The states of the page that a mark needs, each of its kind, and what draws it."""
     match mark:
-        case Line():
-            dashes = f"[{' '.join(map(_number, mark.dashes))}] 0 d"
-            return [*_pen(mark.colour, mark.width), ("dashes", dashes)], f"{_way(mark.places)}S\n"
-        case Area():
-            states = [*(_pen(mark.edge, mark.width) if mark.edge else ()), ("dashes", "[] 0 d"), _face(mark.face)]
-            return states, f"{_way(mark.corners)}{'b' if mark.edge else 'f'}\n"
-        case Circle():
-            states = [*_pen(mark.edge, mark.width), ("dashes", "[] 0 d"), _face(mark.face)]
-            return states, f"{_round(mark.centre, mark.radius)}b\n"
-        case Text():
+        case LineMark():
+            dashes = f"[{' '.join(map(_format_length, mark.dashes))}] 0 d"
+            return [*_pen_states(mark.colour, mark.width), ("dashes", dashes)], f"{_path_operators(mark.places)}S\n"
+        case AreaMark():
+            states = [
+                *(_pen_states(mark.edge, mark.width) if mark.edge else ()),
+                ("dashes", "[] 0 d"),
+                _fill_state(mark.face),
+            ]
+            return states, f"{_path_operators(mark.corners)}{'b' if mark.edge else 'f'}\n"
+        case CircleMark():
+            states = [*_pen_states(mark.edge, mark.width), ("dashes", "[] 0 d"), _fill_state(mark.face)]
+            return states, f"{_circle_operators(mark.centre, mark.radius)}b\n"
+        case TextMark():
             name, codes = fonts.told(mark.text, (mark.bold, mark.italic))
-            start, along = foot(mark)
+            start, along = baseline(mark)
             turned = f"{along.real:.6f} {along.imag:.6f} {-along.imag:.6f} {along.real:.6f}"
-            return [_face(mark.colour)], (
-                f"BT /F{name} {_number(mark.size)} Tf {turned} {_place(start)} Tm <{codes}> Tj ET\n"
+            return [_fill_state(mark.colour)], (
+                f"BT /F{name} {_format_length(mark.size)} Tf {turned} {_format_point(start)} Tm <{codes}> Tj ET\n"
             )
 
 
-def _pen(colour: str, width: float) -> list[tuple[str, str]]:
-    return [("colour", f"{_rgb(colour)} RG"), ("width", f"{_number(width)} w")]
+def _pen_states(colour: str, width: float) -> list[tuple[str, str]]:
+    return [("colour", f"{_rgb(colour)} RG"), ("width", f"{_format_length(width)} w")]
 
 
-def _face(colour: str) -> tuple[str, str]:
+def _fill_state(colour: str) -> tuple[str, str]:
     return "face", f"{_rgb(colour)} rg"
 
 
@@ -260,25 +275,25 @@ def _rgb(colour: str) -> str:
     return " ".join(f"{part:.4g}" for part in to_rgb(colour))
 
 
-def _way(places: Sequence[complex]) -> str:
-    first, *others = map(_place, places)
+def _path_operators(places: Sequence[complex]) -> str:
+    first, *others = map(_format_point, places)
     return f"{first} m\n" + "".join(f"{place} l\n" for place in others)
 
 
-def _round(centre: complex, radius: float) -> str:
+def _circle_operators(centre: complex, radius: float) -> str:
     """A circle of four curves."""
-    lines = [f"{_place(centre + radius)} m\n"]
+    lines = [f"{_format_point(centre + radius)} m\n"]
     for k in range(4):
         way = radius * 1j**k
-        handles = (way * (1 + ARC * 1j), way * (ARC + 1j), way * 1j)
-        lines.append(" ".join(_place(centre + handle) for handle in handles) + " c\n")
+        handles = (way * (1 + CIRCLE_HANDLE * 1j), way * (CIRCLE_HANDLE + 1j), way * 1j)
+        lines.append(" ".join(_format_point(centre + handle) for handle in handles) + " c\n")
     return "".join(lines)
 
 
-def _place(place: complex) -> str:
+def _format_point(place: complex) -> str:
     return f"{place.real / POINT:.3f} {place.imag / POINT:.3f}"
 
 
-def _number(length: float) -> str:
+def _format_length(length: float) -> str:
     """Millimetres in points."""
     return f"{length / POINT:.4f}".rstrip("0").rstrip(".")

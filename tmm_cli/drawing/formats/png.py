@@ -17,57 +17,67 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper import POINT, Area, Circle, Drawing, Line, Mark, Text, foot, glyph_outline
+from tmm_cli.drawing.paper import (
+    POINT,
+    AreaMark,
+    CircleMark,
+    Drawing,
+    LineMark,
+    Mark,
+    TextMark,
+    baseline,
+    glyph_outline,
+)
 
 DPI = 110
-PACKED = 3  # of 9: drawings get hardly smaller beyond
-UP = 2  # PNG's filter: a line is told by how it differs from that above it
+COMPRESSION = 3  # of 9: drawings get hardly smaller beyond
+UP_FILTER = 2  # PNG's filter: a line is told by how it differs from that above it
 AGG: Any = backend_agg  # matplotlib does not say its types
 
 
 def write_png(drawing: Drawing) -> bytes:
     """On white paper."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
-    renderer, told = _paper(width, height)
+    renderer, told = _renderer_and_buffer(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
     pixels[:] = 255
     to_pixels = Affine2D().scale(DPI / 25.4)
-    for colour, marks in groupby(drawing.marks, lambda mark: mark.colour if isinstance(mark, Text) else None):
+    for colour, marks in groupby(drawing.marks, lambda mark: mark.colour if isinstance(mark, TextMark) else None):
         if colour is None:
             for mark in marks:
-                _shape(mark, renderer, to_pixels)
+                _draw_shape(mark, renderer, to_pixels)
         else:
-            _write([mark for mark in marks if isinstance(mark, Text)], colour, renderer, to_pixels)
-    return _packed(pixels, told)
+            _draw_texts([mark for mark in marks if isinstance(mark, TextMark)], colour, renderer, to_pixels)
+    return _encode_png(pixels, told)
 
 
 @lru_cache(2)
-def _paper(width: int, height: int) -> tuple[Any, NDArray[Any]]:
+def _renderer_and_buffer(width: int, height: int) -> tuple[Any, NDArray[Any]]:
     """A renderer, and room for its picture as it is told in a file: clearing them is quicker than asking for memory."""
-    return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP, np.uint8)
+    return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP_FILTER, np.uint8)
 
 
-def _shape(mark: Mark, renderer: RendererBase, to_pixels: Affine2D) -> None:
+def _draw_shape(mark: Mark, renderer: RendererBase, to_pixels: Affine2D) -> None:
     context = renderer.new_gc()
     match mark:
-        case Line():
-            _pen(context, mark.colour, mark.width)
+        case LineMark():
+            _set_pen(context, mark.colour, mark.width)
             context.set_capstyle("round")
             context.set_joinstyle("round")
             if mark.dashes:
                 context.set_dashes(0, [length / POINT for length in mark.dashes])
             renderer.draw_path(context, _path(mark.places), to_pixels)
-        case Area():
-            _pen(context, mark.edge or mark.face, mark.width if mark.edge else 0.0)
+        case AreaMark():
+            _set_pen(context, mark.edge or mark.face, mark.width if mark.edge else 0.0)
             renderer.draw_path(context, _path(mark.corners, closed=True), to_pixels, to_rgb(mark.face))
-        case Circle():
-            _pen(context, mark.edge, mark.width)
+        case CircleMark():
+            _set_pen(context, mark.edge, mark.width)
             shape = Path.circle((mark.centre.real, mark.centre.imag), mark.radius)
             renderer.draw_path(context, shape, to_pixels, to_rgb(mark.face))
     context.restore()
 
 
-def _pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
+def _set_pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
     context.set_foreground(colour)
     context.set_linewidth(wide / POINT)
 
@@ -77,11 +87,11 @@ def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
     return Path(np.column_stack([array.real, array.imag]), closed=closed)
 
 
-def _write(marks: Sequence[Text], colour: str, renderer: RendererBase, to_pixels: Affine2D) -> None:
+def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, to_pixels: Affine2D) -> None:
     """Texts are filled outlines: letters stand where their widths say, whatever the pixels are."""
     placed, codes = [], []
     for mark in marks:
-        start, along = foot(mark)
+        start, along = baseline(mark)
         places, own = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
         placed.append(start + mark.size * along * places)
         codes.append(own)
@@ -95,7 +105,7 @@ def _write(marks: Sequence[Text], colour: str, renderer: RendererBase, to_pixels
     context.restore()
 
 
-def _packed(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
+def _encode_png(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
     """The file of a picture without its transparency, packed in half the time that libraries take."""
     height, width, __ = pixels.shape
     for k in range(3):
@@ -107,7 +117,7 @@ def _packed(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
             b"\x89PNG\r\n\x1a\n",
             _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
             _chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-            _chunk(b"IDAT", zlib.compress(told.data, PACKED)),
+            _chunk(b"IDAT", zlib.compress(told.data, COMPRESSION)),
             _chunk(b"IEND", b""),
         )
     )

@@ -6,10 +6,12 @@ import re
 from collections.abc import Iterable
 from html import escape
 
-from tmm_cli.drawing.paper import FAMILY, HALF, Area, Circle, Drawing, Line, Mark, Text
+from tmm_cli.drawing.paper import BASELINE_SHARE, FONT_FAMILY, AreaMark, CircleMark, Drawing, LineMark, Mark, TextMark
 
 ANCHOR = {"left": "start", "center": "middle", "right": "end"}
-SPACES = re.compile(r"^ +| +$| {2,}")  # that a browser would leave out, though what follows is placed after them
+COLLAPSED_SPACES = re.compile(
+    r"^ +| +$| {2,}"
+)  # that a browser would leave out, though what follows is placed after them
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")
 
 
@@ -19,53 +21,55 @@ def write_svg(drawing: Drawing) -> bytes:
     lines = [
         '<?xml version="1.0" encoding="utf-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{across}mm" height="{up}mm" viewBox="0 0 {across} {up}" '
-        f'font-family="\'{FAMILY}\', Verdana, sans-serif" stroke-linejoin="round" xml:space="preserve">',
+        f'font-family="\'{FONT_FAMILY}\', Verdana, sans-serif" stroke-linejoin="round" xml:space="preserve">',
         '<rect width="100%" height="100%" fill="white"/>',
-        *(element(mark, drawing.paper[1]) for mark in drawing.marks),
+        *(svg_element(mark, drawing.paper[1]) for mark in drawing.marks),
         "</svg>\n",
     ]
     return "\n".join(lines).encode("utf-8", "replace")
 
 
-def element(mark: Mark, height: float) -> str:
+def svg_element(mark: Mark, height: float) -> str:
     """A mark on a paper of this height (mm); y goes down from there."""
     match mark:
-        case Line():
+        case LineMark():
             dashes = f' stroke-dasharray="{" ".join(f"{d:.3g}" for d in mark.dashes)}"' if mark.dashes else ""
             return (
-                f'<polyline points="{_places(mark.places, height)}" fill="none" stroke="{mark.colour}" '
+                f'<polyline points="{_format_points(mark.places, height)}" fill="none" stroke="{mark.colour}" '
                 f'stroke-width="{mark.width:.3g}" stroke-linecap="round"{dashes}/>'
             )
-        case Area():
-            return f'<polygon points="{_places(mark.corners, height)}" {_filled(mark.face, mark.edge, mark.width)}/>'
-        case Circle():
-            x, y = _place(mark.centre, height).split(",")
-            return f'<circle cx="{x}" cy="{y}" r="{mark.radius:.3g}" {_filled(mark.face, mark.edge, mark.width)}/>'
-        case Text():
-            x, y = _place(mark.at, height).split(",")
+        case AreaMark():
+            fill = _fill_attributes(mark.face, mark.edge, mark.width)
+            return f'<polygon points="{_format_points(mark.corners, height)}" {fill}/>'
+        case CircleMark():
+            x, y = _format_point(mark.centre, height).split(",")
+            fill = _fill_attributes(mark.face, mark.edge, mark.width)
+            return f'<circle cx="{x}" cy="{y}" r="{mark.radius:.3g}" {fill}/>'
+        case TextMark():
+            x, y = _format_point(mark.at, height).split(",")
             turn = f' transform="rotate({-mark.turn:.4g} {x} {y})"' if mark.turn else ""
             bold = ' font-weight="bold"' if mark.bold else ""
             italic = ' font-style="italic"' if mark.italic else ""
-            text = SPACES.sub(lambda gap: "\N{NO-BREAK SPACE}" * len(gap[0]), mark.text)
+            text = COLLAPSED_SPACES.sub(lambda gap: "\N{NO-BREAK SPACE}" * len(gap[0]), mark.text)
             told = escape(text.translate(NOT_XML), quote=False)
             return (
-                f'<text x="{x}" y="{y}" dy="{HALF:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
+                f'<text x="{x}" y="{y}" dy="{BASELINE_SHARE:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
                 f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{told}</text>'
             )
 
 
-def _filled(face: str, edge: str | None, width: float) -> str:
+def _fill_attributes(face: str, edge: str | None, width: float) -> str:
     outline = f' stroke="{edge}" stroke-width="{width:.3g}"' if edge else ""
     return f'fill="{face}"{outline}'
 
 
-def _places(places: Iterable[complex], height: float) -> str:
-    return " ".join(_place(place, height) for place in places)
+def _format_points(places: Iterable[complex], height: float) -> str:
+    return " ".join(_format_point(place, height) for place in places)
 
 
-def _place(place: complex, height: float) -> str:
-    return f"{_number(place.real)},{_number(height - place.imag)}"
+def _format_point(place: complex, height: float) -> str:
+    return f"{_format_number(place.real)},{_format_number(height - place.imag)}"
 
 
-def _number(value: float) -> str:
+def _format_number(value: float) -> str:
     return f"{value:.3f}".rstrip("0").rstrip(".")

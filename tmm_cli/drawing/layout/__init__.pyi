@@ -1,6 +1,18 @@
 """Large sheets to hand in: drawings and tables packed into a frame with its title block."""
 
-from .contents import CONTENTS as CONTENTS, chosen as chosen
-from .files import files_of_sheets as files_of_sheets, formats_of as formats_of, refuse_plans as refuse_plans
-from .large import PAPERS as PAPERS, field_of as field_of, framed as framed, large_sheets as large_sheets
-from .packing import SIZES as SIZES, Field as Field, Titles as Titles, inner as inner, pack as pack, spread as spread
+from .contents import CONTENTS as CONTENTS, choose_positions as choose_positions
+from .files import large_sheet_files as large_sheet_files, parse_formats as parse_formats, refuse_plans as refuse_plans
+from .large import (
+    PAPERS as PAPERS,
+    drawing_field as drawing_field,
+    frame_pictures as frame_pictures,
+    large_sheets as large_sheets,
+)
+from .packing import (
+    TITLE_BLOCK_SIZES as TITLE_BLOCK_SIZES,
+    PackingField as PackingField,
+    TitleBlockTexts as TitleBlockTexts,
+    frame_corners as frame_corners,
+    pack_boxes as pack_boxes,
+    spread_boxes as spread_boxes,
+)

@@ -6,25 +6,31 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from tmm_cli.drawing.formats import Drawn
-from tmm_cli.drawing.layout.values import balance_table, forces_table, law_tables, motion_tables, structure_tables
+from tmm_cli.drawing.formats import NamedDrawings
+from tmm_cli.drawing.layout.values import (
+    draw_balance_table,
+    draw_forces_table,
+    draw_law_tables,
+    draw_motion_tables,
+    draw_structure_tables,
+)
 from tmm_cli.drawing.sheets import (
     Position,
-    all_groups,
-    all_positions,
-    balancing,
-    detailed,
+    detailed_drawings,
+    draw_all_groups,
+    draw_all_positions,
     draw_centres as centres,
     draw_diagrams,
+    draw_force_plans,
     draw_group_loads,
     draw_law_of_motion,
     draw_lever,
     draw_motion_plans,
+    draw_position,
+    draw_problem_synthesis,
+    draw_scheme,
+    draw_shaking_hodograph,
     draw_single_run,
-    forces,
-    position,
-    synthesised,
-    whole_scheme,
 )
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import Results
@@ -35,13 +41,13 @@ SUBJECTS = (
     ("forces", N_("Forces")),
     ("law-of-motion", N_("Law of motion")),
 )
-SYNTHESIS = N_("Structure and synthesis")  # where there is one
-STRUCTURE, FORCES = 0, 2
-FURTHER = "-sheet-"  # in the name of a drawing that goes on with another one
+SYNTHESIS_TITLE = N_("Structure and synthesis")  # where there is one
+STRUCTURE_SHEET, FORCES_SHEET = 0, 2
+CONTINUATION_SUFFIX = "-sheet-"  # in the name of a drawing that goes on with another one
 
 
 @dataclass(frozen=True)
-class Choice:
+class SheetChoice:
     """What is drawn: the results, the positions of the motion plans and those of the forces."""
 
     results: Results
@@ -62,15 +68,19 @@ class Choice:
 
     def shows(self, sheet: int) -> bool:
         """Whether there is something to draw on this one."""
-        return sheet == STRUCTURE or (self.moves and (sheet != FORCES or self.loaded))
+        return sheet == STRUCTURE_SHEET or (self.moves and (sheet != FORCES_SHEET or self.loaded))
 
     def title(self, sheet: int) -> str:
         """What it is about, to be translated."""
-        return SYNTHESIS if sheet == STRUCTURE and self.results.problem.synthesis is not None else SUBJECTS[sheet][1]
+        return (
+            SYNTHESIS_TITLE
+            if sheet == STRUCTURE_SHEET and self.results.problem.synthesis is not None
+            else SUBJECTS[sheet][1]
+        )
 
 
 @dataclass(frozen=True)
-class Source:
+class DrawingSource:
     """What draws some of the drawings of a sheet, from the results or from each of some positions.
 
     usual: longest side on A1, mm; None: as it comes (tables). over: for which positions of the choice it draws.
@@ -78,12 +88,12 @@ class Source:
     """
 
     sheet: int
-    draw: Callable[[Any], Drawn]
+    draw: Callable[[Any], NamedDrawings]
     usual: float | None = None
     over: Literal["", "plans", "detail"] = ""
     about: str = ""
 
-    def drawings(self, choice: Choice) -> Drawn:
+    def drawings(self, choice: SheetChoice) -> NamedDrawings:
         """They are drawn one after the other, as they are taken."""
         if not choice.shows(self.sheet):
             return ()
@@ -92,7 +102,7 @@ class Source:
         return self.draw(choice.results)
 
 
-def neighbours(drawings: Iterable[tuple[Source, str]]) -> list[int]:
+def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
     """In which order drawings stand, by their numbers: those about one thing (a group) one beside the other.
 
     drawings: what draws each, and its name.
@@ -100,40 +110,40 @@ def neighbours(drawings: Iterable[tuple[Source, str]]) -> list[int]:
     first: dict[str, int] = {}
     keys: list[tuple[int, int]] = []
     for number, (source, name) in enumerate(drawings):
-        thing = name.removeprefix(source.about).partition(FURTHER)[0]
+        thing = name.removeprefix(source.about).partition(CONTINUATION_SUFFIX)[0]
         keys.append((first.setdefault(thing, number) if source.about else number, number))
     return [number for __, number in sorted(keys)]
 
 
-def chosen(results: Results, *, every: bool) -> Choice:
+def choose_positions(results: Results, *, every: bool) -> SheetChoice:
     """The positions in detail; with `every` the motion plans of all positions that could be computed."""
     motion = results.motion
     if motion is None:
-        return Choice(results, (), ())
-    detail = tuple(detailed(results))
+        return SheetChoice(results, (), ())
+    detail = tuple(detailed_drawings(results))
     moving = motion.moving & ~results.locked
     plans = [Position(results, motion, k) for k in range(len(results.numbers)) if moving[k]] if every else detail
-    return Choice(results, tuple(plans), detail)
+    return SheetChoice(results, tuple(plans), detail)
 
 
 CONTENTS = (
-    Source(0, whole_scheme, 240),
-    Source(0, all_groups, 150),
-    Source(0, synthesised, 200),
-    Source(0, structure_tables),
-    Source(1, all_positions, 240),
-    Source(1, draw_motion_plans, 300, over="plans"),
-    Source(1, centres, 200),
-    Source(1, draw_diagrams, 240),
-    Source(1, motion_tables),
-    Source(2, position, 200, over="detail"),
-    Source(2, draw_group_loads, 160, over="detail", about="group-loads"),
-    Source(2, forces, 100, over="detail", about="forces"),
-    Source(2, draw_lever, 200, over="detail"),
-    Source(2, forces_table, over="detail"),
-    Source(2, balance_table),
-    Source(2, balancing, 100),
-    Source(2, draw_single_run, 240),
-    Source(3, draw_law_of_motion, 240),
-    Source(3, law_tables),
+    DrawingSource(0, draw_scheme, 240),
+    DrawingSource(0, draw_all_groups, 150),
+    DrawingSource(0, draw_problem_synthesis, 200),
+    DrawingSource(0, draw_structure_tables),
+    DrawingSource(1, draw_all_positions, 240),
+    DrawingSource(1, draw_motion_plans, 300, over="plans"),
+    DrawingSource(1, centres, 200),
+    DrawingSource(1, draw_diagrams, 240),
+    DrawingSource(1, draw_motion_tables),
+    DrawingSource(2, draw_position, 200, over="detail"),
+    DrawingSource(2, draw_group_loads, 160, over="detail", about="group-loads"),
+    DrawingSource(2, draw_force_plans, 100, over="detail", about="forces"),
+    DrawingSource(2, draw_lever, 200, over="detail"),
+    DrawingSource(2, draw_forces_table, over="detail"),
+    DrawingSource(2, draw_balance_table),
+    DrawingSource(2, draw_shaking_hodograph, 100),
+    DrawingSource(2, draw_single_run, 240),
+    DrawingSource(3, draw_law_of_motion, 240),
+    DrawingSource(3, draw_law_tables),
 )

@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib.util import find_spec
 
-from tmm_cli.drawing.formats import FORMATS, WITH_PAGES, Way, here, lacking_in
-from tmm_cli.drawing.layout.contents import chosen
+from tmm_cli.drawing.formats import FORMATS, WITH_PAGES, JobRunner, missing_character_notes, run_in_process
+from tmm_cli.drawing.layout.contents import choose_positions
 from tmm_cli.drawing.layout.large import large_sheets
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.problem import ProblemError, chosen_names
 
-MOST = 24  # positions of which plans are drawn
+MOST_PLANS = 24  # positions of which plans are drawn
 
 
-def formats_of(text: str) -> list[str]:
+def parse_formats(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
     wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of drawings"))
     if "dxf" in wanted and find_spec("ezdxf") is None:
@@ -26,22 +26,28 @@ def formats_of(text: str) -> list[str]:
 
 def refuse_plans(count: int) -> None:
     """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
-    if count > MOST:
+    if count > MOST_PLANS:
         raise ProblemError(
             _("plans of so many positions fill no sheet that is read"),
             found=str(count),
-            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST),
+            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST_PLANS),
         )
 
 
-def files_of_sheets(
-    results: Results, paper: str, formats: Sequence[str], say: Callable[[str], None], way: Way = here, *, every: bool
+def large_sheet_files(
+    results: Results,
+    paper: str,
+    formats: Sequence[str],
+    say: Callable[[str], None],
+    way: JobRunner = run_in_process,
+    *,
+    every: bool,
 ) -> Iterator[tuple[str, bytes]]:
     """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
 
     way: who draws and who writes. every: whether motion plans are drawn of all positions.
     """
-    choice = chosen(results, every=every)
+    choice = choose_positions(results, every=every)
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
         say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
@@ -53,5 +59,5 @@ def files_of_sheets(
         else:
             jobs += [(f"{stem}.{name}", partial(FORMATS[name], sheet)) for stem, sheet in sheets.items()]
     yield from zip((file for file, __ in jobs), way([job for __, job in jobs]), strict=True)
-    for note in lacking_in(text for sheet in sheets.values() for text in sheet.texts()):
+    for note in missing_character_notes(text for sheet in sheets.values() for text in sheet.texts()):
         say(note)

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from itertools import combinations, islice
 from random import Random
 
-from tmm_cli.drawing.paper import DARK, Line, Mark, written
+from tmm_cli.drawing.paper import DARK_COLOUR, LineMark, Mark, cell_text
 from tmm_cli.language import _
 from tmm_cli.problem import SheetTexts
 
 Size = tuple[float, float]
-Step = tuple[float, float, float]  # of a skyline: from, to, down to
-MIXED = 30  # orders by chance that are tried too, always the same ones
-NEAR = 3.0  # places by which boxes that are to stay about in their order change it, at most
-MANY = 300  # where the best of all arrangements is looked for
+SkylineStep = tuple[float, float, float]  # of a skyline: from, to, down to
+RANDOM_ORDERS = 30  # orders by chance that are tried too, always the same ones
+ORDER_SHIFT = 3.0  # places by which boxes that are to stay about in their order change it, at most
+THOROUGH_ORDERS = 300  # where the best of all arrangements is looked for
 
 
 @dataclass(frozen=True)
-class Field:
+class PackingField:
     """Width and height; `taken` is what the title block has in the lower right corner."""
 
     width: float
@@ -42,44 +42,48 @@ class Field:
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
 
 
-def pack(sizes: Sequence[Size], field: Field, *, led: bool = False, tidy: bool = False) -> list[Size] | None:
+def pack_boxes(
+    sizes: Sequence[Size], field: PackingField, *, led: bool = False, tidy: bool = False
+) -> list[Size] | None:
     """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted.
 
     led: the first box is in the upper left corner. tidy: none stands before an earlier one.
     """
-    found = _packed(sizes, field, MIXED, led=led, tidy=tidy)
-    return next((places for places in found if not tidy or not _broken(places)), None)
+    found = _packings(sizes, field, RANDOM_ORDERS, led=led, tidy=tidy)
+    return next((places for places in found if not tidy or not _count_out_of_order(places)), None)
 
 
-def arranged(sizes: Sequence[Size], field: Field) -> list[Size] | None:
+def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | None:
     """The same, so that a reader who goes right and down meets the boxes about as they come."""
     for led in (True, False):
-        found = [places for tidy in (True, False) for places in _packed(sizes, field, MANY, led=led, tidy=tidy)]
+        found = [
+            places for tidy in (True, False) for places in _packings(sizes, field, THOROUGH_ORDERS, led=led, tidy=tidy)
+        ]
         if found:
-            return min(found, key=lambda places: (_broken(places), _disorder(places, sizes, field)))
+            return min(found, key=lambda places: (_count_out_of_order(places), _disorder(places, sizes, field)))
     return None
 
 
-def _packed(sizes: Sequence[Size], field: Field, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
+def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
     """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too; tidy: orders near theirs."""
     if sum(width * height for width, height in sizes) > field.area:
         return
-    turned = Field(field.height, field.width, field.taken[::-1])
+    turned = PackingField(field.height, field.width, field.taken[::-1])
     for order in _orders(sizes, mixed, 1 if led else 0, tidy=tidy):
-        places = _in_order(sizes, order, field)
+        places = _place_in_order(sizes, order, field)
         if places is not None:
             yield places
-        places = _in_order([(height, width) for width, height in sizes], order, turned)
+        places = _place_in_order([(height, width) for width, height in sizes], order, turned)
         if places is not None:
             yield [(x, y) for y, x in places]
 
 
-def _broken(places: Sequence[Size]) -> int:
+def _count_out_of_order(places: Sequence[Size]) -> int:
     """How many boxes begin both farther up and farther to the left than one that comes earlier."""
     return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(places, 2))
 
 
-def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> float:
+def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
     """By how much boxes stand before those that come earlier, the more so the earlier, on the way right and down."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
@@ -97,7 +101,7 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
     yield every
     if tidy:
         for __ in range(mixed):
-            near = {k: k + NEAR * chance.random() for k in rest}
+            near = {k: k + ORDER_SHIFT * chance.random() for k in rest}
             yield [*first, *sorted(rest, key=near.__getitem__)]
         return
     keys = (
@@ -111,9 +115,9 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
     yield from ([*first, *chance.sample(rest, len(rest))] for __ in range(mixed))
 
 
-def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list[Size] | None:
+def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingField) -> list[Size] | None:
     """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
-    skyline: list[Step] = [(0.0, field.width, 0.0)]
+    skyline: list[SkylineStep] = [(0.0, field.width, 0.0)]
     places = [(0.0, 0.0)] * len(sizes)
     for k in order:
         width, height = sizes[k]
@@ -122,17 +126,17 @@ def _in_order(sizes: Sequence[Size], order: Sequence[int], field: Field) -> list
             end = start + width
             if end > field.width + 1e-9:
                 break
-            top = _top(skyline, number, end, highest)
+            top = _skyline_top(skyline, number, end, highest)
             if top < highest and top + height <= field.depth(start, end) + 1e-9:
                 highest, place = top, start
         if highest == math.inf:
             return None
         places[k] = (place, highest)
-        skyline = _lowered(skyline, place, place + width, highest + height)
+        skyline = _lower_skyline(skyline, place, place + width, highest + height)
     return places
 
 
-def _top(skyline: Sequence[Step], number: int, end: float, most: float) -> float:
+def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
     """How far down a box begins that stands from the left end of a step to here; what is not less than most is most."""
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
@@ -145,9 +149,9 @@ def _top(skyline: Sequence[Step], number: int, end: float, most: float) -> float
     return top
 
 
-def _lowered(skyline: Sequence[Step], start: float, end: float, down: float) -> list[Step]:
+def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
     """The skyline with a box under which it goes down to here."""
-    found: list[Step] = []
+    found: list[SkylineStep] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
             found.append((left, min(right, start), depth))
@@ -158,7 +162,7 @@ def _lowered(skyline: Sequence[Step], start: float, end: float, down: float) -> 
     return found
 
 
-def spread(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> list[Size]:
+def spread_boxes(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
     """The same arrangement with the free room shared out: first across, then down.
 
     Distances of the corners grow all by one factor, so boxes that did not overlap do not afterwards.
@@ -167,29 +171,29 @@ def spread(places: Sequence[Size], sizes: Sequence[Size], field: Field) -> list[
         low, high = 1.0, 4.0
         while high - low > 1e-4:
             factor = (low + high) / 2
-            if all(field.holds(_stretched(at, axis, factor), size) for at, size in zip(places, sizes, strict=True)):
+            if all(field.holds(_stretch(at, axis, factor), size) for at, size in zip(places, sizes, strict=True)):
                 low = factor
             else:
                 high = factor
-        places = [_stretched(at, axis, low) for at in places]
+        places = [_stretch(at, axis, low) for at in places]
     return list(places)
 
 
-def _stretched(at: Size, axis: int, factor: float) -> Size:
+def _stretch(at: Size, axis: int, factor: float) -> Size:
     return (at[0] * factor, at[1]) if axis == 0 else (at[0], at[1] * factor)
 
 
 # The frame of a sheet and its title block: GOST 2.104, form 1 (185 x 55 mm), or a plain one.
 
 
-LEFT, EDGE = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others
-BOLD, FINE = 0.6, 0.25  # mm: main and thin lines
-SIZES = {"gost": (185.0, 55.0), "plain": (140.0, 32.0)}
-SMALL, USUAL, LARGE = 2.8, 3.5, 5.0  # mm: sizes of letters' bodies
+LEFT_MARGIN, OTHER_MARGIN = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others
+MAIN_LINE, THIN_LINE = 0.6, 0.25  # mm: main and thin lines
+TITLE_BLOCK_SIZES = {"gost": (185.0, 55.0), "plain": (140.0, 32.0)}
+SMALL_LETTERS, USUAL_LETTERS, LARGE_LETTERS = 2.8, 3.5, 5.0  # mm: sizes of letters' bodies
 
 
 @dataclass(frozen=True)
-class Titles:
+class TitleBlockTexts:
     """What is written into the block of one sheet; number: which of `count` it is."""
 
     texts: SheetTexts
@@ -199,36 +203,40 @@ class Titles:
     count: int
 
 
-def frame(paper: tuple[float, float]) -> Line:
+def sheet_frame(paper: tuple[float, float]) -> LineMark:
     """The frame of the field."""
-    low, high = inner(paper)
+    low, high = frame_corners(paper)
     return _rectangle(low, high)
 
 
-def inner(paper: tuple[float, float]) -> tuple[complex, complex]:
+def frame_corners(paper: tuple[float, float]) -> tuple[complex, complex]:
     """Corners of the field within the frame."""
-    return complex(LEFT, EDGE), complex(paper[0] - EDGE, paper[1] - EDGE)
+    return complex(LEFT_MARGIN, OTHER_MARGIN), complex(paper[0] - OTHER_MARGIN, paper[1] - OTHER_MARGIN)
 
 
-def title_block(titles: Titles, corner: complex) -> Iterable[Mark]:
+def title_block(titles: TitleBlockTexts, corner: complex) -> Iterable[Mark]:
     """The block, its lower right corner here."""
     kind = titles.texts.block
-    low = corner - SIZES[kind][0]
-    marks = _gost(titles) if kind == "gost" else _plain(titles)
+    low = corner - TITLE_BLOCK_SIZES[kind][0]
+    marks = _gost_block(titles) if kind == "gost" else _plain_block(titles)
     return [mark.moved(low) for mark in marks]
 
 
-def _gost(titles: Titles) -> list[Mark]:
+def _gost_block(titles: TitleBlockTexts) -> list[Mark]:
     texts = titles.texts
     marks: list[Mark] = [_rectangle(0j, 185 + 55j)]
-    marks += _lines("x", ((17, 0, 55), (40, 0, 55), (55, 0, 55), (65, 0, 55), (7, 30, 55), (135, 0, 40)), BOLD)
-    marks += _lines("x", ((150, 20, 40), (167, 20, 40), (155, 15, 20)), BOLD)
-    marks += _lines("x", ((140, 20, 35), (145, 20, 35)), FINE)
-    marks += _lines("y", ((30, 0, 65), (35, 0, 65), (40, 65, 185), (15, 65, 185), (35, 135, 185), (20, 135, 185)), BOLD)
-    marks += _lines("y", [(y, 0, 65) for y in (5, 10, 15, 20, 25, 40, 45, 50)], FINE)
+    marks += _ruled_lines(
+        "x", ((17, 0, 55), (40, 0, 55), (55, 0, 55), (65, 0, 55), (7, 30, 55), (135, 0, 40)), MAIN_LINE
+    )
+    marks += _ruled_lines("x", ((150, 20, 40), (167, 20, 40), (155, 15, 20)), MAIN_LINE)
+    marks += _ruled_lines("x", ((140, 20, 35), (145, 20, 35)), THIN_LINE)
+    marks += _ruled_lines(
+        "y", ((30, 0, 65), (35, 0, 65), (40, 65, 185), (15, 65, 185), (35, 135, 185), (20, 135, 185)), MAIN_LINE
+    )
+    marks += _ruled_lines("y", [(y, 0, 65) for y in (5, 10, 15, 20, 25, 40, 45, 50)], THIN_LINE)
     heads = ((0, 7, _("Rev.")), (7, 17, _("Sheet")), (17, 40, _("Doc. No.")), (40, 55, _("Sign.")), (55, 65, _("Date")))
     for start, end, word in heads:
-        marks += written(word, complex(start, 30), complex(end, 35), SMALL)
+        marks += cell_text(word, complex(start, 30), complex(end, 35), SMALL_LETTERS)
     roles = (
         (25, _("Drawn"), texts.student),
         (20, _("Checked"), texts.teacher),
@@ -237,24 +245,24 @@ def _gost(titles: Titles) -> list[Mark]:
         (0, _("Approved"), ""),
     )
     for low, role, name in roles:
-        marks += written(role, complex(0, low), complex(17, low + 5), SMALL, "left")
-        marks += written(name, complex(17, low), complex(40, low + 5), SMALL, "left")
-    marks += written(texts.code, 65 + 40j, 185 + 55j, 1.4 * LARGE)
-    marks += written(titles.title, 65 + 26j, 135 + 40j, LARGE, lines=2)
-    marks += written(titles.subject, 65 + 15j, 135 + 26j, USUAL, lines=2)
+        marks += cell_text(role, complex(0, low), complex(17, low + 5), SMALL_LETTERS, "left")
+        marks += cell_text(name, complex(17, low), complex(40, low + 5), SMALL_LETTERS, "left")
+    marks += cell_text(texts.code, 65 + 40j, 185 + 55j, 1.4 * LARGE_LETTERS)
+    marks += cell_text(titles.title, 65 + 26j, 135 + 40j, LARGE_LETTERS, lines=2)
+    marks += cell_text(titles.subject, 65 + 15j, 135 + 26j, USUAL_LETTERS, lines=2)
     for start, end, word in ((135, 150, _("Stage")), (150, 167, _("Mass")), (167, 185, _("Scale"))):
-        marks += written(word, complex(start, 35), complex(end, 40), SMALL)
-    marks += written(_("Sheet {number}").format(number=titles.number), 135 + 15j, 155 + 20j, SMALL)
-    marks += written(_("Sheets {count}").format(count=titles.count), 155 + 15j, 185 + 20j, SMALL)
+        marks += cell_text(word, complex(start, 35), complex(end, 40), SMALL_LETTERS)
+    marks += cell_text(_("Sheet {number}").format(number=titles.number), 135 + 15j, 155 + 20j, SMALL_LETTERS)
+    marks += cell_text(_("Sheets {count}").format(count=titles.count), 155 + 15j, 185 + 20j, SMALL_LETTERS)
     institution = " ".join(part for part in (texts.department, texts.group) if part)
-    return [*marks, *written(institution, 135 + 0j, 185 + 15j, USUAL, lines=3)]
+    return [*marks, *cell_text(institution, 135 + 0j, 185 + 15j, USUAL_LETTERS, lines=3)]
 
 
-def _plain(titles: Titles) -> list[Mark]:
+def _plain_block(titles: TitleBlockTexts) -> list[Mark]:
     texts = titles.texts
     marks: list[Mark] = [_rectangle(0j, 140 + 32j)]
-    marks += _lines("y", ((8, 0, 140), (16, 0, 140), (24, 0, 140)), FINE)
-    marks += _lines("x", ((105, 16, 32), (85, 0, 16), (20, 0, 16), (105, 0, 16)), FINE)
+    marks += _ruled_lines("y", ((8, 0, 140), (16, 0, 140), (24, 0, 140)), THIN_LINE)
+    marks += _ruled_lines("x", ((105, 16, 32), (85, 0, 16), (20, 0, 16), (105, 0, 16)), THIN_LINE)
     cells = (
         (0, 24, 105, titles.title),
         (105, 24, 140, texts.code),
@@ -270,16 +278,16 @@ def _plain(titles: Titles) -> list[Mark]:
         (105, 0, 140, texts.department),
     )
     for left, low, right, text in cells:
-        marks += written(text, complex(left, low), complex(right, low + 8), USUAL, "left", lines=2)
+        marks += cell_text(text, complex(left, low), complex(right, low + 8), USUAL_LETTERS, "left", lines=2)
     return marks
 
 
-def _rectangle(low: complex, high: complex) -> Line:
+def _rectangle(low: complex, high: complex) -> LineMark:
     across = (high - low).real
-    return Line((low, low + across, high, high - across, low), DARK, BOLD, layer="frame", z=8.0)
+    return LineMark((low, low + across, high, high - across, low), DARK_COLOUR, MAIN_LINE, layer="frame", z=8.0)
 
 
-def _lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[Line]:
+def _ruled_lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
     """Lines at a distance along one axis, from and to along the other."""
     ends = [(complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in every]
-    return [Line(pair, DARK, width, layer="frame", z=8.0) for pair in ends]
+    return [LineMark(pair, DARK_COLOUR, width, layer="frame", z=8.0) for pair in ends]

@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.drawing.paper import (
-    DARK,
+    DARK_COLOUR,
     Drawing,
-    Line,
+    LineMark,
     Mark,
-    Picture,
-    Text,
+    SheetPicture,
+    TextMark,
     Words,
-    cut,
+    cut_text,
     longest_for,
-    pieces,
+    placed_pieces,
     render_picture,
     script_width,
 )
-from tmm_cli.drawing.sheets import Position, place_of_driver
+from tmm_cli.drawing.sheets import Position, driver_caption
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Lettered, Loaded, Symbol, balance_symbol, reaction_symbol
@@ -45,80 +45,97 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.problem import UnitSystem, on_paper
 from tmm_cli.reports import terminal_cells, walk
 
-SIZE = 3.2  # mm: letters of a table as it comes
-BOLD, FINE = 0.5, 0.2  # mm: lines
-AIR, ROW = 1.4, 1.7  # of the size: room beside a text, height of a row
-FOLDED = 28  # rows, beyond which a table goes on beside itself
-APART = 3.0  # of the size, between two parts
-WIDEST = 24.0  # of the size: a longer text is cut
+LETTER_SIZE = 3.2  # mm: letters of a table as it comes
+OUTER_LINE, INNER_LINE = 0.5, 0.2  # mm: lines
+TEXT_AIR, ROW_HEIGHT = 1.4, 1.7  # of the size: room beside a text, height of a row
+MOST_ROWS = 28  # rows, beyond which a table goes on beside itself
+PART_GAP = 3.0  # of the size, between two parts
+WIDEST_TEXT = 24.0  # of the size: a longer text is cut
 
 
-def table(title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()) -> Picture:
+def draw_table(
+    title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()
+) -> SheetPicture:
     """A table, its letters as large as the room lets them be."""
-    cells = [[cut(one, 1.0, WIDEST) if isinstance(one, str) else one for one in row] for row in (heads, *rows)]
-    columns = [max(script_width(row[k], 1.0) for row in cells) + AIR for k in range(len(heads))]
-    parts = max(math.ceil(len(rows) / FOLDED), 1)
+    cells = [
+        [cut_text(one, 1.0, WIDEST_TEXT) if isinstance(one, str) else one for one in row] for row in (heads, *rows)
+    ]
+    columns = [max(script_width(row[k], 1.0) for row in cells) + TEXT_AIR for k in range(len(heads))]
+    parts = max(math.ceil(len(rows) / MOST_ROWS), 1)
     most = math.ceil(len(rows) / parts)
-    step = sum(columns) + APART
-    across, up = parts * step - APART, ROW * (most + 1)
-    longest = longest_for(SIZE * max(across, up))
+    step = sum(columns) + PART_GAP
+    across, up = parts * step - PART_GAP, ROW_HEIGHT * (most + 1)
+    longest = longest_for(LETTER_SIZE * max(across, up))
     size = longest / max(across, up)
     marks: list[Mark] = []
     for part in range(parts):
         here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
-        marks += [mark.moved(part * size * step + 0j) for mark in _part(here, [size * wide for wide in columns], size)]
+        marks += [
+            mark.moved(part * size * step + 0j)
+            for mark in _draw_table_part(here, [size * wide for wide in columns], size)
+        ]
     return render_picture(marks, title, longest, notes=notes)
 
 
-def _part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
+def _draw_table_part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
     """Rows below one another, the heads first; words begin at the left, numbers end at the right."""
-    row, wide = ROW * size, sum(columns)
+    row, wide = ROW_HEIGHT * size, sum(columns)
     edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
     high = [-row * k for k in range(len(cells) + 1)]
     marks: list[Mark] = [
-        Line((1j * y, wide + 1j * y), DARK, BOLD if k in (0, 1, len(cells)) else FINE, layer="text")
+        LineMark(
+            (1j * y, wide + 1j * y), DARK_COLOUR, OUTER_LINE if k in (0, 1, len(cells)) else INNER_LINE, layer="text"
+        )
         for k, y in enumerate(high)
     ]
     marks += [
-        Line((complex(x, high[-1]), complex(x, 0)), DARK, BOLD if x in (0.0, edges[-1]) else FINE, layer="text")
+        LineMark(
+            (complex(x, high[-1]), complex(x, 0)),
+            DARK_COLOUR,
+            OUTER_LINE if x in (0.0, edges[-1]) else INNER_LINE,
+            layer="text",
+        )
         for x in edges
     ]
     for k, (start, end) in enumerate(pairwise(edges)):
-        numbers = all(_number(line[k]) for line in cells[1:])
+        numbers = all(_is_number(line[k]) for line in cells[1:])
         for line, y in zip(cells, high, strict=False):
-            at = complex(start + AIR / 2 * size, y - row / 2)
+            at = complex(start + TEXT_AIR / 2 * size, y - row / 2)
             if numbers:
-                at = complex(end - AIR / 2 * size - script_width(line[k], size), y - row / 2)
-            for off, letters, own in pieces(line[k], size):
+                at = complex(end - TEXT_AIR / 2 * size - script_width(line[k], size), y - row / 2)
+            for off, letters, own in placed_pieces(line[k], size):
                 if letters:
-                    marks.append(Text(at + off, letters, own, DARK))
+                    marks.append(TextMark(at + off, letters, own, DARK_COLOUR))
     return marks
 
 
-def _number(text: Words) -> bool:
+def _is_number(text: Words) -> bool:
     return isinstance(text, str) and (not text or text == "-" or text.lstrip("+-−")[:1].isdigit())
 
 
 # Tables of values on large sheets: structure, motion in all positions, forces of a position.
 
 
-FIGURES = 4  # of each number
-NOTHING = 1e-9  # of the largest number of a column: less is written as zero
-DECIMALS = 6  # at most; what would need more is written with a power of ten
-BESIDE = 8  # quantities beside one another in a table
-POSITIONS = 36  # rows of a table at most: of more positions only some have one
+SIGNIFICANT_FIGURES = 4  # of each number
+ZERO_BELOW = 1e-9  # of the largest number of a column: less is written as zero
+MOST_DECIMALS = 6  # at most; what would need more is written with a power of ten
+MOST_COLUMNS = 8  # quantities beside one another in a table
+MOST_POSITIONS = 36  # rows of a table at most: of more positions only some have one
 
-Quantity = tuple[str | Symbol, Any, Dimension]
+QuantityColumn = tuple[str | Symbol, Any, Dimension]
 
 
-def structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Links and kinematic pairs."""
     for found in walk(results, ("links", "pairs")):
         rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
-        yield f"table-{found.name}", table(found.title, [translated(column.header) for column in found.columns], rows)
+        yield (
+            f"table-{found.name}",
+            draw_table(found.title, [translated(column.header) for column in found.columns], rows),
+        )
 
 
-def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Speeds, then accelerations, of all points and links in all positions."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
@@ -133,18 +150,18 @@ def motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
         ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
     ):
         moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
-        each = math.ceil(len(moving) / math.ceil(len(moving) / BESIDE)) if moving else 1
+        each = math.ceil(len(moving) / math.ceil(len(moving) / MOST_COLUMNS)) if moving else 1
         for start in range(0, len(moving), each):
-            yield f"table-{stem}", over_positions(results, title, moving[start : start + each])
+            yield f"table-{stem}", table_over_positions(results, title, moving[start : start + each])
 
 
-def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
     """What balances the drivers in all positions, by both ways."""
     reactions, lever = results.reactions, results.lever
     if reactions is None or lever is None:
         return
     several = len(reactions.balances) > 1
-    columns: list[Quantity] = []
+    columns: list[QuantityColumn] = []
     for balance in reactions.balances:
         turns = balance.moment is not None if several else balance.kind == "moment"
         name = balance_symbol(balance.driver.link, several, turns=turns)
@@ -154,26 +171,26 @@ def balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
         __, ___, dimension = columns[0]
         checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
         columns.append((_("by the lever"), checked, dimension))
-    yield "table-balance", over_positions(results, _("What balances the driver"), columns)
+    yield "table-balance", table_over_positions(results, _("What balances the driver"), columns)
 
 
-def over_positions(results: Results, title: str, columns: Sequence[Quantity]) -> Drawing:
+def table_over_positions(results: Results, title: str, columns: Sequence[QuantityColumn]) -> Drawing:
     """A row a position, angles of the driver first."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
     cycle = 2 * np.pi * motion.linkage.turns
-    place: Quantity = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
+    place: QuantityColumn = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
     heads: list[Words] = [_("No.")]
     heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
-    chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / POSITIONS))
-    cells = [numbers(values, dimension, units, chosen) for __, values, dimension in every]
+    chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / MOST_POSITIONS))
+    cells = [format_column(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
-    return table(title, heads, rows)
+    return draw_table(title, heads, rows)
 
 
-def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
+def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     """Sizes of all forces with their angles from x, and moments, at a position."""
     results, k = here.results, here.k
     reactions, units = results.reactions, results.problem.units
@@ -184,50 +201,52 @@ def forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
     moments = [(one.symbol, one.moment) for one in given if one.couple]
     largest = max((abs(force) for __, force in forces), default=0.0)
-    rows: list[list[Words]] = [[name, *_polar(force, largest, units), ""] for name, force in forces]
-    rows += [[name, "", "", numeral(units.from_si(moment, MOMENT), f".{FIGURES}g")] for name, moment in moments]
+    rows: list[list[Words]] = [[name, *_polar_cells(force, largest, units), ""] for name, force in forces]
+    rows += [
+        [name, "", "", numeral(units.from_si(moment, MOMENT), f".{SIGNIFICANT_FIGURES}g")] for name, moment in moments
+    ]
     heads = [
         _("force or moment"),
         _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))),
         _("angle from x, °"),
         _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT))),
     ]
-    place = place_of_driver(results, float(here.motion.q[k]))
+    place = driver_caption(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the indices of two links: from the first one on the second")]
-    yield here.stem("table-forces"), table(title, heads, rows, notes)
+    yield here.stem("table-forces"), draw_table(title, heads, rows, notes)
 
 
-def _polar(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
+def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
     """Size, and angle within a turn; a force that is only rounding has none."""
     if not abs(force) > NO_FORCE * largest:
         return "0", "-"
     angle = round(math.degrees(math.atan2(force.imag, force.real)), 1) % 360
-    return numeral(units.from_si(abs(force), FORCE), f".{FIGURES}g"), numeral(angle, ".1f")
+    return numeral(units.from_si(abs(force), FORCE), f".{SIGNIFICANT_FIGURES}g"), numeral(angle, ".1f")
 
 
-def numbers(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
+def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
     """Values (SI) in the units of the file, all with the decimals that the largest one needs; a dash where none is."""
     shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
     picked = np.array([shown[k if len(shown) > 1 else 0] for k in rows])
     known = shown[np.isfinite(shown)]
     largest = float(np.max(np.abs(known), initial=0.0))
-    decimals = FIGURES - 1 - math.floor(math.log10(largest)) if largest else 0
-    form = f".{FIGURES}g"
-    if -DECIMALS < decimals <= DECIMALS:
+    decimals = SIGNIFICANT_FIGURES - 1 - math.floor(math.log10(largest)) if largest else 0
+    form = f".{SIGNIFICANT_FIGURES}g"
+    if -MOST_DECIMALS < decimals <= MOST_DECIMALS:
         needed = (
             n for n in range(decimals) if np.allclose(np.round(known, n), known, rtol=0, atol=10.0**-decimals / 2)
         )
         decimals = next(needed, max(decimals, 0))
         form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no zero with a sign
-    least = NOTHING * largest
+    least = ZERO_BELOW * largest
     return ["-" if not math.isfinite(v) else numeral(v, form) if abs(v) > least else "0" for v in picked.tolist()]
 
 
 # Tables of values on the large sheet of the law of motion.
 
 
-def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """What was found, then the machine reduced to its driver and its law of motion in all positions."""
     running = results.steady
     if running is None or results.motion is None:
@@ -235,15 +254,16 @@ def law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     units = results.problem.units
     for found in walk(results, ("dynamics",)):
         columns = [
-            terminal_cells(replace(column, digits=FIGURES), units, range(found.rows)) for column in found.columns
+            terminal_cells(replace(column, digits=SIGNIFICANT_FIGURES), units, range(found.rows))
+            for column in found.columns
         ]
         heads = [translated(column.header) for column in found.columns]
         rows = [[*told, on_paper(unit)] for *told, unit in zip(*columns, strict=True)]
-        yield "table-dynamics", table(found.title, heads, rows)
-    yield "table-law", over_positions(results, _("Law of motion of the driver"), _columns(results))
+        yield "table-dynamics", draw_table(found.title, heads, rows)
+    yield "table-law", table_over_positions(results, _("Law of motion of the driver"), _law_columns(results))
 
 
-def _columns(results: Results) -> list[Quantity]:
+def _law_columns(results: Results) -> list[QuantityColumn]:
     running, motion = results.steady, results.motion
     assert running is not None and motion is not None
     law, way = running.steady.law, running.way(motion.q)

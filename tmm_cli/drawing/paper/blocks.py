@@ -15,16 +15,16 @@ from tmm_cli.drawing.paper.script import Words, script_width
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
 
-NOTE, CELL = 9.0, 8.0  # points
-BLOCK_LINE, ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next
-EDGE, GUTTER, APART = 2.0, 3.0, 6.0  # mm: inside the frame, between columns, between parts side by side
-CLEAR = 4.0  # mm about a block that are free
-STEPS = 12  # places along an edge that are tried for a block
-PARTS = 4  # of one table side by side, at most
+NOTE_SIZE, CELL_SIZE = 9.0, 8.0  # points
+NOTE_LINE, TABLE_ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next
+BLOCK_EDGE, COLUMN_GAP, PART_GAP = 2.0, 3.0, 6.0  # mm: inside the frame, between columns, between parts side by side
+BLOCK_CLEARANCE = 4.0  # mm about a block that are free
+EDGE_STEPS = 12  # places along an edge that are tried for a block
+MOST_PARTS = 4  # of one table side by side, at most
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """Cells of a row of a table; `head`: they are titles of columns."""
 
     cells: tuple[Words, ...]
@@ -32,7 +32,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Written:
+class BlockText:
     """A text of a block; `at`: its left or right end, off the block's lower left corner, mm."""
 
     at: complex
@@ -43,75 +43,79 @@ class Written:
 
 
 @dataclass(frozen=True)
-class Shape:
+class BlockShape:
     """A block in one of its shapes: its size, texts and lines, mm."""
 
     size: complex
-    texts: tuple[Written, ...]
+    texts: tuple[BlockText, ...]
     lines: tuple[tuple[complex, complex], ...]
 
 
 @dataclass
-class Block:
+class NoteBlock:
     """Notes, and a table under them; `numbers`: its last columns, which stand flush right."""
 
     notes: list[Words] = field(default_factory=list)
-    rows: list[Row] = field(default_factory=list)
+    rows: list[TableRow] = field(default_factory=list)
     numbers: int = 1
 
-    def shapes(self) -> Iterator[Shape]:
+    def shapes(self) -> Iterator[BlockShape]:
         """From the highest on; in others the table goes on beside itself."""
-        for parts in range(1, 1 + min(PARTS, max(1, len(self.rows) // 4))):
+        for parts in range(1, 1 + min(MOST_PARTS, max(1, len(self.rows) // 4))):
             yield self._shape(parts)
 
-    def _shape(self, parts: int) -> Shape:
+    def _shape(self, parts: int) -> BlockShape:
         columns = [
-            max(script_width(cell, CELL * POINT) for cell in column)
+            max(script_width(cell, CELL_SIZE * POINT) for cell in column)
             for column in zip(*(r.cells for r in self.rows), strict=True)
         ]
-        across = sum(columns) + GUTTER * max(len(columns) - 1, 0)
-        beside = list(split(self.rows, parts))
-        wide = max([script_width(note, NOTE * POINT) for note in self.notes] + [len(beside) * (across + APART) - APART])
+        across = sum(columns) + COLUMN_GAP * max(len(columns) - 1, 0)
+        beside = list(split_rows(self.rows, parts))
+        wide = max(
+            [script_width(note, NOTE_SIZE * POINT) for note in self.notes]
+            + [len(beside) * (across + PART_GAP) - PART_GAP]
+        )
         rows = max((len(part) for part in beside), default=0)
-        under = BLOCK_LINE * len(self.notes)
-        size = complex(wide + 2 * EDGE, EDGE + under + ROW * rows + (1.0 if rows and under else 0.0))
+        under = NOTE_LINE * len(self.notes)
+        size = complex(wide + 2 * BLOCK_EDGE, BLOCK_EDGE + under + TABLE_ROW * rows + (1.0 if rows and under else 0.0))
         texts = [
-            Written(complex(EDGE, size.imag - 3.5 - BLOCK_LINE * k), note, NOTE) for k, note in enumerate(self.notes)
+            BlockText(complex(BLOCK_EDGE, size.imag - 3.5 - NOTE_LINE * k), note, NOTE_SIZE)
+            for k, note in enumerate(self.notes)
         ]
         lines = []
         for number, part in enumerate(beside):
-            left = EDGE + number * (across + APART)
+            left = BLOCK_EDGE + number * (across + PART_GAP)
             for k, row in enumerate(part):
-                y = ROW * (rows - k - 0.5) + EDGE / 2
+                y = TABLE_ROW * (rows - k - 0.5) + BLOCK_EDGE / 2
                 texts += list(self._cells(row, complex(left, y), columns))
                 if row.head:
-                    lines.append((complex(left, y - ROW / 2), complex(left + across, y - ROW / 2)))
-        return Shape(size, tuple(texts), tuple(lines))
+                    lines.append((complex(left, y - TABLE_ROW / 2), complex(left + across, y - TABLE_ROW / 2)))
+        return BlockShape(size, tuple(texts), tuple(lines))
 
-    def _cells(self, row: Row, at: complex, columns: Sequence[float]) -> Iterator[Written]:
+    def _cells(self, row: TableRow, at: complex, columns: Sequence[float]) -> Iterator[BlockText]:
         first = len(columns) - self.numbers
         for number, (cell, wide) in enumerate(zip(row.cells, columns, strict=True)):
             right = number >= first
-            yield Written(at + wide if right else at, cell, CELL, right, row.head)
-            at += wide + GUTTER
+            yield BlockText(at + wide if right else at, cell, CELL_SIZE, right, row.head)
+            at += wide + COLUMN_GAP
 
 
-def split(rows: Sequence[Row], parts: int) -> Iterator[list[Row]]:
+def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]:
     """Rows in parts about equally long; titles are repeated above what goes on beside."""
     each = math.ceil(len(rows) / parts)
-    head: list[Row] = []
+    head: list[TableRow] = []
     for start in range(0, len(rows), each or 1):
         part = list(rows[start : start + each])
         yield part if part[0].head else [*head, *part]
         head = [row for row in (*head, *part) if row.head][-1:]
 
 
-def corners(low: complex, high: complex, size: complex) -> Vector:
+def block_positions(low: complex, high: complex, size: complex) -> Vector:
     """Places for a block in a field, of its lower left corner: corners of the field, then along its edges."""
     room = high - low - size
     if min(room.real, room.imag) < 0:
         return np.zeros(0, complex)
-    steps = np.linspace(1, 0, STEPS)
+    steps = np.linspace(1, 0, EDGE_STEPS)
     return low + np.concatenate(
         [
             room.real * np.array([1, 0, 1, 0]) + 1j * room.imag * np.array([0, 0, 1, 1]),
@@ -121,7 +125,7 @@ def corners(low: complex, high: complex, size: complex) -> Vector:
     )
 
 
-def covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = CLEAR) -> Vector:
+def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = BLOCK_CLEARANCE) -> Vector:
     """How many points of what is drawn a block would cover, or come near (mm), at each place."""
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
@@ -129,12 +133,12 @@ def covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = CL
     return found
 
 
-def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[Shape, complex]:
+def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: Vector) -> tuple[BlockShape, complex]:
     """The shape and the place of a block in a field in which it covers the least."""
-    best: tuple[int, Shape, complex] | None = None
+    best: tuple[int, BlockShape, complex] | None = None
     for shape in block.shapes():
-        places = corners(low, high, shape.size)
-        counts = covered(crowd, places, shape.size)
+        places = block_positions(low, high, shape.size)
+        counts = count_covered(crowd, places, shape.size)
         if len(places) and (best is None or counts.min() < best[0]):
             best = int(counts.min()), shape, complex(places[counts.argmin()])
     if best is None:  # larger than the field in each of its shapes
@@ -142,26 +146,31 @@ def roomiest(block: Block, low: complex, high: complex, crowd: Vector) -> tuple[
     return best[1:]
 
 
-def nearest_free(
-    block: Block, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
-) -> tuple[Shape, complex]:
+def free_block_position(
+    block: NoteBlock, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
+) -> tuple[BlockShape, complex]:
     """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it.
 
     fits: whether there is room for a drawing of this width and height (mm).
     """
-    found: list[tuple[bool, float, Shape, complex]] = []
+    found: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
-        places = corners(low, high, shape.size)
-        free = places[covered(crowd, places, shape.size) == 0] if len(places) else places
+        places = block_positions(low, high, shape.size)
+        free = places[count_covered(crowd, places, shape.size) == 0] if len(places) else places
         size = high - low
         if len(free):
             return shape, complex(free[0])
-        below = complex(max(size.real, shape.size.real), size.imag + CLEAR + shape.size.imag)
+        below = complex(max(size.real, shape.size.real), size.imag + BLOCK_CLEARANCE + shape.size.imag)
         found.append(
-            (not fits(below.real, below.imag), below.real * below.imag, shape, low - 1j * (CLEAR + shape.size.imag))
+            (
+                not fits(below.real, below.imag),
+                below.real * below.imag,
+                shape,
+                low - 1j * (BLOCK_CLEARANCE + shape.size.imag),
+            )
         )
-        beside = complex(size.real + CLEAR + shape.size.real, max(size.imag, shape.size.imag))
-        at = complex(high.real + CLEAR, high.imag - shape.size.imag)
+        beside = complex(size.real + BLOCK_CLEARANCE + shape.size.real, max(size.imag, shape.size.imag))
+        at = complex(high.real + BLOCK_CLEARANCE, high.imag - shape.size.imag)
         found.append((not fits(beside.real, beside.imag), beside.real * beside.imag, shape, at))
     *__, shape, at = min(found, key=lambda one: one[:2])
     return shape, at
@@ -170,14 +179,14 @@ def nearest_free(
 # The paper, the scale and the place at which a figure is largest and leaves room for a block of notes and tables.
 
 
-ALONG = (0.5, 0.0, 1.0, 0.25, 0.75)  # of what is free beside the figure, across and up: where it is put
-SHIFTS = [complex(x, y) for x in ALONG for y in ALONG]
-SMALLER = 4.0  # times smaller a figure may become for the sake of a block
-SPOTS = 40  # points that stand for a line
+SHIFT_SHARES = (0.5, 0.0, 1.0, 0.25, 0.75)  # of what is free beside the figure, across and up: where it is put
+FIGURE_SHIFTS = [complex(x, y) for x in SHIFT_SHARES for y in SHIFT_SHARES]
+MOST_REDUCTION = 4.0  # times smaller a figure may become for the sake of a block
+LINE_POINTS = 40  # points that stand for a line
 
 
 @dataclass
-class Figure:
+class FigureExtent:
     """What goes on a sheet: places (SI), how far (mm) it is off them, and the room (mm) that it needs about it."""
 
     places: list[Vector] = field(default_factory=list)
@@ -194,11 +203,11 @@ class Figure:
 
     def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
         """A straight line between places (SI)."""
-        self.spots(start + (end - start) * np.linspace(0, 1, SPOTS), about, off)
+        self.spots(start + (end - start) * np.linspace(0, 1, LINE_POINTS), about, off)
 
 
 @dataclass(frozen=True)
-class Room:
+class PaperLayout:
     """paper (mm), SI a millimetre, where zero is on the paper (mm).
 
     figure: width and height of what is to scale there, mm; free: it is there without a scale.
@@ -211,14 +220,14 @@ class Room:
     free: bool = False
 
 
-def choose_scale(figure: Figure, block: Block, also: Sequence[float] = ()) -> Room:
+def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] = ()) -> PaperLayout:
     """The largest round scale, or one of `also`, at which the figure fits and the block covers nothing of it."""
     places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
     if on_large_sheet():
-        return _tight(places, off, about)
+        return _tight_layout(places, off, about)
     sizes = [shape.size for shape in block.shapes()]
-    alone: Room | None = None
-    for mu in scales(extent(places.tolist())[0], also):
+    alone: PaperLayout | None = None
+    for mu in round_scales(extent(places.tolist())[0], also):
         at = places / mu + off
         low = complex((at.real - about).min(), (at.imag - about).min())
         size = complex((at.real + about).max(), (at.imag + about).max()) - low
@@ -227,19 +236,19 @@ def choose_scale(figure: Figure, block: Block, also: Sequence[float] = ()) -> Ro
             free = end - start - size
             if min(free.real, free.imag) < 0:
                 continue
-            alone = alone or Room(paper, mu, start - low + free / 2)
-            for shift in SHIFTS:
+            alone = alone or PaperLayout(paper, mu, start - low + free / 2)
+            for shift in FIGURE_SHIFTS:
                 origin = start - low + complex(shift.real * free.real, shift.imag * free.imag)
                 for one in sizes:
-                    spots = corners(start, end, one)
-                    if len(spots) and not covered(at + origin, spots, one, about).all():
-                        return Room(paper, mu, origin)
-        if alone is not None and mu > SMALLER * alone.mu:
+                    spots = block_positions(start, end, one)
+                    if len(spots) and not count_covered(at + origin, spots, one, about).all():
+                        return PaperLayout(paper, mu, origin)
+        if alone is not None and mu > MOST_REDUCTION * alone.mu:
             return alone
     raise AssertionError("some scale is large enough")
 
 
-def _tight(places: Vector, off: Vector, about: Vector) -> Room:
+def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
     """At the scale that a large sheet gives, on a paper no larger than the figure; blocks find their place there."""
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(places.tolist())
@@ -249,22 +258,22 @@ def _tight(places: Vector, off: Vector, about: Vector) -> Room:
     size = complex((at.real + about).max(), (at.imag + about).max()) - low
     start, end = ground_of((0.0, 0.0))
     paper = size + start - end
-    return Room((paper.real, paper.imag), mu, start - low, (across / mu, up / mu))
+    return PaperLayout((paper.real, paper.imag), mu, start - low, (across / mu, up / mu))
 
 
-def snug(
+def scaleless_layout(
     places: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
-) -> Room:
+) -> PaperLayout:
     """For places (SI) that are put on a large sheet without a scale; below: what (mm) is free there at its width."""
     size, across, up, __ = extent(list(places) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
     low, high = ground_of((0.0, 0.0))
     figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too
     paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
-    return Room((paper.real, paper.imag), 1.0, 0j, figure, free=True)
+    return PaperLayout((paper.real, paper.imag), 1.0, 0j, figure, free=True)
 
 
-def scales(size: float, also: Sequence[float]) -> Iterator[float]:
+def round_scales(size: float, also: Sequence[float]) -> Iterator[float]:
     """Round scales (SI a millimetre) for a figure of this size (SI), from one at which it fits on no sheet on."""
     least = size / max(LANDSCAPE)
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0

@@ -33,39 +33,39 @@ def convex_hull(places: list[complex]) -> list[complex]:
 
 Box = tuple[float, float, float, float]  # left, right, low, high
 Boxes = NDArray[Any]  # (number, 4)
-TINY = 1e-12  # mm, in the place of no way at all along an axis
+LEAST_STEP = 1e-12  # mm, in the place of no way at all along an axis
 
 
-def about(middle: complex, width: float, height: float) -> Box:
+def box_about(middle: complex, width: float, height: float) -> Box:
     """The box about its middle."""
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
 
 
-def around(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
+def boxes_about(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
     """Boxes about their middles, of one size or each of its own."""
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 
 
-def wider(boxes: Boxes, air: float) -> Boxes:
+def widen(boxes: Boxes, air: float) -> Boxes:
     """Boxes with so much air about them."""
     return boxes + air * np.array([-1, 1, -1, 1])
 
 
-def row(middle: complex, along: complex, width: float, height: float) -> list[complex]:
+def text_squares(middle: complex, along: complex, width: float, height: float) -> list[complex]:
     """Middles of squares that hold a text along a unit vector, side by side, as large as it is high."""
     reach = max(width - height, 0.0) / 2
     return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
 
 
-def nearest(boxes: Boxes, places: NDArray[Any]) -> NDArray[Any]:
+def nearest_in_boxes(boxes: Boxes, places: NDArray[Any]) -> NDArray[Any]:
     """The place of each box that is nearest to its own one of other places."""
     left, right, low, high = boxes.T
     found: NDArray[Any] = np.clip(places.real, left, right) + 1j * np.clip(places.imag, low, high)
     return found
 
 
-def gaps(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
+def box_distances(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
     """How far each place is from each box: (box, place)."""
     z, (left, right, low, high) = np.asarray(places, complex), boxes.T[:, :, None]
     across = np.maximum(np.maximum(left - z.real, z.real - right), 0)
@@ -73,29 +73,29 @@ def gaps(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]
     return found
 
 
-def runs(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
     """How long each straight line is inside each box: (box, line)."""
     if not len(boxes) or not len(starts):
         return np.zeros((len(boxes), len(starts)))
-    first, last = inside(boxes, starts, ends)
+    first, last = shares_inside(boxes, starts, ends)
     found: NDArray[Any] = np.maximum(last - first, 0) * np.abs(ends - starts)
     return found
 
 
-def inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Shares of each straight line at which it comes into each box and leaves it (before, where it never does)."""
     way = ends - starts
     left, right, low, high = boxes.T[:, :, None]
     first: Any = 0.0
     last: Any = 1.0
     for least, most, at, step in ((left, right, starts.real, way.real), (low, high, starts.imag, way.imag)):
-        per = 1 / np.where(np.abs(step) < TINY, TINY, step)
+        per = 1 / np.where(np.abs(step) < LEAST_STEP, LEAST_STEP, step)
         one, other = (least - at) * per, (most - at) * per
         first, last = np.maximum(first, np.minimum(one, other)), np.minimum(last, np.maximum(one, other))
     return first, last
 
 
-def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
+def stretches_outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
     """Stretches of a polyline that are in none of the boxes."""
     z = np.asarray(places, complex)
     left, right, low, high = boxes.T
@@ -105,7 +105,7 @@ def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, 
         yield tuple(places)
         return
     starts, ways = z[:-1], np.diff(z)
-    firsts, lasts = inside(boxes, starts, starts + ways)
+    firsts, lasts = shares_inside(boxes, starts, starts + ways)
     stretch: list[complex] = []
     for k, (start, way) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):
         met, free = np.flatnonzero(lasts[:, k] > firsts[:, k]), 0.0
@@ -121,7 +121,7 @@ def outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, 
         yield tuple(stretch)
 
 
-def crossing(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
+def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
     """Whether each straight line crosses each of others: (line, other)."""
     way, other = (ends - starts)[:, None], lasts - firsts
 
@@ -135,7 +135,7 @@ def crossing(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], las
     return found
 
 
-def shared(boxes: Boxes, others: Boxes) -> NDArray[Any]:
+def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     """The area that each box shares with each other one, mm²."""
     left, right, low, high = boxes.T[:, :, None]
     across = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
@@ -144,16 +144,16 @@ def shared(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     return found
 
 
-def aside(place: complex, start: complex, end: complex) -> float:
+def distance_to_segment(place: complex, start: complex, end: complex) -> float:
     """How far a place is from a stretch of a line."""
     span = end - start
     share = ((place - start) * span.conjugate()).real / (abs(span) ** 2 or 1.0)
     return abs(place - start - min(max(share, 0.0), 1.0) * span)
 
 
-def asides(places: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+def distances_to_segments(places: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
     """How far each place is from each stretch of a line: (place, line)."""
     span, off = ends - starts, places[:, None] - starts
-    share = np.clip((off * span.conj()).real / np.maximum(np.abs(span) ** 2, TINY), 0, 1)
+    share = np.clip((off * span.conj()).real / np.maximum(np.abs(span) ** 2, LEAST_STEP), 0, 1)
     found: NDArray[Any] = np.abs(off - share * span)
     return found

@@ -11,23 +11,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import width as width_of
+from tmm_cli.drawing.paper.fonts import text_width as width_of
 from tmm_cli.drawing.paper.record import POINT, Align, Style
-from tmm_cli.drawing.paper.script import Words, parts, script_width as width_of_words
-from tmm_cli.drawing.paper.sheet import THIN, Sheet
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper.script import Words, script_width as width_of_words, split_symbols
+from tmm_cli.drawing.paper.sheet import THIN_COLOUR, DrawingSheet
+from tmm_cli.drawing.paper.writing import DARK_COLOUR
 from tmm_cli.language import numeral
 
-ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
-OF_DEGREES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
-TICKS = (1.0, 2.0, 5.0, 10.0)  # between numbers on an axis, times a power of ten
-ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)  # the same in degrees, from a degree on
-FLAT = 1e-9  # of the values: what differs by less does not change
-DECADES = 12  # most of them on a logarithmic axis; what is smaller stands at its end
+ROUND_SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
+DEGREE_SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+TICK_STEPS = (1.0, 2.0, 5.0, 10.0)  # between numbers on an axis, times a power of ten
+ANGLE_STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)  # the same in degrees, from a degree on
+EQUAL_WITHIN = 1e-9  # of the values: what differs by less does not change
+MOST_DECADES = 12  # most of them on a logarithmic axis; what is smaller stands at its end
 
 
 @dataclass(frozen=True)
-class Axis:
+class ChartAxis:
     """Values from `low` on, `mu` of them a millimetre, `length` mm from `start` on; of a logarithmic one powers of ten.
 
     degrees: its round numbers are those of angles.
@@ -60,68 +60,70 @@ class Axis:
     def ticks(self, apart: float) -> list[tuple[float, str]]:
         """Round values on the axis that stand at least so far apart (mm), and how they are written."""
         step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
-        first, last = math.ceil(self.low / step - FLAT), math.floor(self.high / step + FLAT)
+        first, last = math.ceil(self.low / step - EQUAL_WITHIN), math.floor(self.high / step + EQUAL_WITHIN)
         values = [k * step for k in range(first, last + 1)]
         if self.logarithmic:
             return [(10.0**value, f"1e{value:.0f}" if value else "1") for value in values]
         return [(value, numeral(value, ".10g")) for value in values]
 
     def _step(self, least: float) -> float:
-        if self.degrees and 1 <= least <= ANGLES[-1]:
-            return next(step for step in ANGLES if step >= least * (1 - FLAT))
-        return round_up(least, TICKS)
+        if self.degrees and 1 <= least <= ANGLE_STEPS[-1]:
+            return next(step for step in ANGLE_STEPS if step >= least * (1 - EQUAL_WITHIN))
+        return round_up(least, TICK_STEPS)
 
 
-def round_up(least: float, steps: Sequence[float] = ROUND) -> float:
+def round_up(least: float, steps: Sequence[float] = ROUND_SCALES) -> float:
     """The smallest round number that is no smaller."""
     power = 10.0 ** math.floor(math.log10(least))
-    return next(step for step in steps if step * power >= least * (1 - FLAT)) * power
+    return next(step for step in steps if step * power >= least * (1 - EQUAL_WITHIN)) * power
 
 
-def limits(values: Sequence[Any]) -> tuple[float, float]:
+def finite_limits(values: Sequence[Any]) -> tuple[float, float]:
     """The least and the largest of all values that are finite; 0 and 1 where there are none."""
     every = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
     every = every[np.isfinite(every)]
     return (float(every.min()), float(every.max())) if every.size else (0.0, 1.0)
 
 
-def filling(low: float, high: float, start: float, length: float) -> Axis:
+def filling_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
     """An axis from a value to another, whatever its scale."""
-    return Axis(low, (high - low) / length, start, length)
+    return ChartAxis(low, (high - low) / length, start, length)
 
 
-def across(low: float, high: float, start: float, most: float, *, degrees: bool = False) -> Axis:
+def round_axis(low: float, high: float, start: float, most: float, *, degrees: bool = False) -> ChartAxis:
     """An axis that ends where the values end, at the largest round scale at which it is no longer than `most` mm."""
-    low, high = _apart(low, high)
-    mu = round_up((high - low) / most, OF_DEGREES if degrees else ROUND)
-    return Axis(low, mu, start, (high - low) / mu, degrees=degrees)
+    low, high = _widen_range(low, high)
+    mu = round_up((high - low) / most, DEGREE_SCALES if degrees else ROUND_SCALES)
+    return ChartAxis(low, mu, start, (high - low) / mu, degrees=degrees)
 
 
-def upwards(low: float, high: float, start: float, length: float, *, degrees: bool = False, air: float = 2.0) -> Axis:
+def vertical_axis(
+    low: float, high: float, start: float, length: float, *, degrees: bool = False, air: float = 2.0
+) -> ChartAxis:
     """An axis of this length at a round scale, with the values in it and `air` mm above and below them.
 
     Zero is on it unless the values lie far from it; where all of them lie on one side it begins, or ends, there.
     """
-    low, high = _apart(low, high)
+    low, high = _widen_range(low, high)
     if max(abs(low), abs(high)) < 2 * (high - low):
         low, high = min(low, 0.0), max(high, 0.0)
-    mu = round_up((high - low) / (length - 2 * air), ROUND)
+    mu = round_up((high - low) / (length - 2 * air), ROUND_SCALES)
     spare = mu * length - (high - low)
     below = 0.0 if low == 0 else spare if high == 0 else spare / 2
-    return Axis(low - below, mu, start, length, degrees=degrees)
+    return ChartAxis(low - below, mu, start, length, degrees=degrees)
 
 
-def decades(low: float, high: float, start: float, length: float) -> Axis:
+def logarithmic_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
     """A logarithmic axis of whole powers of ten."""
     most = math.ceil(math.log10(high)) if high > 0 else 0
-    least = math.floor(math.log10(low)) if low > 0 else most - DECADES
-    least = max(min(least, most - 1), most - DECADES)
-    return Axis(least, (most - least) / length, start, length, logarithmic=True)
+    least = math.floor(math.log10(low)) if low > 0 else most - MOST_DECADES
+    least = max(min(least, most - 1), most - MOST_DECADES)
+    return ChartAxis(least, (most - least) / length, start, length, logarithmic=True)
 
 
-def equal(axes: tuple[Axis, Axis], ends: Sequence[tuple[float, float]]) -> tuple[Axis, Axis]:
+def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, float]]) -> tuple[ChartAxis, ChartAxis]:
     """The two at one round scale at which what lies between these ends stands in the middle of both."""
-    spans = [_apart(*own) for own in ends]
+    spans = [_widen_range(*own) for own in ends]
     mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
     one, other = (
         replace(axis, low=(low + high - mu * axis.length) / 2, mu=mu)
@@ -130,9 +132,9 @@ def equal(axes: tuple[Axis, Axis], ends: Sequence[tuple[float, float]]) -> tuple
     return one, other
 
 
-def _apart(low: float, high: float) -> tuple[float, float]:
+def _widen_range(low: float, high: float) -> tuple[float, float]:
     """The same, or round about it where both are one."""
-    if high - low > FLAT * max(abs(low), abs(high)):
+    if high - low > EQUAL_WITHIN * max(abs(low), abs(high)):
         return low, high
     half = abs(low) / 2 or 0.5
     return low - half, high + half
@@ -141,117 +143,119 @@ def _apart(low: float, high: float) -> tuple[float, float]:
 # Charts on a sheet: panels one above another over one axis, with grids, curves, numbers of positions, legends.
 
 
-FINE = "#dcdcdc"  # of grids
-SOFT = "#505050"  # of scales and numbers of positions
-SMALL, PLAIN = 8.0, 9.0  # points
-LEFT, RIGHT = 17.0, 6.0  # mm beside the panels, for numbers on their axes
-ROW = 4.5  # mm from a line of text to the next
-SAMPLE = 8.0  # mm of a curve in a legend
-APART = 5.0  # mm between entries of a legend
-EVERY = (11.0, 6.0)  # mm between numbers on an axis, across and upwards
-DOT = 0.55  # mm: radius
-LOWEST = 12.0  # mm: least height of a panel
-KEPT = 8  # of so many places of a curve one keeps labels off it
+GRID_COLOUR = "#dcdcdc"  # of grids
+SCALE_COLOUR = "#505050"  # of scales and numbers of positions
+SMALL_TEXT, PLAIN_TEXT = 8.0, 9.0  # points
+LEFT_MARGIN, RIGHT_MARGIN = 17.0, 6.0  # mm beside the panels, for numbers on their axes
+TEXT_ROW = 4.5  # mm from a line of text to the next
+LEGEND_SAMPLE = 8.0  # mm of a curve in a legend
+LEGEND_GAP = 5.0  # mm between entries of a legend
+NUMBER_GAPS = (11.0, 6.0)  # mm between numbers on an axis, across and upwards
+DOT_RADIUS = 0.55  # mm: radius
+LEAST_PANEL_HEIGHT = 12.0  # mm: least height of a panel
+LABEL_SAMPLING = 8  # of so many places of a curve one keeps labels off it
 
 
 @dataclass(frozen=True)
-class Curve:
+class ChartCurve:
     """Values over those of the common axis; those that are not finite interrupt it. dots: drawn as single points."""
 
     xs: Any
     ys: Any
     label: str = ""
-    colour: str = DARK
+    colour: str = DARK_COLOUR
     style: Style = "-"
     width: float = 1.3
     dots: bool = False
 
 
 @dataclass(frozen=True)
-class Jump:
+class CurveJump:
     """A place of the common axis at which a curve leaps from a value to another, as they are written."""
 
     at: float
     values: tuple[float, float]
     texts: tuple[str, str]
-    colour: str = DARK
+    colour: str = DARK_COLOUR
 
 
 @dataclass(frozen=True)
-class Plot:
+class PlotContent:
     """What a panel shows. scale: how the scale of its axis is written, from mu; share: of the height."""
 
     words: str
-    curves: Sequence[Curve]
-    jumps: Sequence[Jump] = ()
+    curves: Sequence[ChartCurve]
+    jumps: Sequence[CurveJump] = ()
     scale: Callable[[float], Words] | None = None
     share: float = 1.0
     degrees: bool = False
     logarithmic: bool = False
 
     @property
-    def legend(self) -> list[Curve]:
+    def legend(self) -> list[ChartCurve]:
         """Curves that have a name, where it tells anything."""
         named = [curve for curve in self.curves if curve.label]
         return named if len(self.curves) > 1 else []
 
 
 @dataclass(frozen=True)
-class Across:
+class CommonAxis:
     """The common axis. numbers: of positions, by their places; spans: stretches that have a name."""
 
-    axis: Axis
+    axis: ChartAxis
     words: Words
     numbers: Sequence[tuple[float, str]] = ()
     spans: Sequence[tuple[float, float, str]] = ()
 
 
-def axis_room(sheet: Sheet) -> tuple[float, float]:
+def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
     """Where the common axis may begin, and how long it may be, mm."""
-    start = sheet.ground.low.real + LEFT
-    return start, sheet.ground.high.real - RIGHT - start
+    start = sheet.ground.low.real + LEFT_MARGIN
+    return start, sheet.ground.high.real - RIGHT_MARGIN - start
 
 
-def count_fitting(sheet: Sheet, plots: Sequence[Plot], over: Across) -> int:
+def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis) -> int:
     """Return how many of the panels, from the first one on, fit on the sheet with a height of at least LOWEST mm."""
-    needed = np.cumsum([ROW * len(_head(plot, over.axis.length)) for plot in plots])
+    needed = np.cumsum([TEXT_ROW * len(_legend_rows(plot, over.axis.length)) for plot in plots])
     free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
     return max(1, int(np.count_nonzero(needed <= free)))
 
 
-def _height_for_panels(sheet: Sheet, over: Across, count: int) -> float:
+def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
     """The height (mm) that so many panels of LOWEST mm leave for their heads."""
-    beside = (2 + bool(over.spans)) * ROW
-    return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_between(over) + LOWEST))
+    beside = (2 + bool(over.spans)) * TEXT_ROW
+    return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 
 
-def _between(over: Across) -> float:
+def _panel_gap(over: CommonAxis) -> float:
     """The height (mm) between a panel and the head of the next one."""
-    return 0.3 * ROW + (ROW if over.numbers else 0.6 * ROW)
+    return 0.3 * TEXT_ROW + (TEXT_ROW if over.numbers else 0.6 * TEXT_ROW)
 
 
-def draw_chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale: bool = False) -> list[Panel]:
+def draw_chart(
+    sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis, *, same_scale: bool = False
+) -> list[Panel]:
     """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes.
 
     Entries of legends for which the sheet is too low are left out.
     """
-    start, most = axis_room(sheet)
+    start, most = axis_extent(sheet)
     x = replace(over.axis, start=start + (most - over.axis.length) / 2)
-    top = sheet.ground.high.imag - (ROW if over.spans else 0.0)
-    under = _between(over) - 0.3 * ROW
-    low = sheet.ground.low.imag + 2 * ROW
-    heads = [_head(plot, x.length) for plot in plots]
-    allowed = _height_for_panels(sheet, over, len(plots)) / ROW
+    top = sheet.ground.high.imag - (TEXT_ROW if over.spans else 0.0)
+    under = _panel_gap(over) - 0.3 * TEXT_ROW
+    low = sheet.ground.low.imag + 2 * TEXT_ROW
+    heads = [_legend_rows(plot, x.length) for plot in plots]
+    allowed = _height_for_panels(sheet, over, len(plots)) / TEXT_ROW
     if sum(map(len, heads)) > allowed:
         heads = [rows[: max(1, int(allowed / len(plots)))] for rows in heads]
-    free = top - low - sum(ROW * (len(rows) + 0.3) + under for rows in heads)
+    free = top - low - sum(TEXT_ROW * (len(rows) + 0.3) + under for rows in heads)
     panels = []
     for plot, rows in zip(plots, heads, strict=True):
         height = free * plot.share / sum(p.share for p in plots)
-        bottom = top - ROW * (len(rows) + 0.3) - height
-        axes = x, _axis(plot, bottom, height)
+        bottom = top - TEXT_ROW * (len(rows) + 0.3) - height
+        axes = x, _plot_axis(plot, bottom, height)
         if same_scale:
-            axes = equal(axes, [limits([getattr(c, way) for c in plot.curves]) for way in ("xs", "ys")])
+            axes = equal_scales(axes, [finite_limits([getattr(c, way) for c in plot.curves]) for way in ("xs", "ys")])
         panel = Panel(sheet, *axes)
         panel.grid()
         _write_head(panel, plot, rows, top)
@@ -262,8 +266,8 @@ def draw_chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale:
     last = panels[-1]
     last.numbers_across(under)
     middle = complex(last.x.start + last.x.length / 2, sheet.ground.low.imag + 1.5)
-    sheet.text(middle, over.words, PLAIN, ha="center")
-    _spans(panels, over.spans, sheet.ground.high.imag - 1.5)
+    sheet.text(middle, over.words, PLAIN_TEXT, ha="center")
+    _draw_spans(panels, over.spans, sheet.ground.high.imag - 1.5)
     return panels
 
 
@@ -271,9 +275,9 @@ def draw_chart(sheet: Sheet, plots: Sequence[Plot], over: Across, *, same_scale:
 class Panel:
     """A field of a sheet with its two axes."""
 
-    sheet: Sheet
-    x: Axis
-    y: Axis
+    sheet: DrawingSheet
+    x: ChartAxis
+    y: ChartAxis
 
     def at(self, x: Any, y: Any) -> NDArray[Any]:
         """Places of values on paper, mm."""
@@ -291,108 +295,110 @@ class Panel:
         """A line from side to side at a height, mm."""
         self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
 
-    def text(self, at: complex, text: Words, ha: Align = "left", size: float = SMALL, colour: str = DARK) -> None:
+    def text(
+        self, at: complex, text: Words, ha: Align = "left", size: float = SMALL_TEXT, colour: str = DARK_COLOUR
+    ) -> None:
         self.sheet.text(at, text, size, ha=ha, colour=colour)
 
     def grid(self, across: bool = True) -> None:
         """Lines at round numbers, those of the axis upwards beside it, the border, the line of zero."""
-        for value, __ in self.x.ticks(EVERY[0]) if across else ():
-            self.upright(float(self.x.on(value)), FINE, 0.5, z=0.5)
-        for value, text in self.y.ticks(EVERY[1]):
+        for value, __ in self.x.ticks(NUMBER_GAPS[0]) if across else ():
+            self.upright(float(self.x.on(value)), GRID_COLOUR, 0.5, z=0.5)
+        for value, text in self.y.ticks(NUMBER_GAPS[1]):
             height = float(self.y.on(value))
-            self.level(height, FINE, 0.5, z=0.5)
+            self.level(height, GRID_COLOUR, 0.5, z=0.5)
             self.text(complex(self.x.start - 1.5, height), text, "right")
         for place in (self.x.start, self.x.end):
-            self.upright(place, THIN, 0.6)
+            self.upright(place, THIN_COLOUR, 0.6)
         for place in (self.y.start, self.y.end):
-            self.level(place, THIN, 0.6, 1)
+            self.level(place, THIN_COLOUR, 0.6, 1)
         if not self.y.logarithmic and self.y.low <= 0 <= self.y.high:
-            self.level(float(self.y.on(0.0)), DARK, 0.7, z=1.5)
+            self.level(float(self.y.on(0.0)), DARK_COLOUR, 0.7, z=1.5)
 
     def numbers_across(self, under: float) -> None:
         """Round numbers below the panel, so far under it (mm)."""
-        for value, text in self.x.ticks(EVERY[0]):
-            self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * ROW), text, "center")
+        for value, text in self.x.ticks(NUMBER_GAPS[0]):
+            self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * TEXT_ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
         """Short lines at positions and their numbers, a round share of them where all are too many."""
-        widest = max((width_of(text, SMALL * POINT) for __, text in numbers), default=0.0)
+        widest = max((width_of(text, SMALL_TEXT * POINT) for __, text in numbers), default=0.0)
         crowd = len(numbers) * (widest + 2) / self.x.length
-        for value, text in numbers[:: max(1, round(round_up(crowd, TICKS)))] if numbers else ():
+        for value, text in numbers[:: max(1, round(round_up(crowd, TICK_STEPS)))] if numbers else ():
             place = float(self.x.on(value))
-            self.line(complex(place, self.y.start), complex(place, self.y.start - 0.8), DARK, 0.6)
-            self.text(complex(place, self.y.start - 0.65 * ROW), text, "center", SMALL, SOFT)
+            self.line(complex(place, self.y.start), complex(place, self.y.start - 0.8), DARK_COLOUR, 0.6)
+            self.text(complex(place, self.y.start - 0.65 * TEXT_ROW), text, "center", SMALL_TEXT, SCALE_COLOUR)
 
-    def fill(self, plot: Plot) -> None:
+    def fill(self, plot: PlotContent) -> None:
         """Its curves, and where they leap."""
         for curve in plot.curves:
             places = self.at(curve.xs, curve.ys)
             if curve.dots:
                 for place in np.atleast_1d(places):
-                    self.sheet.circle(complex(place), DOT, curve.colour, curve.colour, 0.3, 4)
+                    self.sheet.circle(complex(place), DOT_RADIUS, curve.colour, curve.colour, 0.3, 4)
                 continue
             self.sheet.line(places.tolist(), curve.colour, curve.width, curve.style, blocks=False)
             if plot.jumps:
-                kept = places[np.isfinite(places)][::KEPT].tolist()
+                kept = places[np.isfinite(places)][::LABEL_SAMPLING].tolist()
                 for start, end in pairwise(kept):
                     self.sheet.ground.line(start, end)
         for jump in plot.jumps:
             for value, text in zip(jump.values, jump.texts, strict=True):
                 place = complex(self.at(jump.at, value))
-                self.sheet.circle(place, DOT, "white", jump.colour, 0.7, 4.5)
+                self.sheet.circle(place, DOT_RADIUS, "white", jump.colour, 0.7, 4.5)
                 if text:
-                    self.sheet.label(text, place, SMALL, jump.colour)
+                    self.sheet.label(text, place, SMALL_TEXT, jump.colour)
 
 
-def _axis(plot: Plot, bottom: float, height: float) -> Axis:
+def _plot_axis(plot: PlotContent, bottom: float, height: float) -> ChartAxis:
     values = [curve.ys for curve in plot.curves]
     if not plot.logarithmic:
-        return upwards(*limits(values), bottom, height, degrees=plot.degrees)
+        return vertical_axis(*finite_limits(values), bottom, height, degrees=plot.degrees)
     above_zero = [np.where(np.asarray(v) > 0, v, np.nan) for v in values]
-    return decades(*limits(above_zero), bottom, height)
+    return logarithmic_axis(*finite_limits(above_zero), bottom, height)
 
 
-def _entry(curve: Curve) -> float:
-    return SAMPLE + 1 + width_of(curve.label, SMALL * POINT) + APART
+def _legend_width(curve: ChartCurve) -> float:
+    return LEGEND_SAMPLE + 1 + width_of(curve.label, SMALL_TEXT * POINT) + LEGEND_GAP
 
 
-def _head(plot: Plot, most: float) -> list[list[Curve]]:
+def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
     """Rows above a panel with the entries of its legend in each; the first one begins with its words."""
-    words = (plot.words, *(parts(plot.scale(0.00025)) if plot.scale else ()))
-    rows: list[list[Curve]] = [[]]
-    if sum(map(_entry, plot.legend)) < most - width_of_words(words, PLAIN * POINT) - 2 * APART:
+    words = (plot.words, *(split_symbols(plot.scale(0.00025)) if plot.scale else ()))
+    rows: list[list[ChartCurve]] = [[]]
+    if sum(map(_legend_width, plot.legend)) < most - width_of_words(words, PLAIN_TEXT * POINT) - 2 * LEGEND_GAP:
         return [list(plot.legend)]
     left = 0.0
     for curve in plot.legend:
-        if _entry(curve) > left:
+        if _legend_width(curve) > left:
             rows.append([])
             left = most
         rows[-1].append(curve)
-        left -= _entry(curve)
+        left -= _legend_width(curve)
     return rows
 
 
-def _write_head(panel: Panel, plot: Plot, rows: Sequence[Iterable[Curve]], top: float) -> None:
+def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCurve]], top: float) -> None:
     """What the panel shows and at which scale, and its legend."""
-    at = complex(panel.x.start, top - ROW / 2)
-    panel.text(at, plot.words, size=PLAIN)
+    at = complex(panel.x.start, top - TEXT_ROW / 2)
+    panel.text(at, plot.words, size=PLAIN_TEXT)
     if plot.scale is not None:
-        after = at + width_of(plot.words, PLAIN * POINT) + APART
-        panel.text(after, plot.scale(panel.y.mu), colour=SOFT)
+        after = at + width_of(plot.words, PLAIN_TEXT * POINT) + LEGEND_GAP
+        panel.text(after, plot.scale(panel.y.mu), colour=SCALE_COLOUR)
     for number, row in enumerate(rows):
         entries = list(row)
-        place = complex(panel.x.end - sum(map(_entry, entries)) + APART, top - ROW * (number + 0.5))
+        place = complex(panel.x.end - sum(map(_legend_width, entries)) + LEGEND_GAP, top - TEXT_ROW * (number + 0.5))
         place = place if number == 0 else complex(panel.x.start, place.imag)
         for curve in entries:
             if curve.dots:
-                panel.sheet.circle(place + SAMPLE - 2, DOT, curve.colour, curve.colour, 0.3, 4)
+                panel.sheet.circle(place + LEGEND_SAMPLE - 2, DOT_RADIUS, curve.colour, curve.colour, 0.3, 4)
             else:
-                panel.line(place, place + SAMPLE, curve.colour, curve.width, curve.style)
-            panel.text(place + SAMPLE + 1, curve.label)
-            place += _entry(curve)
+                panel.line(place, place + LEGEND_SAMPLE, curve.colour, curve.width, curve.style)
+            panel.text(place + LEGEND_SAMPLE + 1, curve.label)
+            place += _legend_width(curve)
 
 
-def _spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:
+def _draw_spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:
     """Borders of stretches through all panels, their names between arrows above the first one."""
     if not spans:
         return
@@ -401,17 +407,19 @@ def _spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], h
         for value in {end for span in spans for end in span[:2]}:
             place = float(panel.x.on(value))
             if panel.x.start + 0.1 < place < panel.x.end - 0.1:
-                panel.upright(place, DARK, 0.6, "-.", 2)
+                panel.upright(place, DARK_COLOUR, 0.6, "-.", 2)
     for start, end, text in spans:
         low, high = float(first.x.on(start)), float(first.x.on(end))
-        half = width_of(text, SMALL * POINT) / 2 + 1
+        half = width_of(text, SMALL_TEXT * POINT) / 2 + 1
         if high - low < 2 * half:
             continue
         middle = complex((low + high) / 2, height)
         first.text(middle, text, "center")
         for way, place in ((-1, low), (1, high)):
-            first.line(complex(place, height - 1.2), complex(place, height + 1.2), DARK, 0.6)
+            first.line(complex(place, height - 1.2), complex(place, height + 1.2), DARK_COLOUR, 0.6)
             if abs(place - middle.real) - half > 3:
                 tip = complex(place, height)
-                first.line(middle + way * half, tip, THIN, 0.6)
-                first.sheet.area([tip, tip - way * 2 + 0.4j, tip - way * 2 - 0.4j], THIN, "none", z=1, blocks=False)
+                first.line(middle + way * half, tip, THIN_COLOUR, 0.6)
+                first.sheet.area(
+                    [tip, tip - way * 2 + 0.4j, tip - way * 2 - 0.4j], THIN_COLOUR, "none", z=1, blocks=False
+                )

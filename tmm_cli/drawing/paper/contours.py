@@ -12,32 +12,32 @@ from numpy.typing import NDArray
 from tmm_cli.mechanics.numerics import SAME_PLACES
 
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
-Share = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
+BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
 
 
-def contour(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
+def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
     """Lines on which values (columns, rows) have a level, as places column + i row; none in cells that lack a value."""
     lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
     return [places[:, 0] + 1j * places[:, 1] for places in map(np.asarray, lines)]
 
 
-def borders(inside: NDArray[Any], share: Share) -> list[NDArray[Any]]:
+def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any]]:
     """Outlines of a region of the nodes (columns, rows), inside the grid."""
     pieces = []
-    for i, j in _mixed(inside):
+    for i, j in _mixed_cells(inside):
         crossed = [place for _, _, place in _crossings(inside, i, j, share)]
         pieces += [(crossed[k], crossed[k + 1]) for k in range(0, len(crossed), 2)]
-    return _joined(pieces)
+    return _join_pieces(pieces)
 
 
-def region(inside: NDArray[Any], share: Share) -> Iterator[list[complex]]:
+def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[complex]]:
     """The region in pieces, as corners column + i row: rows of whole cells, and parts of those that its border cuts."""
     whole = inside[:-1, :-1] & inside[1:, :-1] & inside[1:, 1:] & inside[:-1, 1:]
     for j in range(whole.shape[1]):
         ends = np.flatnonzero(np.diff(np.concatenate([[False], whole[:, j], [False]])))
         for first, last in ends.reshape(-1, 2).tolist():
             yield [complex(first, j), complex(last, j), complex(last, j + 1), complex(first, j + 1)]
-    for i, j in _mixed(inside):
+    for i, j in _mixed_cells(inside):
         crossed = {one: place for one, _, place in _crossings(inside, i, j, share)}
         corners: list[complex] = []
         for a, b in CORNERS:
@@ -47,7 +47,7 @@ def region(inside: NDArray[Any], share: Share) -> Iterator[list[complex]]:
         yield corners
 
 
-def hatching(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
+def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
     """Slanted lines through polygons (mm), so far apart; lines that go on from piece to piece are one."""
     along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
     spans: dict[int, list[tuple[float, float]]] = {}
@@ -76,14 +76,14 @@ def hatching(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[co
     return found
 
 
-def _mixed(inside: NDArray[Any]) -> list[list[int]]:
+def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
     """Cells through which a border goes."""
     corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
     return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
 
 
 def _crossings(
-    above: NDArray[Any], i: int, j: int, share: Share
+    above: NDArray[Any], i: int, j: int, share: BorderShare
 ) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
     """Sides of a cell that a border crosses, round it: from which node to which, and where."""
     for k, (a, b) in enumerate(CORNERS):
@@ -94,7 +94,7 @@ def _crossings(
             yield one, other, complex(*low) + share(low, high) * (complex(*high) - complex(*low))
 
 
-def _joined(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
+def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
     """Pieces that have an end in common as one line."""
     at: dict[complex, list[int]] = {}
     for n, piece in enumerate(pieces):

@@ -9,77 +9,87 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper.boxes import about, around, aside, row
-from tmm_cli.drawing.paper.labels import extent, gather_labels as in_place
-from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAMES, THIN, Sheet
-from tmm_cli.drawing.paper.writing import DARK
+from tmm_cli.drawing.paper.boxes import box_about, boxes_about, distance_to_segment, text_squares
+from tmm_cli.drawing.paper.labels import gather_coincident as in_place, text_extent
+from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAME_COLOUR, THIN_COLOUR, DrawingSheet
+from tmm_cli.drawing.paper.writing import DARK_COLOUR
 from tmm_cli.mechanics.numerics import Real, Vector, cross, dot
 
-OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
-OVER, HEAD, TEXT = 1.8, 3.0, 9.0  # mm: extension line over the dimension line, length of an arrow head; points
-SHORTEST = 0.4  # mm: smaller sizes are not drawn
-WIDEST = 45.0  # mm: largest radius of the arc of an angle
-INNER = 4.2  # heads that fit between the extension lines, with a shaft between them
-LETTERED = 6.0  # mm about a lettered place: its letter needs room there
-AT_HEAD = 0.25  # of the price of what a text covers: of what is near a head
-UNWISHED = {"before": 2.0, "after": 1.0, "low": 0.5, "high": 0.5, "wider": 6.0}  # price of where a text stands
-BETWEEN = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
-UPRIGHT = 0.3  # of a direction: sideways part of a line that is nearly upright
+LINE_OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
+EXTENSION_OVERHANG, DIMENSION_ARROWHEAD, DIMENSION_TEXT = (
+    1.8,
+    3.0,
+    9.0,
+)  # mm: extension line over the dimension line, length of an arrow head; points
+LEAST_LENGTH = 0.4  # mm: smaller sizes are not drawn
+LARGEST_RADIUS = 45.0  # mm: largest radius of the arc of an angle
+INNER_HEADS = 4.2  # heads that fit between the extension lines, with a shaft between them
+LETTER_CLEARANCE = 6.0  # mm about a lettered place: its letter needs room there
+HEAD_SHARE = 0.25  # of the price of what a text covers: of what is near a head
+TEXT_POSITION_COSTS = {
+    "before": 2.0,
+    "after": 1.0,
+    "low": 0.5,
+    "high": 0.5,
+    "wider": 6.0,
+}  # price of where a text stands
+TEXT_SHARES = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
+UPRIGHT_BELOW = 0.3  # of a direction: sideways part of a line that is nearly upright
 
 
-def dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
+def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
     """A dimension line beside two places (mm), where the least is in its way; text along it, above or left of it.
 
     The text of a short one goes on along it, at whichever end is free, or stands beside an upright one.
     """
     with sheet.on_layer("dimensions"):
-        _dimension(sheet, start, end, text, along)
+        _draw_dimension(sheet, start, end, text, along)
 
 
-def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: complex) -> None:
+def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex) -> None:
     span = end - start if along == 0 else along * float(dot(end - start, along)) / abs(along) ** 2
     length = abs(span)
-    if length < SHORTEST:
+    if length < LEAST_LENGTH:
         return
     u = span / length
     crowd = sheet.ground.crowd
-    width, height = extent(text, TEXT)
-    tail = 2 * HEAD + 3 + width
-    fits = length > 2 * HEAD + 1 and length > width + 3
-    inner = length > INNER * HEAD
-    others = ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT) + ("wider",) * inner
-    stands = tuple(BETWEEN) if fits else others
+    width, height = text_extent(text, DIMENSION_TEXT)
+    tail = 2 * DIMENSION_ARROWHEAD + 3 + width
+    fits = length > 2 * DIMENSION_ARROWHEAD + 1 and length > width + 3
+    inner = length > INNER_HEADS * DIMENSION_ARROWHEAD
+    others = ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT_BELOW) + ("wider",) * inner
+    stands = tuple(TEXT_SHARES) if fits else others
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
         """Ends of the dimension line, middle and direction of the text."""
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
-        middle = first + BETWEEN.get(stand, 0.5) * (last - first)
+        middle = first + TEXT_SHARES.get(stand, 0.5) * (last - first)
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
         if stand in ("after", "before"):
-            reach = 2 * HEAD + 1.5 + width / 2
+            reach = 2 * DIMENSION_ARROWHEAD + 1.5 + width / 2
             middle = last + u * reach if stand == "after" else first - u * reach
-        return first, last, middle + (height / 2 + 0.7) * up_of(u), u
+        return first, last, middle + (height / 2 + 0.7) * text_side(u), u
 
     def least(offset: float, stand: str) -> float:
-        return 0.25 * offset + UNWISHED.get(stand, 0.0)
+        return 0.25 * offset + TEXT_POSITION_COSTS.get(stand, 0.0)
 
     def cost(side: complex, offset: float, stand: str) -> float:
         first, last, middle, v = lines(side, offset, stand)
-        outer = 0.0 if inner else 2 * HEAD
+        outer = 0.0 if inner else 2 * DIMENSION_ARROWHEAD
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
-        found = 4.0 * sum(aside(z, *stretch) < LETTERED for z in sheet.ground.rivals)
-        legs = [(z, foot + 2 * OVER * side) for z, foot in ((start, first), (end, last))]
-        found += beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
-        found += 0.5 * sum(beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
-        squares = np.array([*row(middle, v, width, height), first, last])
-        prices = sheet.ground.price(around(squares, height, height))
-        found += float(prices[:-2].sum() + AT_HEAD * prices[-2:].sum())
+        found = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.ground.rivals)
+        legs = [(z, foot + 2 * EXTENSION_OVERHANG * side) for z, foot in ((start, first), (end, last))]
+        found += count_beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
+        found += 0.5 * sum(count_beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
+        squares = np.array([*text_squares(middle, v, width, height), first, last])
+        prices = sheet.ground.price(boxes_about(squares, height, height))
+        found += float(prices[:-2].sum() + HEAD_SHARE * prices[-2:].sum())
         return found + least(offset, stand)
 
-    choices = [(1j * u * s, o, stand) for o in OFFSETS for s in (1, -1) for stand in stands]
+    choices = [(1j * u * s, o, stand) for o in LINE_OFFSETS for s in (1, -1) for stand in stands]
     (side, offset, stand), price = choices[0], cost(*choices[0])
     for choice in choices[1:]:
         if least(*choice[1:]) < price and (own := cost(*choice)) < price:
@@ -87,65 +97,67 @@ def _dimension(sheet: Sheet, start: complex, end: complex, text: str, along: com
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
-            sheet.line([z + 2 * side, foot + OVER * side], THIN, 0.6, z=1.4, faint=True)
+            sheet.line([z + 2 * side, foot + EXTENSION_OVERHANG * side], THIN_COLOUR, 0.6, z=1.4, faint=True)
     if not inner:
-        sheet.line([first, last], DARK, 0.6, z=4.5)
-    backs = (last, first) if inner else (first - 2 * HEAD * u, last + 2 * HEAD * u)  # of short ones heads from outside
+        sheet.line([first, last], DARK_COLOUR, 0.6, z=4.5)
+    backs = (
+        (last, first) if inner else (first - 2 * DIMENSION_ARROWHEAD * u, last + 2 * DIMENSION_ARROWHEAD * u)
+    )  # of short ones heads from outside
     for back, tip in zip(backs, (first, last), strict=True):
-        sheet.arrow(back, tip, DARK, 0.6, 4.5)
+        sheet.arrow(back, tip, DARK_COLOUR, 0.6, 4.5)
     if stand in ("after", "before"):  # the line goes on under the text
-        sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK, 0.6, z=4.5)
-    sheet.along(middle, text, TEXT, v)
+        sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK_COLOUR, 0.6, z=4.5)
+    sheet.along(middle, text, DIMENSION_TEXT, v)
 
 
-def up_of(u: complex) -> complex:
+def text_side(u: complex) -> complex:
     """The side of a line on which its text stands: above it, or left of an upright one."""
     turned = 1j * u
     return turned if turned.imag > 1e-6 or (abs(turned.imag) <= 1e-6 and turned.real < 0) else -turned
 
 
-def beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
+def count_beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
     """How many points are nearer to a stretch of a line than this, on both sides of it."""
     along = (end - start) / abs(end - start)
     run, off = dot(crowd - start, along), np.abs(cross(along, crowd - start))
     return int(np.count_nonzero((run > 0) & (run < abs(end - start)) & (off < width)))
 
 
-def angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
+def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     """The arc of an angle between the ways to two places (mm), or a square where it is right; its name beside it."""
     with sheet.on_layer("dimensions"):
-        _angle_mark(sheet, vertex, first, last, name, right=right)
+        _draw_angle(sheet, vertex, first, last, name, right=right)
 
 
-def _angle_mark(sheet: Sheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
+def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # beyond the edge of a stone
-        sheet.line([vertex + corner * way for way in (ways[0], sum(ways), ways[1])], DARK, 0.8, z=3.2)
+        sheet.line([vertex + corner * way for way in (ways[0], sum(ways), ways[1])], DARK_COLOUR, 0.8, z=3.2)
         return
     turn = float(np.angle(ways[1] / ways[0]))
-    if abs(turn) * WIDEST < SHORTEST:
+    if abs(turn) * LARGEST_RADIUS < LEAST_LENGTH:
         return
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))
-    radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), WIDEST))
+    radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), LARGEST_RADIUS))
     angles = float(np.angle(ways[0])) + np.linspace(0, turn, 30)
     places = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
-    sheet.line(places, DARK, 0.7, z=2.6)
+    sheet.line(places, DARK_COLOUR, 0.7, z=2.6)
     for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
         if abs(turn) * radius > 7:
-            sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK, 0.5, 4.5)
-    sheet.label(name, places[len(places) // 2], 9, NAMES, "italic")
+            sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK_COLOUR, 0.5, 4.5)
+    sheet.label(name, places[len(places) // 2], 9, NAME_COLOUR, "italic")
 
 
 # A scale with numbers of positions beside the way of an output, straight or about a pivot.
 
 
-SIZE = 8.0  # points
-TICK = 1.6  # mm
-GAP = 0.7  # mm between a tick and its number, and between numbers
-CLEAR = 5.6  # mm on both sides of the way, for boxes and rails
-FARTHER = (0.0, 5.0, 10.0, 15.0)  # mm
-ARC = 1.0  # mm between points of a drawn arc
+NUMBER_SIZE = 8.0  # points
+TICK_LENGTH = 1.6  # mm
+NUMBER_GAP = 0.7  # mm between a tick and its number, and between numbers
+PATH_CLEARANCE = 5.6  # mm on both sides of the way, for boxes and rails
+RULER_OFFSETS = (0.0, 5.0, 10.0, 15.0)  # mm
+ARC_STEP = 1.0  # mm between points of a drawn arc
 
 
 @dataclass(frozen=True)
@@ -195,7 +207,7 @@ class Ruler:
 
 
 @dataclass(frozen=True)
-class Number:
+class RulerNumber:
     """The mark of a position at a run along a ruler; outer: on the side away from the way."""
 
     run: float
@@ -204,7 +216,7 @@ class Number:
     strong: bool = False
 
 
-def ruler_of(way: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
+def fit_ruler(way: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
     """For places of a way (mm) along a line, or about a pivot."""
     found = [place for place in way if np.isfinite(place)]
     if pivot is None:
@@ -214,48 +226,50 @@ def ruler_of(way: Sequence[complex], line: complex, pivot: complex | None) -> Ru
     return Ruler(pivot, cmath.rect(1, float(angles.max() + angles.min()) / 2), 1.0, abs(found[0] - pivot))
 
 
-def height(ruler: Ruler, numbers: Sequence[Number]) -> float:
+def numbers_height(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
     """How much room numbers take across a ruler, mm."""
-    return max((across(ruler, number) for number in numbers), default=0.0)
+    return max((number_height(ruler, number) for number in numbers), default=0.0)
 
 
-def across(ruler: Ruler, number: Number) -> float:
+def number_height(ruler: Ruler, number: RulerNumber) -> float:
     """Of one number."""
-    out, (wide, high) = ruler.out(number.run), extent(number.text, SIZE)
+    out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return abs(out.real) * wide + abs(out.imag) * high
 
 
-def along(ruler: Ruler, number: Number) -> float:
+def number_width(ruler: Ruler, number: RulerNumber) -> float:
     """How much room a number takes along a ruler, mm."""
-    out, (wide, high) = ruler.out(number.run), extent(number.text, SIZE)
-    return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + GAP
+    out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
+    return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + NUMBER_GAP
 
 
-def roomiest(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> Ruler:
+def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> Ruler:
     """The ruler on either side of the way, at least as far off as its inner numbers need, where least is drawn (mm)."""
-    inner = height(ruler, [number for number in numbers if not number.outer])
-    least = CLEAR + (inner + TICK + 2 * GAP if inner else 0.0)
-    choices = [replace(ruler, off=side * (least + more)) for more in FARTHER for side in (-1.0, 1.0)]
-    return min(choices, key=lambda one: crowded(one, numbers, lines) + abs(one.off) / 3)
+    inner = numbers_height(ruler, [number for number in numbers if not number.outer])
+    least = PATH_CLEARANCE + (inner + TICK_LENGTH + 2 * NUMBER_GAP if inner else 0.0)
+    choices = [replace(ruler, off=side * (least + more)) for more in RULER_OFFSETS for side in (-1.0, 1.0)]
+    return min(choices, key=lambda one: count_under_ruler(one, numbers, lines) + abs(one.off) / 3)
 
 
-def ruler_reach(ruler: Ruler, numbers: Sequence[Number]) -> float:
+def ruler_reach(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
     """How far from the ruler its outer numbers end, mm."""
-    return TICK + GAP + height(ruler, [number for number in numbers if number.outer])
+    return TICK_LENGTH + NUMBER_GAP + numbers_height(ruler, [number for number in numbers if number.outer])
 
 
-def crowded(ruler: Ruler, numbers: Sequence[Number], lines: Vector) -> float:
+def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> float:
     """How much of what is drawn (points, mm) is where the ruler would be; more than all where it has no room."""
-    if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + CLEAR:
+    if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + PATH_CLEARANCE:
         return math.inf
     runs, own, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
-    inside = (own > min(runs) - CLEAR) & (own < max(runs) + CLEAR)
-    inner = height(ruler, [number for number in numbers if not number.outer])
-    inside &= (far > abs(ruler.off) - inner - TICK - GAP) & (far < abs(ruler.off) + ruler_reach(ruler, numbers))
+    inside = (own > min(runs) - PATH_CLEARANCE) & (own < max(runs) + PATH_CLEARANCE)
+    inner = numbers_height(ruler, [number for number in numbers if not number.outer])
+    inside &= (far > abs(ruler.off) - inner - TICK_LENGTH - NUMBER_GAP) & (
+        far < abs(ruler.off) + ruler_reach(ruler, numbers)
+    )
     return float(np.count_nonzero(inside))
 
 
-def gather_numbers(numbers: Sequence[Number]) -> list[Number]:
+def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
     """Numbers that coincide on paper stand together, with an end of the way at its place."""
     found = []
     for __, here in in_place((complex(number.run, number.outer), number) for number in numbers):
@@ -264,30 +278,30 @@ def gather_numbers(numbers: Sequence[Number]) -> list[Number]:
     return found
 
 
-def draw_ruler(sheet: Sheet, ruler: Ruler, numbers: Sequence[Number]) -> None:
+def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]) -> None:
     """The scale with a tick and a number for each position; numbers that would touch one another stand apart."""
     runs = [number.run for number in numbers]
-    steps = max(2, int((max(runs) - min(runs)) / ARC)) if ruler.radius else 2
-    sheet.line([ruler.at(float(run)) for run in np.linspace(min(runs), max(runs), steps)], THIN, 0.7, z=2.6)
+    steps = max(2, int((max(runs) - min(runs)) / ARC_STEP)) if ruler.radius else 2
+    sheet.line([ruler.at(float(run)) for run in np.linspace(min(runs), max(runs), steps)], THIN_COLOUR, 0.7, z=2.6)
     for outer in (True, False):
         row = sorted((n for n in numbers if n.outer == outer), key=lambda n: n.run)
         sign = 1.0 if outer else -1.0
-        wide = [along(ruler, number) for number in row]
-        for number, run in zip(row, spread([n.run for n in row], wide), strict=True):
-            colour = DARK if number.strong else THIN
-            foot, tip = ruler.at(number.run), ruler.at(number.run, sign * TICK)
+        wide = [number_width(ruler, number) for number in row]
+        for number, run in zip(row, spread_intervals([n.run for n in row], wide), strict=True):
+            colour = DARK_COLOUR if number.strong else THIN_COLOUR
+            foot, tip = ruler.at(number.run), ruler.at(number.run, sign * TICK_LENGTH)
             sheet.line([foot, tip], colour, 1.1 if number.strong else 0.7, z=2.6)
-            middle = ruler.at(run, sign * (TICK + GAP + across(ruler, number) / 2))
+            middle = ruler.at(run, sign * (TICK_LENGTH + NUMBER_GAP + number_height(ruler, number) / 2))
             if abs(run - number.run) > 1.0:
-                sheet.line([tip, ruler.at(run, sign * (TICK + GAP))], THIN, 0.4, z=2.6)
-            colour = DARK if number.strong else GREY_TEXT
-            if sheet.ground.free(about(middle, *extent(number.text, SIZE))):
-                sheet.text(middle, number.text, SIZE, colour=colour, ha="center")
+                sheet.line([tip, ruler.at(run, sign * (TICK_LENGTH + NUMBER_GAP))], THIN_COLOUR, 0.4, z=2.6)
+            colour = DARK_COLOUR if number.strong else GREY_TEXT
+            if sheet.ground.free(box_about(middle, *text_extent(number.text, NUMBER_SIZE))):
+                sheet.text(middle, number.text, NUMBER_SIZE, colour=colour, ha="center")
             else:
-                sheet.label(number.text, tip, SIZE, colour)
+                sheet.label(number.text, tip, NUMBER_SIZE, colour)
 
 
-def spread(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:
+def spread_intervals(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:
     """Middles of intervals of these sizes, in order, as near as can be to where they are wanted without touching."""
     heaps: list[tuple[float, list[int]]] = []  # where each heap of touching intervals begins
     for k in range(len(wanted)):

@@ -14,13 +14,13 @@ import numpy as np
 from matplotlib.ft2font import FT2Font
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.record import Text
+from tmm_cli.drawing.paper.record import TextMark
 
-FAMILY = "DejaVu Sans"
-SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # of the width, from the left end to where a text is put
-HALF = 0.265  # of the size: from the base line to the middle of the letters' height
-BOX = "\u25a1"  # stands for what the font lacks
-UNITS = 1000  # the size at which advances are read
+FONT_FAMILY = "DejaVu Sans"
+ALIGN_SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # of the width, from the left end to where a text is put
+BASELINE_SHARE = 0.265  # of the size: from the base line to the middle of the letters' height
+MISSING_GLYPH = "\u25a1"  # stands for what the font lacks
+FONT_UNITS = 1000  # the size at which advances are read
 
 
 def font_file(bold: bool = False, italic: bool = False) -> Path:
@@ -30,34 +30,34 @@ def font_file(bold: bool = False, italic: bool = False) -> Path:
 
 
 @cache
-def font(bold: bool = False, italic: bool = False) -> FT2Font:
+def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
     """The font of a weight and slant, read whole: forked processes would share the place in an open file."""
     found = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
-    found.set_size(UNITS, 72)
+    found.set_size(FONT_UNITS, 72)
     return found
 
 
 @cache
 def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
     """Of size 1: its advance, the places of its outline (x + iy, from its foot on), and matplotlib's codes of them."""
-    glyph = font(bold, italic).load_char(ord(drawable(letter)))
-    places, codes = font(bold, italic).get_path()
-    return float(glyph.linearHoriAdvance) / 65536 / UNITS, (places[:, 0] + 1j * places[:, 1]) / UNITS, codes
+    glyph = load_font(bold, italic).load_char(ord(replace_missing(letter)))
+    places, codes = load_font(bold, italic).get_path()
+    return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (places[:, 0] + 1j * places[:, 1]) / FONT_UNITS, codes
 
 
-def advance(letter: str, bold: bool = False, italic: bool = False) -> float:
+def letter_advance(letter: str, bold: bool = False, italic: bool = False) -> float:
     """How far on the next letter stands, of its size."""
     return _letter(letter, bold, italic)[0]
 
 
 @lru_cache(10_000)
-def _width(text: str, bold: bool, italic: bool) -> float:
-    return sum(advance(letter, bold, italic) for letter in text)
+def _unit_width(text: str, bold: bool, italic: bool) -> float:
+    return sum(letter_advance(letter, bold, italic) for letter in text)
 
 
-def width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
+def text_width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
     """Width of a line of text, in the unit of its size."""
-    return size * _width(text, bold, italic)
+    return size * _unit_width(text, bold, italic)
 
 
 @lru_cache(1000)
@@ -72,39 +72,39 @@ def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tup
     return np.concatenate(places), np.concatenate(codes)
 
 
-def start(mark: Text) -> complex:
+def text_start(mark: TextMark) -> complex:
     """The left end of a text, at half the height of its letters, mm."""
-    left = SHARE[mark.align] * width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
+    left = ALIGN_SHARE[mark.align] * text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
     return mark.at - left * cmath.rect(1, math.radians(mark.turn))
 
 
-def foot(mark: Text) -> tuple[complex, complex]:
+def baseline(mark: TextMark) -> tuple[complex, complex]:
     """The left end of the base line of a text, mm, and the way along it."""
     along = cmath.rect(1, math.radians(mark.turn))
-    return start(mark) - 1j * HALF * mark.size * along, along
+    return text_start(mark) - 1j * BASELINE_SHARE * mark.size * along, along
 
 
-def corners(mark: Text) -> tuple[complex, complex, complex, complex]:
+def text_corners(mark: TextMark) -> tuple[complex, complex, complex, complex]:
     """Corners of the box of a text, from the lower left one on, mm."""
     along = cmath.rect(1, math.radians(mark.turn))
-    low = start(mark) - 0.5j * mark.size * along
-    end = low + width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
+    low = text_start(mark) - 0.5j * mark.size * along
+    end = low + text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
     up = 1j * mark.size * along
     return low, end, end + up, low + up
 
 
 @cache
-def _letters() -> frozenset[int]:
-    return frozenset(font().get_charmap())
+def _font_letters() -> frozenset[int]:
+    return frozenset(load_font().get_charmap())
 
 
-def drawable(text: str) -> str:
+def replace_missing(text: str) -> str:
     """The text with boxes in the place of characters that the font lacks."""
-    known = _letters()
-    return "".join(letter if ord(letter) in known else BOX for letter in text)
+    known = _font_letters()
+    return "".join(letter if ord(letter) in known else MISSING_GLYPH for letter in text)
 
 
-def lacking(text: str) -> set[str]:
+def missing_characters(text: str) -> set[str]:
     """Characters for which the font has no letter: boxes stand for them."""
-    known = _letters()
+    known = _font_letters()
     return {letter for letter in text if ord(letter) not in known}

@@ -10,20 +10,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.boxes import Box, Boxes, runs, shared, wider
+from tmm_cli.drawing.paper.boxes import Box, Boxes, lengths_inside, shared_areas, widen
 
-STEP = 1.2  # mm between the points that stand for a line
-LONGEST = 5000.0  # mm: longer lines are no part of a sheet
-CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a small circle
-AIR = 0.35  # mm about a text that are free
-LINE, A_LINE, A_FAINT = 14.0, 2.0, 0.3  # price of covering lines, of each mm of them, of each mm of faint ones
-TEXT, A_TEXT = 40.0, 2.0  # of a text, and of each mm² of it
-HEAD = 1.0  # mm: half the width of the head of an arrow
-OUTSIDE = 200.0  # of a place beyond the edge
+SAMPLE_STEP = 1.2  # mm between the points that stand for a line
+LONGEST_LINE = 5000.0  # mm: longer lines are no part of a sheet
+CIRCLE_CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a small circle
+TEXT_AIR = 0.35  # mm about a text that are free
+LINE_PRICE, LINE_PRICE_PER_MM, FAINT_PRICE_PER_MM = (
+    14.0,
+    2.0,
+    0.3,
+)  # price of covering lines, of each mm of them, of each mm of faint ones
+TEXT_PRICE, TEXT_PRICE_PER_MM2 = 40.0, 2.0  # of a text, and of each mm² of it
+ARROWHEAD_HALF_WIDTH = 1.0  # mm: half the width of the head of an arrow
+OUTSIDE_PRICE = 200.0  # of a place beyond the edge
 
 
 @dataclass
-class Pieces:
+class Segments:
     """Straight lines, gathered one by one, and looked at all at once."""
 
     fresh: list[tuple[complex, complex]] = field(default_factory=list)
@@ -35,7 +39,7 @@ class Pieces:
         self.fresh += [
             (start, end)
             for start, end in pairwise(places)
-            if abs(end - start) < LONGEST  # of what is not finite it is not
+            if abs(end - start) < LONGEST_LINE  # of what is not finite it is not
         ]
 
     @property
@@ -55,7 +59,7 @@ class Pieces:
         found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
         return found
 
-    def points(self, step: float = STEP) -> NDArray[Any]:
+    def points(self, step: float = SAMPLE_STEP) -> NDArray[Any]:
         """Points on them, about so far (mm) apart."""
         starts, ends = self.all.T
         counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
@@ -66,7 +70,7 @@ class Pieces:
 
 
 @dataclass
-class Ground:
+class OccupiedArea:
     """Lines and texts on a field of the paper, mm.
 
     rivals: lettered places; no label stands nearer to one of them than to its own; likewise lines that have names.
@@ -78,8 +82,8 @@ class Ground:
     boxes: list[Box] = field(default_factory=list)
     rivals: list[complex] = field(default_factory=list)
     lines: list[tuple[complex, complex]] = field(default_factory=list)
-    solid: Pieces = field(default_factory=Pieces)
-    faint: Pieces = field(default_factory=Pieces)
+    solid: Segments = field(default_factory=Segments)
+    faint: Segments = field(default_factory=Segments)
 
     @property
     def crowd(self) -> NDArray[Any]:
@@ -103,38 +107,44 @@ class Ground:
 
     def spot(self, place: complex, radius: float = 1.0) -> None:
         """A circle is in the way."""
-        turns = CORNERS if radius < 4 * STEP else np.exp(1j * np.linspace(0, 2 * np.pi, int(6 * radius / STEP)))
+        turns = (
+            CIRCLE_CORNERS
+            if radius < 4 * SAMPLE_STEP
+            else np.exp(1j * np.linspace(0, 2 * np.pi, int(6 * radius / SAMPLE_STEP)))
+        )
         self.path([complex(corner) for corner in place + radius * turns])
 
     def free(self, box: Box) -> bool:
         """Whether a text there covers nothing."""
-        return bool(self.price(np.array([box]))[0] < LINE)
+        return bool(self.price(np.array([box]))[0] < LINE_PRICE)
 
     def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
         """The price of texts that these straight lines, or heads of arrows on them, would cover."""
         if not self.boxes:
             return 0.0
-        return TEXT * float(np.count_nonzero(runs(wider(np.array(self.boxes), HEAD), *np.array(lines).T)))
+        return TEXT_PRICE * float(
+            np.count_nonzero(lengths_inside(widen(np.array(self.boxes), ARROWHEAD_HALF_WIDTH), *np.array(lines).T))
+        )
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
-        wide = wider(boxes, AIR)
+        wide = widen(boxes, TEXT_AIR)
         room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
         solid, faint = self.solid.near(room), self.faint.near(room)
-        lengths = runs(wide, *np.concatenate([solid, faint]).T)
+        lengths = lengths_inside(wide, *np.concatenate([solid, faint]).T)
         inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
-        found: NDArray[Any] = LINE * (inside > 0) + A_LINE * inside + A_FAINT * thin
-        found += over(boxes, np.array(self.boxes))
+        found: NDArray[Any] = LINE_PRICE * (inside > 0) + LINE_PRICE_PER_MM * inside + FAINT_PRICE_PER_MM * thin
+        found += overlap_price(boxes, np.array(self.boxes))
         left, right, low, high = boxes.T
         beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)
-        found += OUTSIDE * beyond
+        found += OUTSIDE_PRICE * beyond
         return found
 
 
-def over(boxes: Boxes, others: Boxes) -> NDArray[Any]:
+def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     """The price of the texts (their boxes) that texts in these boxes cover."""
     if not len(others):
         return np.zeros(len(boxes))
-    areas = shared(wider(boxes, AIR), others)
-    found: NDArray[Any] = (TEXT * (areas > 0) + A_TEXT * areas).sum(axis=1)
+    areas = shared_areas(widen(boxes, TEXT_AIR), others)
+    found: NDArray[Any] = (TEXT_PRICE * (areas > 0) + TEXT_PRICE_PER_MM2 * areas).sum(axis=1)
     return found

@@ -12,25 +12,64 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_cli.drawing.paper import script
-from tmm_cli.drawing.paper.boxes import Boxes, around, asides, crossing, gaps, nearest, runs
-from tmm_cli.drawing.paper.ground import LINE, Ground, over
-from tmm_cli.drawing.paper.raster import Raster
+from tmm_cli.drawing.paper.boxes import (
+    Boxes,
+    box_distances,
+    boxes_about,
+    distances_to_segments,
+    lengths_inside,
+    nearest_in_boxes,
+    segments_cross,
+)
+from tmm_cli.drawing.paper.ground import LINE_PRICE, OccupiedArea, overlap_price
+from tmm_cli.drawing.paper.raster import PriceRaster
 from tmm_cli.drawing.paper.record import POINT
 
-RINGS = (1.2, 2.2, 3.4, 5.5, 8.0, 11.0, 15.0, 20.0, 26.0, 34.0, 44.0, 56.0, 70.0)  # mm from the anchor to the label
-ASIDE = (1.0, 2.2, 3.4, 5.5, 8.0, 11.0, 16.0, 22.0, 30.0, 40.0)  # mm from a line to its label
-ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82)  # where a text stands beside a line, shares of its length
+ANCHOR_DISTANCES = (
+    1.2,
+    2.2,
+    3.4,
+    5.5,
+    8.0,
+    11.0,
+    15.0,
+    20.0,
+    26.0,
+    34.0,
+    44.0,
+    56.0,
+    70.0,
+)  # mm from the anchor to the label
+LINE_DISTANCES = (1.0, 2.2, 3.4, 5.5, 8.0, 11.0, 16.0, 22.0, 30.0, 40.0)  # mm from a line to its label
+LINE_SHARES = (
+    0.5,
+    0.42,
+    0.58,
+    0.34,
+    0.66,
+    0.26,
+    0.74,
+    0.18,
+    0.82,
+)  # where a text stands beside a line, shares of its length
 DIRECTIONS = 16
-TIERS = (0, 3, 6, 9, 13)  # rings between these are looked at together, later ones if there is nothing free
-MOST_GAPS = 1_000_000  # between candidate places and other anchors that are held in memory at once: 8 MB an array
-KEPT = 24  # places with leaders, the cheapest ones, that are looked at more closely
-LEADER = 4.0  # mm from which a line leads from a place to its label
-SHORT = 0.5  # mm by which it ends before the label
-FARTHER, LED, MIDDLE = 0.35, 2.0, 3.0  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
-MISTAKEN, CROSSED = 6.0, 0.2  # of standing nearer to what has another name, of a line that a leader crosses
-ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
-CONTENT = 6.0
-SAME = 0.5  # mm: nearer places are one
+RING_TIERS = (0, 3, 6, 9, 13)  # rings between these are looked at together, later ones if there is nothing free
+MOST_DISTANCES = 1_000_000  # between candidate places and other anchors that are held in memory at once: 8 MB an array
+LEADERS_KEPT = 24  # places with leaders, the cheapest ones, that are looked at more closely
+LEADER_FROM = 4.0  # mm from which a line leads from a place to its label
+LEADER_GAP = 0.5  # mm by which it ends before the label
+DISTANCE_PRICE, LEADER_PRICE, OFF_MIDDLE_PRICE = (
+    0.35,
+    2.0,
+    3.0,
+)  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
+AMBIGUITY_PRICE, CROSSING_PRICE = (
+    6.0,
+    0.2,
+)  # of standing nearer to what has another name, of a line that a leader crosses
+PLACEMENT_ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
+ACCEPTED_COST = 6.0
+SAME_PLACE = 0.5  # mm: nearer places are one
 
 Item = TypeVar("Item")
 
@@ -48,7 +87,7 @@ class Label:
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedLabel:
     """A label at its middle; leader: from its anchor, where it stands far off."""
 
     label: Label
@@ -57,7 +96,7 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Places:
+class LabelCandidates:
     """Boxes for a label, leaders from their feet to their ends, and what each costs by what is drawn and how far off.
 
     led: whether there is a leader.
@@ -70,31 +109,32 @@ class Places:
     led: NDArray[Any]
     price: NDArray[Any]
 
-    def part(self, which: slice | NDArray[Any]) -> Places:
+    def part(self, which: slice | NDArray[Any]) -> LabelCandidates:
         """Some of them."""
-        return Places(*(getattr(self, one.name)[which] for one in fields(self)))
+        return LabelCandidates(*(getattr(self, one.name)[which] for one in fields(self)))
 
 
-class Placer:
+class LabelPlacer:
     """Where labels may be on a ground. rivals: places that have other names, or are named by these labels."""
 
-    def __init__(self, ground: Ground, labels: Sequence[Label]) -> None:
-        self.ground, self.labels, self.raster = ground, labels, Raster(ground)
+    def __init__(self, ground: OccupiedArea, labels: Sequence[Label]) -> None:
+        self.ground, self.labels, self.raster = ground, labels, PriceRaster(ground)
         anchors = [label.anchor for label in labels if label.line is None]
         self.rivals = np.array([*dict.fromkeys([*anchors, *ground.rivals])], complex)
         self.texts = np.reshape(np.array(ground.boxes), (-1, 4))
-        sizes = [extent(label.text, label.size) for label in labels]
+        sizes = [text_extent(label.text, label.size) for label in labels]
         self.tiers = [
-            (beside if label.line else about)(label, *size) for label, size in zip(labels, sizes, strict=True)
+            (candidates_beside if label.line else candidates_about)(label, *size)
+            for label, size in zip(labels, sizes, strict=True)
         ]
         self.sizes = np.array(sizes)
-        self.known: list[list[Places]] = [[] for __ in labels]
+        self.known: list[list[LabelCandidates]] = [[] for __ in labels]
         wanting: Sequence[int] = range(len(labels))
-        together = max(1, MOST_GAPS // (DIRECTIONS * TIERS[1] * (len(self.rivals) + 1)))
+        together = max(1, MOST_DISTANCES // (DIRECTIONS * RING_TIERS[1] * (len(self.rivals) + 1)))
         while wanting:
             for first in range(0, len(wanting), together):
                 self._look_farther(wanting[first : first + together])
-            wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE / 2]
+            wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE_PRICE / 2]
 
     def _look_farther(self, numbers: Sequence[int]) -> None:
         """Get to know the next places of some labels, all at once."""
@@ -103,31 +143,31 @@ class Placer:
         lengths = [len(tier[0]) for tier in found]
         whose = np.repeat(np.array(numbers), lengths)
         wide, high = self.sizes[whose].T
-        boxes = around(middles, wide, high)
-        off = nearest(boxes, feet) - feet
+        boxes = boxes_about(middles, wide, high)
+        off = nearest_in_boxes(boxes, feet) - feet
         away = np.abs(off)
-        led = away > LEADER
-        ends = np.where(led, feet + off * (1 - SHORT / np.maximum(away, SHORT)), feet)
-        price = price + LED * led + self.raster.price(boxes) + self._mistaken(whose, middles, boxes, away, led)
-        places, stops = Places(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
+        led = away > LEADER_FROM
+        ends = np.where(led, feet + off * (1 - LEADER_GAP / np.maximum(away, LEADER_GAP)), feet)
+        price = price + LEADER_PRICE * led + self.raster.price(boxes) + self._mistaken(whose, middles, boxes, away, led)
+        places, stops = LabelCandidates(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
         for k, start, stop in zip(numbers, stops[:-1], stops[1:], strict=True):
             self.known[k].append(self._clear(places.part(slice(start, stop))))
 
     def more(self, k: int) -> bool:
         """Whether a label has places that are not known yet."""
-        return len(self.known[k]) < (len(ASIDE) if self.labels[k].line else len(RINGED))
+        return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
-    def _clear(self, places: Places) -> Places:
+    def _clear(self, places: LabelCandidates) -> LabelCandidates:
         """Of places with leaders only the cheapest, with the price of what their leaders cross."""
         if not places.led.any():
             return places
-        best = np.argsort(places.price, kind="stable")[:KEPT]
+        best = np.argsort(places.price, kind="stable")[:LEADERS_KEPT]
         kept = places.part(best)
         both = np.concatenate([kept.feet, kept.ends])
         lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
-        crossed = crossing(kept.feet, kept.ends, *lines.T).sum(axis=1)
-        through = (runs(self.texts, kept.feet, kept.ends) > 0).sum(axis=0)
-        return replace(kept, price=kept.price + CROSSED * crossed + LINE * through)
+        crossed = segments_cross(kept.feet, kept.ends, *lines.T).sum(axis=1)
+        through = (lengths_inside(self.texts, kept.feet, kept.ends) > 0).sum(axis=0)
+        return replace(kept, price=kept.price + CROSSING_PRICE * crossed + LINE_PRICE * through)
 
     def _mistaken(
         self, whose: NDArray[Any], middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]
@@ -135,35 +175,35 @@ class Placer:
         """The price of standing nearer to another lettered place, or to another line, than to one's own."""
         nearer = np.zeros(len(middles), bool)
         if len(self.rivals) and not led.all():  # a leader says what is meant
-            off = gaps(boxes, self.rivals)
-            own = np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME
+            off = box_distances(boxes, self.rivals)
+            own = np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME_PLACE
             nearer = np.where(own, np.inf, off).min(axis=1) < away + 0.8
         for k in {int(k) for k in whose if self.labels[k].line is not None}:
             line, here = self.labels[k].line, whose == k
             others = [other for other in self.ground.lines if other != line]
-            near = asides(middles[here], *np.array([line, *others]).T)
+            near = distances_to_segments(middles[here], *np.array([line, *others]).T)
             nearer[here] = near[:, 1:].min(axis=1, initial=np.inf) < near[:, 0] + 0.5
-        return np.where(nearer, np.where(led, 0.0, MISTAKEN), 0.0)
+        return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
 
-    def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, Places]:
+    def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, LabelCandidates]:
         """The cheapest place of a label, given the boxes of others and their leaders (number, ends).
 
         Those farther off are looked at only while nothing nearer is free.
         """
-        best: tuple[float, Places] | None = None
+        best: tuple[float, LabelCandidates] | None = None
         for number in count():
-            if best is not None and best[0] <= LINE / 2:
+            if best is not None and best[0] <= LINE_PRICE / 2:
                 break
             if number == len(self.known[k]):
                 if not self.more(k):
                     break
                 self._look_farther([k])
             places = self.known[k][number]
-            cost = places.price + over(places.boxes, taken)
+            cost = places.price + overlap_price(places.boxes, taken)
             if len(leaders):
-                cost += LINE * (runs(places.boxes, *leaders.T) > 0).sum(axis=1)
+                cost += LINE_PRICE * (lengths_inside(places.boxes, *leaders.T) > 0).sum(axis=1)
             if places.led.any():
-                cost += LINE * (runs(taken, places.feet, places.ends) > 0).sum(axis=0)
+                cost += LINE_PRICE * (lengths_inside(taken, places.feet, places.ends) > 0).sum(axis=0)
             least = int(np.argmin(cost))
             if best is None or cost[least] < best[0]:
                 best = float(cost[least]), places.part(slice(least, least + 1))
@@ -171,71 +211,72 @@ class Placer:
         return best
 
 
-def place(ground: Ground, labels: Sequence[Label]) -> list[Placed]:
+def place_labels(ground: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
     """Where labels cover the least: those with the least choice first; then each once more, given the others."""
     if not labels:
         return []
-    placer = Placer(ground, labels)
+    placer = LabelPlacer(ground, labels)
     boxes, leaders = np.full((len(labels), 4), np.nan), np.full((len(labels), 2), np.nan, complex)
     middles, costs = [label.anchor for label in labels], [math.inf] * len(labels)
     order = sorted(range(len(labels)), key=lambda k: -float(np.sort(placer.known[k][0].price)[:4].sum()))
-    for __ in range(ROUNDS):
+    for __ in range(PLACEMENT_ROUNDS):
         moved = False
-        for k in [k for k in order if costs[k] > CONTENT]:
+        for k in [k for k in order if costs[k] > ACCEPTED_COST]:
             boxes[k], leaders[k] = np.nan, np.nan
             costs[k], found = placer.best(k, boxes[~np.isnan(boxes[:, 0])], leaders[~np.isnan(leaders[:, 0])])
-            moved = moved or abs(found.middles[0] - middles[k]) > SAME
+            moved = moved or abs(found.middles[0] - middles[k]) > SAME_PLACE
             middles[k], boxes[k] = complex(found.middles[0]), found.boxes[0]
             if found.led[0]:
                 leaders[k] = found.feet[0], found.ends[0]
         if not moved:
             break
     return [
-        Placed(label, middle, (complex(foot), complex(end)) if np.isfinite(foot) else None)
+        PlacedLabel(label, middle, (complex(foot), complex(end)) if np.isfinite(foot) else None)
         for label, middle, (foot, end) in zip(labels, middles, leaders, strict=True)
     ]
 
 
-Tier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leaders, middles of boxes, prices
+CandidateTier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leaders, middles of boxes, prices
 
 
-def _ring(number: int) -> tuple[NDArray[Any], NDArray[Any]]:
+def _ring_candidates(number: int) -> tuple[NDArray[Any], NDArray[Any]]:
     """Unit vectors in which a label may be off its anchor, and how far."""
-    many = DIRECTIONS * (1 + (RINGS[number] > LEADER))
+    many = DIRECTIONS * (1 + (ANCHOR_DISTANCES[number] > LEADER_FROM))
     turns = (np.arange(many) + 0.5 * (number % 2)) / many
-    return np.exp(1j * (2 * np.pi * turns + np.pi / 4)), np.full(many, RINGS[number])
+    return np.exp(1j * (2 * np.pi * turns + np.pi / 4)), np.full(many, ANCHOR_DISTANCES[number])
 
 
-RINGED = [
-    tuple(np.concatenate(part) for part in zip(*map(_ring, range(*ends)), strict=True)) for ends in pairwise(TIERS)
+RING_CANDIDATES = [
+    tuple(np.concatenate(part) for part in zip(*map(_ring_candidates, range(*ends)), strict=True))
+    for ends in pairwise(RING_TIERS)
 ]
 
 
-def about(label: Label, width: float, height: float) -> Iterator[Tier]:
+def candidates_about(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
     """Places about an anchor: the box touches a circle about it."""
-    for along, reach in RINGED:
+    for along, reach in RING_CANDIDATES:
         off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
-        yield np.full(len(along), label.anchor), label.anchor + off, FARTHER * reach
+        yield np.full(len(along), label.anchor), label.anchor + off, DISTANCE_PRICE * reach
 
 
-def beside(label: Label, width: float, height: float) -> Iterator[Tier]:
+def candidates_beside(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
     """Places beside a line, above it first."""
     assert label.line is not None
     start, end = label.line
     span = (end - start) / (abs(end - start) or 1.0)
     up = 1j * span if (1j * span).imag >= 0 else -1j * span
-    shares, out = np.repeat(ALONG, 2), np.tile([up, -up], len(ALONG))
+    shares, out = np.repeat(LINE_SHARES, 2), np.tile([up, -up], len(LINE_SHARES))
     feet = start + shares * (end - start)
     half = np.abs(out.real) * width / 2 + np.abs(out.imag) * height / 2
-    for reach in ASIDE:
-        yield feet, feet + (reach + half) * out, 1.5 * reach + MIDDLE * np.abs(shares - 0.5)
+    for reach in LINE_DISTANCES:
+        yield feet, feet + (reach + half) * out, 1.5 * reach + OFF_MIDDLE_PRICE * np.abs(shares - 0.5)
 
 
-def gather_labels(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
+def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
     """Items by their place (mm): those that coincide on paper stand together."""
     found: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
-        same = next((items for place, items in found if abs(place - at) < SAME), None)
+        same = next((items for place, items in found if abs(place - at) < SAME_PLACE), None)
         if same is None:
             found.append((at, [item]))
         else:
@@ -243,7 +284,7 @@ def gather_labels(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex,
     return found
 
 
-def extent(text: script.Words, size: float) -> tuple[float, float]:
+def text_extent(text: script.Words, size: float) -> tuple[float, float]:
     """Width and height of a text on paper, mm, with a little air at its sides; size: points."""
     high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
     return script.script_width(text, size * POINT) + 0.6, high * size * POINT

@@ -11,24 +11,24 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper.fonts import corners
-from tmm_cli.drawing.paper.record import Area, Circle, Drawing, Line, Mark, Text
-from tmm_cli.drawing.paper.writing import DARK, LINE, wrap
+from tmm_cli.drawing.paper.fonts import text_corners
+from tmm_cli.drawing.paper.record import AreaMark, CircleMark, Drawing, LineMark, Mark, TextMark
+from tmm_cli.drawing.paper.writing import DARK_COLOUR, LINE_SPACING, wrap_text
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
 
-HEAD, NOTE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
-NARROW = 70.0  # mm: a heading is not broken into shorter lines
-CLOSE = 1.5  # mm between places that stand for a line
+HEADING_SIZE, REMARK_SIZE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
+LEAST_HEADING_WIDTH = 70.0  # mm: a heading is not broken into shorter lines
+POINT_SPACING = 1.5  # mm between places that stand for a line
 LEAST_PAPER = 170.0  # mm: longest side of a paper that is asked for; what is on it cannot be smaller
-AIR = 2.5  # mm between a heading and what is below it
-MOST = 3  # lines of a heading, and of each note
+HEADING_GAP = 2.5  # mm between a heading and what is below it
+MOST_LINES = 3  # lines of a heading, and of each note
 
 Size = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Picture(Drawing):
+class SheetPicture(Drawing):
     """A drawing with its heading, no larger than they are.
 
     longest: side (mm) that it was drawn for; figure: what of it grows with that (mm), None: all; mu: SI a millimetre,
@@ -43,7 +43,7 @@ class Picture(Drawing):
 
 
 @dataclass(frozen=True)
-class Space:
+class PictureSpace:
     """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes.
 
     most: width and height (mm) of the field of the sheet. written: headings and equations stand by the drawings; in a
@@ -55,51 +55,51 @@ class Space:
     written: bool = True
 
 
-_SPACE: ContextVar[Space | None] = ContextVar("space", default=None)
+_PICTURE_SPACE: ContextVar[PictureSpace | None] = ContextVar("space", default=None)
 
 
 @contextmanager
-def within(space: Space) -> Iterator[None]:
+def drawing_within(space: PictureSpace) -> Iterator[None]:
     """What is drawn meanwhile becomes pictures, without papers of their own."""
-    token = _SPACE.set(space)
+    token = _PICTURE_SPACE.set(space)
     try:
         yield
     finally:
-        _SPACE.reset(token)
+        _PICTURE_SPACE.reset(token)
 
 
 def on_large_sheet() -> bool:
     """Whether what is drawn now is to be a picture beside others."""
-    return _SPACE.get() is not None
+    return _PICTURE_SPACE.get() is not None
 
 
-def written_here() -> bool:
+def writes_equations() -> bool:
     """Whether what is drawn now has its heading and its equations by it."""
-    space = _SPACE.get()
+    space = _PICTURE_SPACE.get()
     return space is None or space.written
 
 
 def longest_for(usual: float) -> float:
     """The longest side (mm) of what is drawn now, where it would be this one."""
-    space = _SPACE.get()
+    space = _PICTURE_SPACE.get()
     return usual if space is None or space.longest is None else space.longest
 
 
-def fits(width: float, height: float) -> bool:
+def fits_sheet(width: float, height: float) -> bool:
     """Whether there is room on the sheet for what is so large (mm) and has a heading, if it is written."""
-    return excess(width, height) <= 1.0
+    return excess_factor(width, height) <= 1.0
 
 
-def excess(width: float, height: float) -> float:
+def excess_factor(width: float, height: float) -> float:
     """How many times what is so large is larger than the room that there is for it."""
-    space = _SPACE.get()
+    space = _PICTURE_SPACE.get()
     if space is None:
         return 0.0
-    heading = MOST * LINE * HEAD + AIR if space.written else 0.0
+    heading = MOST_LINES * LINE_SPACING * HEADING_SIZE + HEADING_GAP if space.written else 0.0
     return max(width / space.most[0], (height + heading) / space.most[1])
 
 
-def paper_for(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
+def choose_paper(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
     """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
     if not on_large_sheet():
         best, mu = sheet_scale(points, pad)
@@ -120,22 +120,22 @@ def render_picture(
     figure: Size | None = None,
     mu: float | None = None,
     notes: Sequence[str] = (),
-) -> Picture:
+) -> SheetPicture:
     """What was drawn, cut out of its paper, below its title and notes."""
-    drawn, heading = list(marks), title if written_here() else ""
-    low, high = extremes(drawn)
-    room = max((high - low).real, NARROW)
-    y = high.imag + AIR
-    for text, size, bold in reversed([(heading, HEAD, True), *((note, NOTE, False) for note in notes)]):
-        for line in reversed(wrap(text, size, room, MOST, bold=bold)):
-            drawn.append(Text(complex(low.real, y + LINE * size / 2), line, size, DARK, bold=bold))
-            y += LINE * size
-    low, high = extremes(drawn)
+    drawn, heading = list(marks), title if writes_equations() else ""
+    low, high = bounding_corners(drawn)
+    room = max((high - low).real, LEAST_HEADING_WIDTH)
+    y = high.imag + HEADING_GAP
+    for text, size, bold in reversed([(heading, HEADING_SIZE, True), *((note, REMARK_SIZE, False) for note in notes)]):
+        for line in reversed(wrap_text(text, size, room, MOST_LINES, bold=bold)):
+            drawn.append(TextMark(complex(low.real, y + LINE_SPACING * size / 2), line, size, DARK_COLOUR, bold=bold))
+            y += LINE_SPACING * size
+    low, high = bounding_corners(drawn)
     moved = sorted((mark.moved(-low) for mark in drawn), key=lambda mark: mark.z)
-    return Picture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu, title=title)
+    return SheetPicture(((high - low).real, (high - low).imag), tuple(moved), longest, figure, mu, title=title)
 
 
-def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:
+def bounding_corners(marks: Iterable[Mark]) -> tuple[complex, complex]:
     """Corners of the box about marks, mm."""
     places = [place for mark in marks for place in mark_corners(mark)] or [0j]
     xs, ys = [z.real for z in places], [z.imag for z in places]
@@ -145,26 +145,28 @@ def extremes(marks: Iterable[Mark]) -> tuple[complex, complex]:
 def mark_corners(mark: Mark) -> Sequence[complex]:
     """Places between which a mark lies, mm."""
     match mark:
-        case Line():
+        case LineMark():
             return mark.places
-        case Area():
+        case AreaMark():
             return mark.corners
-        case Circle():
+        case CircleMark():
             return [mark.centre + mark.radius * way for way in (1, 1j, -1, -1j)]
-        case Text():
-            return corners(mark)
+        case TextMark():
+            return text_corners(mark)
 
 
-def covering(marks: Iterable[Mark]) -> Vector:
+def points_covered(marks: Iterable[Mark]) -> Vector:
     """Places close together on lines and in texts, mm."""
     found = [np.zeros(0, complex)]
     for mark in marks:
-        low, high = extremes([mark])
-        if isinstance(mark, Line):
-            found += [a + (b - a) * np.linspace(0, 1, 2 + int(abs(b - a) / CLOSE)) for a, b in pairwise(mark.places)]
-        elif isinstance(mark, Text):
+        low, high = bounding_corners([mark])
+        if isinstance(mark, LineMark):
+            found += [
+                a + (b - a) * np.linspace(0, 1, 2 + int(abs(b - a) / POINT_SPACING)) for a, b in pairwise(mark.places)
+            ]
+        elif isinstance(mark, TextMark):
             size = high - low
-            across, up = (np.linspace(0, length, 2 + int(length / CLOSE)) for length in (size.real, size.imag))
+            across, up = (np.linspace(0, length, 2 + int(length / POINT_SPACING)) for length in (size.real, size.imag))
             found.append((low + across[:, None] + 1j * up).ravel())
         else:
             found.append(np.array([low, high, (low + high) / 2]))

@@ -18,7 +18,7 @@ DASHES: dict[Style, tuple[float, ...]] = {"-": (), "--": (3.7, 1.6), ":": (1.0, 
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LineMark:
     """A polyline; width in mm."""
 
     places: tuple[complex, ...]
@@ -28,7 +28,7 @@ class Line:
     layer: Layer = "construction"
     z: float = 3.0
 
-    def moved(self, by: complex) -> Line:
+    def moved(self, by: complex) -> LineMark:
         return replace(self, places=tuple(place + by for place in self.places))
 
     @property
@@ -38,7 +38,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Area:
+class AreaMark:
     """A filled polygon. edge: the colour of its outline, if it has one."""
 
     corners: tuple[complex, ...]
@@ -48,12 +48,12 @@ class Area:
     layer: Layer = "construction"
     z: float = 2.0
 
-    def moved(self, by: complex) -> Area:
+    def moved(self, by: complex) -> AreaMark:
         return replace(self, corners=tuple(corner + by for corner in self.corners))
 
 
 @dataclass(frozen=True, slots=True)
-class Circle:
+class CircleMark:
     """A filled circle with its outline."""
 
     centre: complex
@@ -64,12 +64,12 @@ class Circle:
     layer: Layer = "construction"
     z: float = 6.0
 
-    def moved(self, by: complex) -> Circle:
+    def moved(self, by: complex) -> CircleMark:
         return replace(self, centre=self.centre + by)
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class TextMark:
     """One line of text; `at` is its left end, middle or right end at half the height of its letters.
 
     size: of the letters' body, mm. turn: deg, about `at`.
@@ -86,11 +86,11 @@ class Text:
     layer: Layer = "text"
     z: float = 9.0
 
-    def moved(self, by: complex) -> Text:
+    def moved(self, by: complex) -> TextMark:
         return replace(self, at=self.at + by)
 
 
-Mark = Line | Area | Circle | Text
+Mark = LineMark | AreaMark | CircleMark | TextMark
 
 
 @dataclass(frozen=True)
@@ -111,4 +111,4 @@ class Drawing:
 
     def texts(self) -> list[str]:
         """What is written on it."""
-        return [mark.text for mark in self.marks if isinstance(mark, Text)]
+        return [mark.text for mark in self.marks if isinstance(mark, TextMark)]

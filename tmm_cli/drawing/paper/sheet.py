@@ -9,22 +9,33 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.drawing.paper import script
-from tmm_cli.drawing.paper.blocks import Block, Room, Row, nearest_free, roomiest
-from tmm_cli.drawing.paper.boxes import about, outside, row, wider
-from tmm_cli.drawing.paper.fonts import SHARE
-from tmm_cli.drawing.paper.ground import AIR, Ground
-from tmm_cli.drawing.paper.labels import Label, extent as label_extent, place
+from tmm_cli.drawing.paper.blocks import NoteBlock, PaperLayout, TableRow, free_block_position, least_covering_block
+from tmm_cli.drawing.paper.boxes import box_about, stretches_outside, text_squares, widen
+from tmm_cli.drawing.paper.fonts import ALIGN_SHARE
+from tmm_cli.drawing.paper.ground import TEXT_AIR, OccupiedArea
+from tmm_cli.drawing.paper.labels import Label, place_labels, text_extent as label_extent
 from tmm_cli.drawing.paper.picture import (
-    covering,
-    extremes,
-    fits,
+    bounding_corners,
+    choose_paper,
+    fits_sheet,
     longest_for,
     on_large_sheet,
-    paper_for,
+    points_covered,
     render_picture,
 )
-from tmm_cli.drawing.paper.record import POINT, Align, Area, Circle, Drawing, Layer, Line, Mark, Style, Text
-from tmm_cli.drawing.paper.writing import DARK, in_a_line
+from tmm_cli.drawing.paper.record import (
+    POINT,
+    Align,
+    AreaMark,
+    CircleMark,
+    Drawing,
+    Layer,
+    LineMark,
+    Mark,
+    Style,
+    TextMark,
+)
+from tmm_cli.drawing.paper.writing import DARK_COLOUR, fit_one_line
 from tmm_cli.language import numeral, spelt
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import unit
@@ -32,26 +43,32 @@ from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, extent, ground_of
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.problem import UnitSystem, on_paper
 
-THIN, LOAD, INERTIA, REACTION, GREY = "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c4c4c4"
-NAMES = "#7a3d99"  # of links, lines and angles
-COLOURS = {
-    "absolute": DARK,
+THIN_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR, GREY_COLOUR = (
+    "#8a8a8a",
+    "#b3261e",
+    "#1f4e9c",
+    "#1d7a3a",
+    "#c4c4c4",
+)
+NAME_COLOUR = "#7a3d99"  # of links, lines and angles
+VECTOR_COLOURS = {
+    "absolute": DARK_COLOUR,
     "relative": "#5a5a5a",
-    "normal": REACTION,
-    "tangential": REACTION,
-    "coriolis": LOAD,
-    "sliding": INERTIA,
-    "load": LOAD,
-    "inertia": INERTIA,
-    "reaction": REACTION,
-    "inner": NAMES,
+    "normal": REACTION_COLOUR,
+    "tangential": REACTION_COLOUR,
+    "coriolis": LOAD_COLOUR,
+    "sliding": INERTIA_COLOUR,
+    "load": LOAD_COLOUR,
+    "inertia": INERTIA_COLOUR,
+    "reaction": REACTION_COLOUR,
+    "inner": NAME_COLOUR,
 }
 GREY_TEXT = "#505050"  # of titles of columns
-HATCH = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
-EDGE = 4.0  # mm inside the field where curves are cut
+HATCH_DEPTHS = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
+CURVE_EDGE = 4.0  # mm inside the field where curves are cut
 
 
-class Sheet:
+class DrawingSheet:
     """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
 
     def __init__(
@@ -62,16 +79,16 @@ class Sheet:
         *,
         pad: float = PAD,
         paper: tuple[float, float] | None = None,
-        room: Room | None = None,
+        room: PaperLayout | None = None,
     ) -> None:
         """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
         found = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(found)
         self.caption, self.remarks = caption, list[str]()
-        self.paper, self.mu = (room.paper, room.mu) if room else paper_for(found, pad, paper)
+        self.paper, self.mu = (room.paper, room.mu) if room else choose_paper(found, pad, paper)
         self.free = room.free if room else paper is not None
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
-        self.ground = Ground(*ground_of(self.paper))
+        self.ground = OccupiedArea(*ground_of(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         if room is not None:
             self.origin = room.origin
@@ -80,7 +97,7 @@ class Sheet:
         self.parts: list[tuple[str, slice]] = []  # which marks belong to which body, of those that belong to one
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
-        self.block = Block()
+        self.block = NoteBlock()
         if not on_large_sheet():
             self._strip(title)
         self.layer = "construction"
@@ -89,10 +106,10 @@ class Sheet:
         """The title above the drawing."""
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
-        self.line([MARGIN + edge, width - MARGIN + edge], DARK, 0.6, blocks=False)
-        told, size = in_a_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
+        self.line([MARGIN + edge, width - MARGIN + edge], DARK_COLOUR, 0.6, blocks=False)
+        told, size = fit_one_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
         self.text(complex(MARGIN, height - MARGIN - 2), told, size / POINT, weight="bold")
-        told, size = in_a_line(self.caption, 9 * POINT, width - 2 * MARGIN)
+        told, size = fit_one_line(self.caption, 9 * POINT, width - 2 * MARGIN)
         self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
@@ -102,7 +119,7 @@ class Sheet:
     @property
     def field(self) -> tuple[complex, complex]:
         """Corners of the field in which curves and guides are drawn, mm."""
-        return self.ground.low + EDGE * (1 + 1j), self.ground.high - EDGE * (1 + 1j)
+        return self.ground.low + CURVE_EDGE * (1 + 1j), self.ground.high - CURVE_EDGE * (1 + 1j)
 
     @contextmanager
     def on_layer(self, layer: Layer) -> Iterator[None]:
@@ -124,7 +141,7 @@ class Sheet:
         text: script.Words,
         size: float,
         *,
-        colour: str = DARK,
+        colour: str = DARK_COLOUR,
         weight: str = "normal",
         ha: Align = "left",
         style: str = "normal",
@@ -133,19 +150,19 @@ class Sheet:
         """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         one = isinstance(text, str)
-        start = complex(at) if one else at - SHARE[ha] * script.script_width(text, size * POINT) * along
-        for off, letters, own in script.pieces(text, size * POINT):
+        start = complex(at) if one else at - ALIGN_SHARE[ha] * script.script_width(text, size * POINT) * along
+        for off, letters, own in script.placed_pieces(text, size * POINT):
             line = "".join(letter if letter.isprintable() else " " for letter in letters)
             if line.strip():
                 align: Align = ha if one else "left"
-                self.marks.append(Text(start + off * along, line, own, colour, align, bold, italic, turn))
+                self.marks.append(TextMark(start + off * along, line, own, colour, align, bold, italic, turn))
         wide, high = label_extent(text, size)
-        middle = complex(at) + (0.5 - SHARE[ha]) * (wide - 0.6) * along
-        places = row(middle, along, wide, high) if turn else []
-        self.ground.boxes += [about(place, high, high) for place in places] or [about(middle, wide, high)]
+        middle = complex(at) + (0.5 - ALIGN_SHARE[ha]) * (wide - 0.6) * along
+        places = text_squares(middle, along, wide, high) if turn else []
+        self.ground.boxes += [box_about(place, high, high) for place in places] or [box_about(middle, wide, high)]
 
     def label(
-        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK, style: str = "normal"
+        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
     ) -> None:
         """A text beside a place (mm); where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
@@ -154,7 +171,7 @@ class Sheet:
     def line(
         self,
         places: Sequence[complex],
-        colour: str = DARK,
+        colour: str = DARK_COLOUR,
         width: float = 1.0,
         style: Style = "-",
         z: float = 3,
@@ -166,10 +183,10 @@ class Sheet:
 
         faint: it is interrupted where texts stand.
         """
-        for stretch in whole_stretches(places):
+        for stretch in finite_stretches(places):
             if faint:
                 self.faint.append(len(self.marks))
-            self.marks.append(Line(stretch, colour, width * POINT, style, self.layer, z))
+            self.marks.append(LineMark(stretch, colour, width * POINT, style, self.layer, z))
             if faint or blocks:
                 (self.ground.faint if faint else self.ground.solid).path(stretch)
 
@@ -177,7 +194,7 @@ class Sheet:
         self,
         corners: Sequence[complex],
         face: str,
-        edge: str = DARK,
+        edge: str = DARK_COLOUR,
         width: float = 1.0,
         z: float = 2.0,
         *,
@@ -185,19 +202,19 @@ class Sheet:
     ) -> None:
         """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
         outline = None if edge == "none" else edge
-        self.marks.append(Area(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
+        self.marks.append(AreaMark(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
         if blocks:
             self.ground.path([*corners, corners[0]])
 
     def circle(
-        self, at: complex, radius: float, face: str = "white", edge: str = DARK, width: float = 1.0, z: float = 6
+        self, at: complex, radius: float, face: str = "white", edge: str = DARK_COLOUR, width: float = 1.0, z: float = 6
     ) -> None:
         """A circle about a place (mm)."""
         if np.isfinite(at):
-            self.marks.append(Circle(complex(at), radius, face, edge, width * POINT, self.layer, z))
+            self.marks.append(CircleMark(complex(at), radius, face, edge, width * POINT, self.layer, z))
             self.ground.spot(at, radius)
 
-    def arrow(self, start: complex, end: complex, colour: str = DARK, width: float = 1.2, z: float = 5) -> None:
+    def arrow(self, start: complex, end: complex, colour: str = DARK_COLOUR, width: float = 1.2, z: float = 5) -> None:
         """An arrow; its head shrinks with a short shaft so that it stays an arrow."""
         length = abs(end - start)
         if not np.isfinite(length) or length < 0.15:
@@ -215,7 +232,7 @@ class Sheet:
         """A line of the corner box: scale factors and remarks."""
         self.block.notes.append(text)
 
-    def table(self, rows: Iterable[Row], numbers: int) -> None:
+    def table(self, rows: Iterable[TableRow], numbers: int) -> None:
         """A table under the notes; numbers: how many of its columns, the last ones, are flush right."""
         self.block.rows, self.block.numbers = list(rows), numbers
 
@@ -234,20 +251,22 @@ class Sheet:
 
     def _interrupt(self) -> None:
         """Leave out of faint lines what is under texts."""
-        boxes = wider(np.array(self.ground.boxes), AIR)
+        boxes = widen(np.array(self.ground.boxes), TEXT_AIR)
         for number in reversed(self.faint):
             mark = self.marks[number]
-            assert isinstance(mark, Line)
-            self.marks[number : number + 1] = [replace(mark, places=part) for part in outside(mark.places, boxes)]
+            assert isinstance(mark, LineMark)
+            self.marks[number : number + 1] = [
+                replace(mark, places=part) for part in stretches_outside(mark.places, boxes)
+            ]
         self.faint.clear()
 
     def settle(self) -> None:
         """Place the labels that are waiting, in the field that the ground has now."""
-        for placed in place(self.ground, self.labels):
+        for placed in place_labels(self.ground, self.labels):
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
             if placed.leader:
-                self.line(placed.leader, THIN, 0.5, z=1.1, faint=True)
+                self.line(placed.leader, THIN_COLOUR, 0.5, z=1.1, faint=True)
         self.labels.clear()
 
     def along(self, at: complex, text: str, size: float, along: complex) -> None:
@@ -261,22 +280,24 @@ class Sheet:
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
-            shape, at = nearest_free(self.block, *extremes(self.marks), covering(self.marks), fits)
+            shape, at = free_block_position(
+                self.block, *bounding_corners(self.marks), points_covered(self.marks), fits_sheet
+            )
         else:
             crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
-            shape, at = roomiest(self.block, self.ground.low, self.ground.high, crowd)
+            shape, at = least_covering_block(self.block, self.ground.low, self.ground.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
-        self.area([at, at + wide, at + shape.size, at + high], "white", THIN, 0.6, 8, blocks=False)
+        self.area([at, at + wide, at + shape.size, at + high], "white", THIN_COLOUR, 0.6, 8, blocks=False)
         for start, end in shape.lines:
-            self.line([at + start, at + end], THIN, 0.5, z=8.5, blocks=False)
+            self.line([at + start, at + end], THIN_COLOUR, 0.5, z=8.5, blocks=False)
         for one in shape.texts:
-            colour = GREY_TEXT if one.head else DARK
+            colour = GREY_TEXT if one.head else DARK_COLOUR
             self.text(at + one.at, one.words, one.size, colour=colour, ha="right" if one.right else "left")
         self.ground.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
-        self.block = Block()
+        self.block = NoteBlock()
 
 
-def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
+def finite_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
     """Stretches of a polyline between places that are not finite."""
     array = np.asarray(places, complex)
     finite = np.isfinite(array)
@@ -286,19 +307,19 @@ def whole_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
             yield tuple(found.tolist())
 
 
-def hatch(sheet: Sheet, start: complex, end: complex, outward: complex) -> None:
+def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: complex) -> None:
     """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
     with sheet.on_layer("supports"):
         for k in range(number):
             foot = start + along * (k + 0.5) * abs(end - start) / number
-            sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN, 0.6, z=2.4, blocks=False)
-    for depth in HATCH:
+            sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN_COLOUR, 0.6, z=2.4, blocks=False)
+    for depth in HATCH_DEPTHS:
         sheet.ground.line(start + depth * outward, end + depth * outward)
 
 
-def cells(
+def divide_into_cells(
     low: complex, high: complex, columns: int, rows: int, gap: float
 ) -> tuple[complex, list[tuple[complex, complex]]]:
     """Width and height of equal cells in a field, and two corners of each, row by row from above, mm."""
@@ -312,7 +333,7 @@ def cells(
     return size, [(start, start + size) for start in starts]
 
 
-def border(inner: complex, outer: complex, low: complex, high: complex) -> complex:
+def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> complex:
     """Where the way from a place in a field to another one leaves it."""
     way, share = outer - inner, 1.0
     for at, step, least, most in (
@@ -334,6 +355,6 @@ def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
 
 
-def safe(name: str) -> str:
+def file_safe_name(name: str) -> str:
     """A name that a file may have."""
     return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

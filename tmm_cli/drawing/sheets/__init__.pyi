@@ -8,62 +8,77 @@ from . import (
     law_of_motion as law_of_motion,
     synthesis as synthesis,
 )
-from .acting import ARM as ARM, Forces as Forces
-from .beneath import Beneath as Beneath, Table as Table
+from .acting import ARM_COLOUR as ARM_COLOUR, ForceArrows as ForceArrows
+from .beneath import CaptionTable as CaptionTable, DrawingCaption as DrawingCaption
 from .centres import draw_centres as draw_centres
 from .construction import (
-    PAD as PAD,
-    SMALLER as SMALLER,
+    CONSTRUCTION_PAD as CONSTRUCTION_PAD,
+    MOST_REDUCTION as MOST_REDUCTION,
     draw_construction as draw_construction,
-    granted as granted,
-    inside as inside,
-    rename as rename,
+    pieces_inside as pieces_inside,
+    points_on_sheet as points_on_sheet,
+    use_problem_names as use_problem_names,
 )
-from .diagrams import LINES as LINES, closely as closely, draw_diagrams as draw_diagrams
-from .force_plans import force_plan_rows as force_plan_rows, forces as forces, lanes as lanes
+from .diagrams import (
+    CURVE_COLOURS as CURVE_COLOURS,
+    dense_coordinates as dense_coordinates,
+    draw_diagrams as draw_diagrams,
+)
+from .force_plans import (
+    draw_force_plans as draw_force_plans,
+    force_plan_rows as force_plan_rows,
+    lane_offsets as lane_offsets,
+)
 from .group_loads import (
     draw_group_loads as draw_group_loads,
-    figure as figure,
-    sheetfuls as sheetfuls,
-    table_of_forces as table_of_forces,
-    written as written,
+    equation_lines as equation_lines,
+    forces_table as forces_table,
+    format_figures as format_figures,
+    split_equations as split_equations,
 )
-from .group_table import EXAMPLES as EXAMPLES
-from .hodographs import balancing as balancing, reactions as reactions
+from .group_table import GROUP_EXAMPLES as GROUP_EXAMPLES
+from .hodographs import (
+    draw_reaction_hodographs as draw_reaction_hodographs,
+    draw_shaking_hodograph as draw_shaking_hodograph,
+)
 from .intermittent import draw_intermittent as draw_intermittent
-from .law_of_motion import draw_law_of_motion as draw_law_of_motion, stretches_on_paper as stretches_on_paper
+from .law_of_motion import draw_law_of_motion as draw_law_of_motion, visible_stretches as visible_stretches
 from .lever import draw_lever as draw_lever
 from .mechanism import (
     Position as Position,
-    detailed as detailed,
-    place_of_driver as place_of_driver,
-    position as position,
+    detailed_drawings as detailed_drawings,
+    draw_position as draw_position,
+    driver_caption as driver_caption,
 )
 from .motion_plans import (
-    Sort as Sort,
+    MotionPlanKind as MotionPlanKind,
     draw_motion_plans as draw_motion_plans,
+    motion_plan_kinds as motion_plan_kinds,
     motion_plan_rows as motion_plan_rows,
-    sorts as sorts,
 )
-from .over_cycle import Quantities as Quantities, balances as balances, output as output
+from .over_cycle import QuantityPlot as QuantityPlot, balancing_plots as balancing_plots, output_plots as output_plots
 from .positions import (
-    all_positions as all_positions,
+    draw_all_positions as draw_all_positions,
     extreme_states as extreme_states,
-    extremes as extremes,
-    output_track as output_track,
-    ratio as ratio,
+    output_extremes as output_extremes,
+    output_path as output_path,
+    scale_ratio as scale_ratio,
 )
 from .single_run import draw_single_run as draw_single_run
 from .structure import (
     Legend as Legend,
-    all_groups as all_groups,
-    at_sketch as at_sketch,
-    counted as counted,
-    groups as groups,
-    parts as parts,
-    scheme as scheme,
-    side_by_side as side_by_side,
-    whole_scheme as whole_scheme,
+    count_pair_letters as count_pair_letters,
+    draw_all_groups as draw_all_groups,
+    draw_groups as draw_groups,
+    draw_scheme as draw_scheme,
+    groups_sheet as groups_sheet,
+    mechanism_parts as mechanism_parts,
+    scheme_sheet as scheme_sheet,
+    sketch_scene as sketch_scene,
 )
-from .synthesis import diagram as diagram, draw_synthesis as draw_synthesis, synthesised as synthesised
+from .synthesis import (
+    draw_problem_synthesis as draw_problem_synthesis,
+    draw_synthesis as draw_synthesis,
+    synthesis_diagram as synthesis_diagram,
+)
 from .task import task_picture as task_picture

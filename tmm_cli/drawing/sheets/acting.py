@@ -7,27 +7,31 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tmm_cli.drawing.paper import COLOURS, STEP, Sheet, Style, Words, beside, dimension
+from tmm_cli.drawing.paper import SAMPLE_STEP, VECTOR_COLOURS, DrawingSheet, Style, Words, count_beside, draw_dimension
 from tmm_cli.mechanics.forces import DRIVE, Acting, MomentEquation
 from tmm_cli.mechanics.numerics import Vector, cross, dot
 
-ARM = "#00757d"
-LOAD_MM = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
-ALIKE, LONGER = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
-NEAR, RIGHT = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
-LEAST, ON_BAR, COVERED = 5.0, 0.6, 0.6  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
-SEEN = 1.5  # mm: a shorter arm is only in the table
-RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
+ARM_COLOUR = "#00757d"
+LOAD_LENGTH = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
+SAME_DIRECTION, EXTRA_LENGTH = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
+SHAFT_REACH, RIGHT_ANGLE_LEG = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
+LEAST_MARKED_ARM, ON_BAR_WITHIN, COVERED_SHARE = (
+    5.0,
+    0.6,
+    0.6,
+)  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
+LEAST_DRAWN_ARM = 1.5  # mm: a shorter arm is only in the table
+COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 
 
 @dataclass
-class Forces:
+class ForceArrows:
     """Arrows on a sheet, with tail or head at their places, as it covers less; couples as open circles.
 
     whole: on the whole mechanism: all have their tails there, and what balances a crank goes round its support.
     """
 
-    sheet: Sheet
+    sheet: DrawingSheet
     whole: bool = False
     taken: list[tuple[complex, complex, bool]] = field(default_factory=list)
     coupled: list[complex] = field(default_factory=list)
@@ -37,23 +41,30 @@ class Forces:
         acting = list(acting)
         self.ways += [(self.sheet.on(one.at), one.force / abs(one.force)) for one in acting if not one.couple]
         for one in acting:
-            at, colour = self.sheet.on(one.at), COLOURS[one.kind]
+            at, colour = self.sheet.on(one.at), VECTOR_COLOURS[one.kind]
             if one.couple:
                 number = sum(abs(at - other) < 1 for other in self.coupled) + (self.whole and one.pair == DRIVE)
-                _couple(self.sheet, at, np.sign(one.moment), colour, one.symbol, RADII[min(number, len(RADII) - 1)])
+                _draw_couple(
+                    self.sheet,
+                    at,
+                    np.sign(one.moment),
+                    colour,
+                    one.symbol,
+                    COUPLE_RADII[min(number, len(COUPLE_RADII) - 1)],
+                )
                 self.coupled.append(at)
             else:
                 self._force(at, one.force / abs(one.force), one.symbol, colour, "--" if one.kind == "inner" else "-")
 
     def _force(self, at: complex, along: complex, name: Words, colour: str, style: Style) -> None:
-        alike = [out for place, way, out in self.taken if abs(at - place) < 1 and abs(along - way) < ALIKE]
-        against = any(abs(at - place) < 1 and abs(along + way) < ALIKE for place, way in self.ways)
+        alike = [out for place, way, out in self.taken if abs(at - place) < 1 and abs(along - way) < SAME_DIRECTION]
+        against = any(abs(at - place) < 1 and abs(along + way) < SAME_DIRECTION for place, way in self.ways)
         # one that ends at its place would lie on one that begins there against it, or on another that ends there
         free = not against and all(alike)
         out = self.whole or not free or self._covered(at, -along) + 3 >= self._covered(at, along)
         self.taken.append((at, along, out))
-        start = at if out else at - LOAD_MM * along
-        end = start + (LOAD_MM + LONGER * sum(alike) if out else LOAD_MM) * along
+        start = at if out else at - LOAD_LENGTH * along
+        end = start + (LOAD_LENGTH + EXTRA_LENGTH * sum(alike) if out else LOAD_LENGTH) * along
         if style == "-":
             self.sheet.arrow(start, end, colour, 1.5, z=5 - 0.01 * sum(alike))  # a longer one under those on it
         else:
@@ -65,10 +76,10 @@ class Forces:
         """How much is drawn along a way from a place."""
         crowd = self.sheet.ground.crowd - at
         run, off = dot(way, crowd), np.abs(cross(way, crowd))
-        return int(np.count_nonzero((run > 2.5) & (run < LOAD_MM + 3) & (off < NEAR)))
+        return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 
 
-def _couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
+def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
     """A couple as an open circle with an arrow head in its sense."""
     angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
     arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
@@ -77,16 +88,16 @@ def _couple(sheet: Sheet, at: complex, sense: float, colour: str, name: Words, r
     sheet.label(name, arc[20], 9, colour)
 
 
-def extent(acting: Iterable[Acting]) -> list[tuple[complex, complex]]:
+def arrow_extent(acting: Iterable[Acting]) -> list[tuple[complex, complex]]:
     """Places (m), and how far (mm) an arrow may go on from there."""
     found = []
     for one in acting:
-        along = 0j if one.couple else (LOAD_MM + 2) * one.force / abs(one.force)
+        along = 0j if one.couple else (LOAD_LENGTH + 2) * one.force / abs(one.force)
         found += [(one.at, along), (one.at, -along)]
     return found
 
 
-def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> None:
+def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: Vector) -> None:
     """Thin lines from each centre to the feet on the lines of forces, lettered, with the square of a right angle.
 
     One that would lie on a link stands beside it as a dimension. links: points (mm) that stand for them.
@@ -101,29 +112,32 @@ def arms(sheet: Sheet, equations: Sequence[MomentEquation], links: Vector) -> No
                 continue
             drawn.add(term.number)
             at, foot = sheet.on(term.acting.at), sheet.on(term.foot)
-            sheet.line([at, foot], ARM, 0.45, "--", 1.6, faint=True)
+            sheet.line([at, foot], ARM_COLOUR, 0.45, "--", 1.6, faint=True)
             length = abs(foot - centre)
-            if length < SEEN:
+            if length < LEAST_DRAWN_ARM:
                 continue
-            if length > LEAST and beside(links, centre, foot, ON_BAR) > COVERED * length / STEP:
+            if (
+                length > LEAST_MARKED_ARM
+                and count_beside(links, centre, foot, ON_BAR_WITHIN) > COVERED_SHARE * length / SAMPLE_STEP
+            ):
                 beside_links.append((centre, foot, term.letter.name))
                 continue
-            sheet.line([centre, foot], ARM, 0.7, z=4.6)
+            sheet.line([centre, foot], ARM_COLOUR, 0.7, z=4.6)
             # arms in one line share its beginning: each letter stands at the part that no shorter one has
             way = (foot - centre) / (length or 1.0)
             inner = [f for f in feet if abs(cross(way, f - centre)) < 0.5 and dot(way, f - centre) > 0]
             start = max(inner, key=lambda f: abs(f - centre), default=centre)
-            sheet.label(term.letter, (start + foot) / 2, 8.5, ARM)
+            sheet.label(term.letter, (start + foot) / 2, 8.5, ARM_COLOUR)
             feet.append(foot)
-            if length > LEAST:
-                _right_angle(sheet, foot, way, at)
+            if length > LEAST_MARKED_ARM:
+                _draw_right_angle(sheet, foot, way, at)
     for centre, foot, name in beside_links:  # now that all is drawn that they keep off
-        dimension(sheet, centre, foot, name)
+        draw_dimension(sheet, centre, foot, name)
 
 
-def _right_angle(sheet: Sheet, foot: complex, way: complex, at: complex) -> None:
+def _draw_right_angle(sheet: DrawingSheet, foot: complex, way: complex, at: complex) -> None:
     """Its mark at the foot of an arm, on the side of the force."""
-    back, side = -RIGHT * way, RIGHT * 1j * way
+    back, side = -RIGHT_ANGLE_LEG * way, RIGHT_ANGLE_LEG * 1j * way
     if dot(side, at - foot) < 0:
         side = -side
-    sheet.line([foot + back, foot + back + side, foot + side], ARM, 0.45, z=4.6)
+    sheet.line([foot + back, foot + back + side, foot + side], ARM_COLOUR, 0.45, z=4.6)

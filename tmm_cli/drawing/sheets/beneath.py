@@ -10,37 +10,43 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.drawing.paper import (
-    DARK,
+    DARK_COLOUR,
     GREY_TEXT,
     POINT,
-    THIN,
-    Ground,
-    Room,
-    Sheet,
+    THIN_COLOUR,
+    DrawingSheet,
+    OccupiedArea,
+    PaperLayout,
     Words,
-    excess,
-    fits,
+    excess_factor,
+    fits_sheet,
     longest_for,
     on_large_sheet,
     script_width,
-    wrapped,
+    wrap_symbols,
 )
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
 
-TEXT, LINE, ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
-SPACE, GAP, ABOVE = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
-PAD, LEAST = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
-BEYOND = 8.0  # mm that labels may take beyond that
-MOST = 0.5  # of a sheet: more than this is written on another one
-WIDTHS = (110.0, 150.0, 200.0, 260.0, 330.0)  # mm: what is beneath a drawing on a large sheet is folded into one
-LARGER = 2.5  # times larger a drawing must become to have a sheet for itself
-HANGING = " " * 8
-PAPERS = (LANDSCAPE, PORTRAIT)
+CAPTION_TEXT, CAPTION_LINE, CAPTION_ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
+COLUMN_SPACE, TABLE_GAP, CAPTION_GAP = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
+DRAWING_PAD, LEAST_DRAWING = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
+LABEL_ROOM = 8.0  # mm that labels may take beyond that
+MOST_CAPTION_SHARE = 0.5  # of a sheet: more than this is written on another one
+CAPTION_WIDTHS = (
+    110.0,
+    150.0,
+    200.0,
+    260.0,
+    330.0,
+)  # mm: what is beneath a drawing on a large sheet is folded into one
+OWN_SHEET_GROWTH = 2.5  # times larger a drawing must become to have a sheet for itself
+HANGING_INDENT = " " * 8
+SHEET_PAPERS = (LANDSCAPE, PORTRAIT)
 
 
 @dataclass(frozen=True)
-class Table:
+class CaptionTable:
     """A head and rows, all of one length."""
 
     head: tuple[str, ...]
@@ -49,83 +55,90 @@ class Table:
     @property
     def size(self) -> complex:
         """In one column, mm."""
-        return complex(sum(self.widths), ROW * (len(self.rows) + 1.5))
+        return complex(sum(self.widths), CAPTION_ROW * (len(self.rows) + 1.5))
 
     @cached_property
     def widths(self) -> list[float]:
         """Of its columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
-        return [max(script_width(words, TEXT * POINT) for words in column) + SPACE for column in columns]
+        return [max(script_width(words, CAPTION_TEXT * POINT) for words in column) + COLUMN_SPACE for column in columns]
 
 
 @dataclass(frozen=True)
-class Beneath:
+class DrawingCaption:
     """Lines (wrapped as needed), and tables: side by side below them, or aside of the drawing one below the other."""
 
     lines: Sequence[Words] = ()
-    tables: Sequence[Table] = ()
+    tables: Sequence[CaptionTable] = ()
     aside: bool = False
 
     def left(self, low: complex, high: complex) -> complex:
         """What it leaves of a field to the drawing, mm: a negative height where it has no room itself."""
-        lines = ABOVE + LINE * len(self._wrapped((high - low).real))
+        lines = CAPTION_GAP + CAPTION_LINE * len(self._wrapped((high - low).real))
         if not self.aside:
             rows = self._rows((high - low).real)
-            return high - low - 1j * (lines + (ROW * (rows + 1.5) if rows else 0.0))
+            return high - low - 1j * (lines + (CAPTION_ROW * (rows + 1.5) if rows else 0.0))
         sizes = [table.size for table in self.tables if table.rows]
-        room = high - low - 1j * lines - (max((size.real for size in sizes), default=0.0) + GAP)
+        room = high - low - 1j * lines - (max((size.real for size in sizes), default=0.0) + TABLE_GAP)
         return room if sum(size.imag for size in sizes) <= room.imag else complex(room.real, -1.0)
 
-    def put(self, sheet: Sheet, low: complex, high: complex) -> None:
+    def put(self, sheet: DrawingSheet, low: complex, high: complex) -> None:
         """Write it into a field."""
         room, across = self.left(low, high), (high - low).real
-        top = low + 1j * (LINE * len(self._wrapped(across)))
+        top = low + 1j * (CAPTION_LINE * len(self._wrapped(across)))
         if not self.aside:
-            top = complex(low.real, high.imag - room.imag - ABOVE)
+            top = complex(low.real, high.imag - room.imag - CAPTION_GAP)
         for words in self._wrapped(across):
-            sheet.text(top - 1j * LINE / 2, words, TEXT)
-            top -= 1j * LINE
+            sheet.text(top - 1j * CAPTION_LINE / 2, words, CAPTION_TEXT)
+            top -= 1j * CAPTION_LINE
         rows = self._rows(across)
-        top = complex(low.real + room.real + GAP, high.imag) if self.aside else top - 0.5j * ROW
+        top = complex(low.real + room.real + TABLE_GAP, high.imag) if self.aside else top - 0.5j * CAPTION_ROW
         for table in (t for t in self.tables if t.rows):
             own = len(table.rows)
             if not self.aside:
                 own = math.ceil(own / math.ceil(own / rows))
             for first in range(0, len(table.rows), own):
-                _column(sheet, top, table, table.rows[first : first + own])
-                top += -1j * table.size.imag if self.aside else table.size.real + GAP
+                _write_column(sheet, top, table, table.rows[first : first + own])
+                top += -1j * table.size.imag if self.aside else table.size.real + TABLE_GAP
 
     def _wrapped(self, across: float) -> list[Words]:
-        return [line for words in self.lines for line in wrapped(words, TEXT * POINT, across, HANGING)]
+        return [
+            line for words in self.lines for line in wrap_symbols(words, CAPTION_TEXT * POINT, across, HANGING_INDENT)
+        ]
 
     def _rows(self, across: float) -> int:
         """Rows of the longest column at which all columns fit side by side."""
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
-            wide = sum(math.ceil(len(t.rows) / rows) * (t.size.real + GAP) for t in tables) - GAP
+            wide = sum(math.ceil(len(t.rows) / rows) * (t.size.real + TABLE_GAP) for t in tables) - TABLE_GAP
             if wide <= across:
                 return rows
         return most
 
 
-def _column(sheet: Sheet, top: complex, table: Table, rows: Sequence[tuple[Words, ...]]) -> None:
+def _write_column(sheet: DrawingSheet, top: complex, table: CaptionTable, rows: Sequence[tuple[Words, ...]]) -> None:
     """Some rows of a table under its head."""
     for number, row in enumerate((table.head, *rows)):
-        at = top - 1j * ROW * (number + (0.4 if number == 0 else 0.7))
+        at = top - 1j * CAPTION_ROW * (number + (0.4 if number == 0 else 0.7))
         for words, wide in zip(row, table.widths, strict=True):
-            sheet.text(at, words, TEXT, colour=GREY_TEXT if number == 0 else DARK)
+            sheet.text(at, words, CAPTION_TEXT, colour=GREY_TEXT if number == 0 else DARK_COLOUR)
             at += wide
-    sheet.line([top - 1j * ROW, top - 1j * ROW + sum(table.widths) - SPACE], THIN, 0.6, blocks=False)
+    sheet.line(
+        [top - 1j * CAPTION_ROW, top - 1j * CAPTION_ROW + sum(table.widths) - COLUMN_SPACE],
+        THIN_COLOUR,
+        0.6,
+        blocks=False,
+    )
 
 
-def above(
+def captioned_sheets(
     here: Position,
     title: str,
     places: Sequence[tuple[complex, complex]],
-    beneath: Callable[[float], Beneath],
+    beneath: Callable[[float], DrawingCaption],
     **words: str,
-) -> tuple[Sheet, Sheet | None]:
+) -> tuple[DrawingSheet, DrawingSheet | None]:
     """A sheet for a drawing with what is written by it; this is on a sheet of its own where it is much.
 
     places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
@@ -134,37 +147,46 @@ def above(
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
     places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
     if on_large_sheet():
-        return _sheet(name, subject, places, _beside_others(places, beneath)), None
+        return _captioned_sheet(name, subject, places, _large_sheet_layout(places, beneath)), None
 
-    def with_tables_aside(mu: float) -> Beneath:
+    def with_tables_aside(mu: float) -> DrawingCaption:
         return replace(beneath(mu), aside=True)
 
     low, high = ground_of(PORTRAIT)
-    alone = _best(places, lambda mu: Beneath())
-    best = _best(places, beneath, with_tables_aside)
-    if best.mu < LARGER * alone.mu and beneath(1.0).left(low, high).imag > (1 - MOST) * (high - low).imag:
-        return _sheet(name, subject, places, best), None
-    written, further = beneath(alone.mu), Sheet(name, subject, paper=PORTRAIT)
+    alone = _best_layout(places, lambda mu: DrawingCaption())
+    best = _best_layout(places, beneath, with_tables_aside)
+    if (
+        best.mu < OWN_SHEET_GROWTH * alone.mu
+        and beneath(1.0).left(low, high).imag > (1 - MOST_CAPTION_SHARE) * (high - low).imag
+    ):
+        return _captioned_sheet(name, subject, places, best), None
+    written, further = beneath(alone.mu), DrawingSheet(name, subject, paper=PORTRAIT)
     written.put(further, low + 1j * written.left(low, high).imag, high)
-    return _sheet(name, subject, places, alone), further
+    return _captioned_sheet(name, subject, places, alone), further
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _CaptionedLayout:
     """A drawing on a paper, at a scale (SI a millimetre), about a middle (mm of the drawing), with what is written."""
 
     paper: tuple[float, float]
     mu: float
     middle: complex
-    written: Beneath
+    written: DrawingCaption
 
 
-def _best(places: Sequence[tuple[complex, complex]], *ways: Callable[[float], Beneath]) -> _Placed:
+def _best_layout(
+    places: Sequence[tuple[complex, complex]], *ways: Callable[[float], DrawingCaption]
+) -> _CaptionedLayout:
     """The placing at which the drawing is largest, the first of those that are alike."""
-    return min((_placed(paper, places, way) for way in ways for paper in PAPERS), key=lambda placed: placed.mu)
+    return min(
+        (_fit_layout(paper, places, way) for way in ways for paper in SHEET_PAPERS), key=lambda placed: placed.mu
+    )
 
 
-def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[[float], Beneath]) -> _Placed:
+def _large_sheet_layout(
+    places: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
+) -> _CaptionedLayout:
     """As large as a large sheet lets it be, on a paper no larger than it needs with all that is written beneath it."""
     longest = longest_for(max(LANDSCAPE))
     _, across, up, __ = extent([place for place, __ in places])
@@ -177,37 +199,42 @@ def _beside_others(places: Sequence[tuple[complex, complex]], beneath: Callable[
     def height(wide: float) -> float:
         return most - written.left(low, low + complex(wide, most)).imag
 
-    sizes = [(wide, up + 2 * PAD + height(wide)) for wide in (max(wide, across + 2 * PAD) for wide in WIDTHS)]
-    found = [(wide, high) for wide, high in sizes if fits(wide, high + BEYOND)]
+    sizes = [
+        (wide, up + 2 * DRAWING_PAD + height(wide))
+        for wide in (max(wide, across + 2 * DRAWING_PAD) for wide in CAPTION_WIDTHS)
+    ]
+    found = [(wide, high) for wide, high in sizes if fits_sheet(wide, high + LABEL_ROOM)]
     if found:
         wide, high = min(found, key=lambda size: size[0] * size[1])
     else:
-        wide, high = min(sizes, key=lambda size: (excess(size[0], size[1] + BEYOND), size[1]))
+        wide, high = min(sizes, key=lambda size: (excess_factor(size[0], size[1] + LABEL_ROOM), size[1]))
     paper = complex(wide, high) + low - edge
-    return _Placed((paper.real, paper.imag), mu, middle, written)
+    return _CaptionedLayout((paper.real, paper.imag), mu, middle, written)
 
 
-def _sheet(name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _Placed) -> Sheet:
+def _captioned_sheet(
+    name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _CaptionedLayout
+) -> DrawingSheet:
     low, high = ground_of(placed.paper)
     _, across, up, __ = extent([place for place, __ in places])
-    on = Room(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
-    sheet, room = Sheet(name, subject, room=on), placed.written.left(low, high)
+    on = PaperLayout(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
+    sheet, room = DrawingSheet(name, subject, room=on), placed.written.left(low, high)
     placed.written.put(sheet, low, high)
-    sheet.ground = Ground(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
+    sheet.ground = OccupiedArea(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - placed.middle
     return sheet
 
 
-def _placed(
-    paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], Beneath]
-) -> _Placed:
+def _fit_layout(
+    paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
+) -> _CaptionedLayout:
     """At the least round scale at which all fits."""
     low, high = ground_of(paper)
     size, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:
-        room = written(mu).left(low, high) - 2 * PAD * (1 + 1j)
+        room = written(mu).left(low, high) - 2 * DRAWING_PAD * (1 + 1j)
         _, across, up, middle = extent([place / mu + away for place, away in places])
-        if (across <= room.real and up <= room.imag) or size / mu < LEAST:
-            return _Placed(paper, mu, middle, written(mu))
+        if (across <= room.real and up <= room.imag) or size / mu < LEAST_DRAWING:
+            return _CaptionedLayout(paper, mu, middle, written(mu))
         mu = round_scale(1.01 * mu, 0.0, 1.0, 1.0)

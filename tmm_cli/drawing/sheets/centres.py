@@ -6,9 +6,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper import INERTIA, LOAD, Drawing, Sheet, border, gather_labels, scale_words
-from tmm_cli.drawing.sheets.mechanism import Position, measured
-from tmm_cli.drawing.symbols import Scene, fixed_pivots, to_scale
+from tmm_cli.drawing.paper import (
+    INERTIA_COLOUR,
+    LOAD_COLOUR,
+    Drawing,
+    DrawingSheet,
+    gather_coincident,
+    leave_field,
+    scale_words,
+)
+from tmm_cli.drawing.sheets.mechanism import Position, draw_measured
+from tmm_cli.drawing.symbols import MechanismScene, frame_pivots, points_to_scale
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol
@@ -16,9 +24,9 @@ from tmm_cli.mechanics.kinematics import Centre, Line, Links
 from tmm_cli.mechanics.numerics import dot
 from tmm_cli.reports import name
 
-ROOM = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
-SPOT = 0.9  # mm: radius of a centre
-BEYOND = 1e4  # mm: beyond every sheet
+SHEET_REACH = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
+CENTRE_RADIUS = 0.9  # mm: radius of a centre
+FAR_AWAY = 1e4  # mm: beyond every sheet
 
 
 def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
@@ -27,45 +35,48 @@ def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
     assert motion is not None
     for k, found in (results.centres or {}).items():
         here = Position(results, motion, k)
-        yield here.stem("centres"), _sheet(here, Scene(results.linkage, results.structure, motion.poses, k), found)
+        yield (
+            here.stem("centres"),
+            _draw_centres_sheet(here, MechanismScene(results.linkage, results.structure, motion.poses, k), found),
+        )
 
 
-def _sheet(here: Position, scene: Scene, found: Sequence[Centre]) -> Drawing:
+def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[Centre]) -> Drawing:
     linkage = here.results.linkage
-    places = [*fixed_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
+    places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     size = max(abs(p - places[0]) for p in places)
     middle = sum(places) / len(places)
-    near = {c.links: c.place for c in found if c.place is not None and abs(c.place - middle) < ROOM * size}
-    every = to_scale(scene, [*places, *near.values()])
+    near = {c.links: c.place for c in found if c.place is not None and abs(c.place - middle) < SHEET_REACH * size}
+    every = points_to_scale(scene, [*places, *near.values()])
     sheet = here.sheet(_("Instantaneous centres. {caption}"), every)
-    measured(sheet, scene)
+    draw_measured(sheet, scene)
     known = {centre.links: centre for centre in found}
     for centre in found:
         for line in centre.lines:
-            _line(sheet, line, centre, known, near)
-    for at, links in gather_labels((sheet.on(place), links) for links, place in near.items()):
-        sheet.circle(at, SPOT, LOAD, LOAD, 0.3, 7)
-        sheet.label(_names(links), at, 9, LOAD)
+            _draw_kennedy_line(sheet, line, centre, known, near)
+    for at, links in gather_coincident((sheet.on(place), links) for links, place in near.items()):
+        sheet.circle(at, CENTRE_RADIUS, LOAD_COLOUR, LOAD_COLOUR, 0.3, 7)
+        sheet.label(_centre_names(links), at, 9, LOAD_COLOUR)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
-    for text in _away(found, near):
+    for text in _distant_centre_notes(found, near):
         sheet.note(text)
     return sheet.finish()
 
 
-def _names(links: Iterable[Links]) -> tuple[Symbol | str, ...]:
+def _centre_names(links: Iterable[Links]) -> tuple[Symbol | str, ...]:
     told: list[Symbol | str] = []
     for pair in links:
         told += [", "] * bool(told) + [Symbol("P", name(pair)[1:])]
     return tuple(told)
 
 
-def _line(
-    sheet: Sheet, line: Line, centre: Centre, known: Mapping[Links, Centre], near: Mapping[Links, complex]
+def _draw_kennedy_line(
+    sheet: DrawingSheet, line: Line, centre: Centre, known: Mapping[Links, Centre], near: Mapping[Links, complex]
 ) -> None:
     """Through two centres and the one that they show, or to the border where one of them is beyond it."""
     through = [known[links] for links in line]
     three = (*through, centre)
-    along = _direction(through)
+    along = _line_direction(through)
     ends = [sheet.on(near[one.links]) for one in three if one.links in near]
     if not ends:
         return
@@ -73,13 +84,13 @@ def _line(
     for one in three:
         if one.links not in near:
             behind = one.place is not None and dot(sheet.on(one.place) - first, along) < 0
-            ends.append(border(first, first + (-BEYOND if behind else BEYOND) * along, *sheet.field))
+            ends.append(leave_field(first, first + (-FAR_AWAY if behind else FAR_AWAY) * along, *sheet.field))
     low, high = (end(ends, key=lambda p: float(dot(p, along))) for end in (min, max))
-    if abs(high - low) > SPOT:
-        sheet.line([low, high], INERTIA, 0.7, "-.", 1.5, faint=True)
+    if abs(high - low) > CENTRE_RADIUS:
+        sheet.line([low, high], INERTIA_COLOUR, 0.7, "-.", 1.5, faint=True)
 
 
-def _direction(through: Sequence[Centre]) -> complex:
+def _line_direction(through: Sequence[Centre]) -> complex:
     one, other = through
     if one.place is not None and other.place is not None:
         way = other.place - one.place
@@ -87,7 +98,7 @@ def _direction(through: Sequence[Centre]) -> complex:
     return complex(one.direction or other.direction or 1)
 
 
-def _away(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
+def _distant_centre_notes(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
     """Centres that are not on the sheet."""
     for centre in found:
         symbol = Symbol("P", name(centre.links)[1:]).name

@@ -7,11 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper import REACTION, Drawing, Sheet, Words, safe, scale_words, written_here
-from tmm_cli.drawing.sheets.acting import Forces, arms, extent
-from tmm_cli.drawing.sheets.beneath import Beneath, Table, above
-from tmm_cli.drawing.sheets.mechanism import Position, measured
-from tmm_cli.drawing.symbols import Scene
+from tmm_cli.drawing.paper import (
+    REACTION_COLOUR,
+    Drawing,
+    DrawingSheet,
+    Words,
+    file_safe_name,
+    scale_words,
+    writes_equations,
+)
+from tmm_cli.drawing.sheets.acting import ForceArrows, arrow_extent, draw_arms
+from tmm_cli.drawing.sheets.beneath import CaptionTable, DrawingCaption, captioned_sheets
+from tmm_cli.drawing.sheets.mechanism import Position, draw_measured
+from tmm_cli.drawing.symbols import MechanismScene
 from tmm_cli.language import _, filled, half_up, numeral, spelt
 from tmm_cli.mechanics.forces import Acting, ForceSum, LoadedPart, MomentEquation, Part, Symbol, Term, loaded_parts
 from tmm_cli.mechanics.numerics import NO_MOMENT, SAME_PLACES
@@ -19,18 +27,18 @@ from tmm_cli.mechanics.plans import extent as extent_of
 from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem import UnitSystem
 
-INDENT = "    "
-PLAIN = 1e-6  # a smaller number is written with a power of ten
-Word = str | Symbol
+EQUATION_INDENT = "    "
+PLAIN_DOWN_TO = 1e-6  # a smaller number is written with a power of ten
+EquationPart = str | Symbol
 
 
-def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
+def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
     """The sum in letters; then what it gives, in letters, with numbers (N, m) and as a value; unit: of moments."""
     found, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
     )
-    moments: tuple[Word, ...] = ("Σ", Symbol("M", equation.about), f", {links}: " if equation.links else ": ")
+    moments: tuple[EquationPart, ...] = ("Σ", Symbol("M", equation.about), f", {links}: " if equation.links else ": ")
     if found is None and sought is not None:
         text = (
             _("{moments}nothing has a moment, so {name} goes through {point}")
@@ -43,71 +51,83 @@ def written(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
         return
     others = [t for t in equation.terms if t is not found]
     terms = [*([found] if found else []), *others]
-    yield (*moments, *_sum((_letters(t), t.moment) for t in terms), " = 0")
+    yield (*moments, *_sum_text((_term_letters(t), t.moment) for t in terms), " = 0")
     if found is None or sought is None:
         rest, largest = abs(sum(t.moment for t in terms)), max(abs(t.moment) for t in terms)
-        value = figure(rest if rest > NO_MOMENT * largest else 0.0)
-        yield (INDENT, *_sum((_numbers(t), t.moment) for t in terms), f" = {value} {spelt(unit)}")
+        value = format_figures(rest if rest > NO_MOMENT * largest else 0.0)
+        yield (EQUATION_INDENT, *_sum_text((_term_numbers(t), t.moment) for t in terms), f" = {value} {spelt(unit)}")
         return
     sense = -float(np.sign(found.moment))
-    letters = _sum((_letters(t), sense * t.moment) for t in others)
-    numbers = _sum((_numbers(t), sense * t.moment) for t in others)
+    letters = _sum_text((_term_letters(t), sense * t.moment) for t in others)
+    numbers = _sum_text((_term_numbers(t), sense * t.moment) for t in others)
     if found.acting.couple:
-        value = figure(equation.value)
+        value = format_figures(equation.value)
         summed = () if numbers == [value] else (*numbers, " = ")
-        yield (INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {spelt(unit)}")
+        yield (EQUATION_INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {spelt(unit)}")
         return
     name, over, by, of = found.acting.symbol, found.letter, found.arm, "N"
     if sought.arm:
         name, over, by, of = found.letter, found.acting.symbol, found.acting.size, "m"
-    divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {figure(by)}")
-    yield (INDENT, name, " = ", *divided, f" = {figure(equation.value)} {spelt(of)}")
+    divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {format_figures(by)}")
+    yield (EQUATION_INDENT, name, " = ", *divided, f" = {format_figures(equation.value)} {spelt(of)}")
 
 
-def along_guide(forces: ForceSum) -> Iterable[Words]:
+def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
     """The sum along a guide in letters, then with numbers."""
     title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
     others = [part for part in forces.parts if part is not forces.found]
     sense = -float(np.sign(forces.found.along))
-    yield (title, *_sum((_cosine(p), p.along) for p in (forces.found, *others)), " = 0")
-    numbers = _sum(((f"{figure(p.acting.size)}·{figure(p.cosine)}",), sense * p.along) for p in others)
-    yield (INDENT, forces.found.acting.symbol, " = ", *numbers, f" = {figure(forces.value)} {spelt('N')}")
+    yield (title, *_sum_text((_cosine_text(p), p.along) for p in (forces.found, *others)), " = 0")
+    numbers = _sum_text(
+        ((f"{format_figures(p.acting.size)}·{format_figures(p.cosine)}",), sense * p.along) for p in others
+    )
+    yield (
+        EQUATION_INDENT,
+        forces.found.acting.symbol,
+        " = ",
+        *numbers,
+        f" = {format_figures(forces.value)} {spelt('N')}",
+    )
 
 
-def _cosine(part: Part) -> tuple[Word, ...]:
+def _cosine_text(part: Part) -> tuple[EquationPart, ...]:
     angle = float(np.degrees(np.arccos(part.cosine)))
     return (part.acting.symbol, f"·cos {numeral(angle, '.1f')}°") if angle >= 0.05 else (part.acting.symbol,)
 
 
-def _letters(term: Term) -> tuple[Word, ...]:
+def _term_letters(term: Term) -> tuple[EquationPart, ...]:
     return (term.acting.symbol, "·", term.letter) if term.number else (term.acting.symbol,)
 
 
-def _numbers(term: Term) -> tuple[Word, ...]:
-    return (f"{figure(term.acting.size)}·{figure(term.arm)}" if term.number else figure(term.acting.size),)
+def _term_numbers(term: Term) -> tuple[EquationPart, ...]:
+    return (
+        f"{format_figures(term.acting.size)}·{format_figures(term.arm)}"
+        if term.number
+        else format_figures(term.acting.size),
+    )
 
 
-def _sum(terms: Iterable[tuple[tuple[Word, ...], float]]) -> list[Word]:
+def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[EquationPart]:
     """a − b + c."""
-    found: list[Word] = []
+    found: list[EquationPart] = []
     for words, sign in terms:
         plus = " + " if found else ""
         found += [plus if sign > 0 else " − " if found else "−", *words]
     return [word for word in found if word]
 
 
-def table_of_forces(acting: Iterable[Acting], unit: str = "N·m") -> Table:
+def forces_table(acting: Iterable[Acting], unit: str = "N·m") -> CaptionTable:
     """Sizes, angles of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
         way = f"{numeral(round(float(np.degrees(np.angle(one.force))), 1) % 360, '.1f')}°"
         if one.couple:  # the equations have its sense as a sign
             way = _("ccw") if one.moment > 0 else _("cw") if one.moment < 0 else ""
-        rows.append((one.symbol, f"{figure(one.size)} {spelt(unit if one.couple else 'N')}", way))
-    return Table((_("force"), _("size"), _("from x")), rows)
+        rows.append((one.symbol, f"{format_figures(one.size)} {spelt(unit if one.couple else 'N')}", way))
+    return CaptionTable((_("force"), _("size"), _("from x")), rows)
 
 
-def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> Table:
+def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
     """In the unit of lengths (none: they are ratios) and on paper; mu: SI a millimetre."""
     found: dict[int, list[Term]] = {}
     for term in (t for e in equations for t in e.terms if t.number):
@@ -115,12 +135,12 @@ def table_of_arms(equations: Sequence[MomentEquation], units: UnitSystem | None,
     rows: list[tuple[Words, ...]] = []
     for first, *others in found.values():
         of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
-        size = figure(units.from_si(first.arm, LENGTH) if units else first.arm)
+        size = format_figures(units.from_si(first.arm, LENGTH) if units else first.arm)
         rows.append((first.letter, of, size, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
-    return Table((_("arm"), _("of"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
+    return CaptionTable((_("arm"), _("of"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
 
 
-def figure(value: float) -> str:
+def format_figures(value: float) -> str:
     """A number with four figures and all those before its point, without powers of ten as far as people write it so."""
     rounded = float(f"{half_up(value):.4g}")
     if 1e4 <= abs(rounded) < 1e7:
@@ -128,13 +148,13 @@ def figure(value: float) -> str:
     if not 0 < abs(rounded) < 1e-4:  # no power of ten
         return numeral(rounded, ".10g")
     places = len(np.format_float_positional(rounded).partition(".")[2])
-    return numeral(rounded, f".{places}f" if abs(value) > PLAIN else ".4g")
+    return numeral(rounded, f".{places}f" if abs(value) > PLAIN_DOWN_TO else ".4g")
 
 
 # Each group apart, and each driving link: its links to scale under loads and reactions, arms, equations of moments.
 
 
-MOST = 12  # arms on one sheet
+MOST_ARMS = 12  # arms on one sheet
 
 
 def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
@@ -143,19 +163,22 @@ def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
         return
     for part in loaded_parts(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
-        stem = safe("-".join([here.stem("group-loads"), kind, *part.links]))
-        few, *others = sheetfuls(part.equations)
-        sheets = [*_sheets(here, part, few, part.sums), *(s for more in others for s in _sheets(here, part, more, ()))]
+        stem = file_safe_name("-".join([here.stem("group-loads"), kind, *part.links]))
+        few, *others = split_equations(part.equations)
+        sheets = [
+            *_group_sheets(here, part, few, part.sums),
+            *(s for more in others for s in _group_sheets(here, part, more, ())),
+        ]
         for number, sheet in enumerate(sheets if part.acting else ()):
             yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
 
-def sheetfuls(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
+def split_equations(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
     """Equations in their order, on as many sheets as their arms need."""
     found: list[list[MomentEquation]] = [[]]
     for equation in equations:
         number = sum(len(_arm_numbers(e)) for e in found[-1])
-        crowded = number + len(_arm_numbers(equation)) > MOST
+        crowded = number + len(_arm_numbers(equation)) > MOST_ARMS
         if found[-1] and (crowded or equation.special or found[-1][-1].special):
             found.append([])
         found[-1].append(equation)
@@ -166,12 +189,12 @@ def _arm_numbers(equation: MomentEquation) -> set[int]:
     return {t.number for t in equation.terms if t.number}
 
 
-def _sheets(
+def _group_sheets(
     here: Position, part: LoadedPart, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
-) -> Iterable[Sheet]:
+) -> Iterable[DrawingSheet]:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
-    scene = Scene(linkage, here.results.structure, here.motion.poses, here.k)
+    scene = MechanismScene(linkage, here.results.structure, here.motion.poses, here.k)
     terms = [t for e in equations for t in e.terms]
     shown = [*(t.acting for t in terms), *(s.found.acting for s in sums)]
     further = [a for a in dict.fromkeys(shown) if a.kind == "reaction" and a not in part.acting]
@@ -182,25 +205,25 @@ def _sheets(
         title = _("Driving link {links} under its loads. {caption}")
     elif len(part.links) == 1:
         title = _("Link {links} under its loads. {caption}")
-    lines = [line for e in equations for line in written(e)] if written_here() else []
-    lines += [line for one in sums for line in along_guide(one)] if written_here() else []
+    lines = [line for e in equations for line in equation_lines(e)] if writes_equations() else []
+    lines += [line for one in sums for line in guide_force_lines(one)] if writes_equations() else []
     units, shown = here.results.problem.units, [*part.acting, *further]
 
-    def beneath(mu: float) -> Beneath:
-        return Beneath(lines, (table_of_forces(shown), table_of_arms(equations, units, mu)))
+    def beneath(mu: float) -> DrawingCaption:
+        return DrawingCaption(lines, (forces_table(shown), arms_table(equations, units, mu)))
 
-    sized = [*((place, 0j) for place in places), *extent(shown)]
+    sized = [*((place, 0j) for place in places), *arrow_extent(shown)]
     if extent_of([place for place, __ in sized])[0] <= SAME_PLACES * here.motion.largest.size:  # but for rounding one
         places, sized = places[:1], [(places[0], along) for __, along in sized]
-    sheet, text = above(here, title, sized, beneath, links=", ".join(part.links))
-    measured(sheet, scene, links=part.links)
+    sheet, text = captioned_sheets(here, title, sized, beneath, links=", ".join(part.links))
+    draw_measured(sheet, scene, links=part.links)
     bars = sheet.ground.crowd
-    forces = Forces(sheet)
+    forces = ForceArrows(sheet)
     forces.draw(part.acting)
     forces.draw(replace(a, kind="inner") for a in further)
     for equation in (e for e in equations if e.special):
-        _special(sheet, part, equation)
-    arms(sheet, equations, bars)
+        _draw_assur_point(sheet, part, equation)
+    draw_arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
         sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces without scale"))
@@ -210,11 +233,11 @@ def _sheets(
     return (sheet,) if text is None else (sheet, text)
 
 
-def _special(sheet: Sheet, part: LoadedPart, equation: MomentEquation) -> None:
+def _draw_assur_point(sheet: DrawingSheet, part: LoadedPart, equation: MomentEquation) -> None:
     """The point of Assur, and the lines of the reactions that meet there."""
     at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for one in part.acting:
         if one.pair and not one.couple and one.symbol not in with_moments:
-            sheet.line([sheet.on(one.at), at], REACTION, 0.5, "-.", 1.7)
-    sheet.circle(at, 0.6, REACTION, REACTION, 0.5)
+            sheet.line([sheet.on(one.at), at], REACTION_COLOUR, 0.5, "-.", 1.7)
+    sheet.circle(at, 0.6, REACTION_COLOUR, REACTION_COLOUR, 0.5)
     sheet.label(equation.about, at, 10)

@@ -10,19 +10,24 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from tmm_cli.drawing.paper import DARK, GREY_TEXT, Drawing, Sheet, cells
+from tmm_cli.drawing.paper import DARK_COLOUR, GREY_TEXT, Drawing, DrawingSheet, divide_into_cells
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import unit
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.structure import ROMAN
 
-COLUMNS, ROWS, GAP = 4, 3, 4.0  # cells of the sheet; mm between them
-CAPTION, LEAD, RADIUS, STONE = 11.0, 6.5, 1.1, (5.6, 3.0)  # mm: height of words below, lead, hinge, stone
-PLATE = "#e8edf2"
+COLUMNS, ROWS, CELL_GAP = 4, 3, 4.0  # cells of the sheet; mm between them
+CAPTION_HEIGHT, PAIR_STUB, HINGE_RADIUS, BLOCK_SIZE = (
+    11.0,
+    6.5,
+    1.1,
+    (5.6, 3.0),
+)  # mm: height of words below, lead, hinge, stone
+PLATE_COLOUR = "#e8edf2"
 
 
 @dataclass(frozen=True)
-class Example:
+class GroupExample:
     """A group of the table: points in a square of side 1, links by their points, leads by point and direction (deg).
 
     stones: for a sliding pair its point and the direction of its guide (deg).
@@ -42,18 +47,18 @@ class Example:
         return [(point, tuple(link for link in self.links if point in link)) for point in self.points]
 
 
-def _dyad(name: str, stones: Mapping[str, float]) -> Example:
+def _dyad(name: str, stones: Mapping[str, float]) -> GroupExample:
     points = {"A": 0.12 + 0.25j, "B": 0.5 + 0.8j, "C": 0.88 + 0.25j}
-    return Example(2, 2, name, points, ("AB", "BC"), {"A": 250, "C": 290}, stones)
+    return GroupExample(2, 2, name, points, ("AB", "BC"), {"A": 250, "C": 290}, stones)
 
 
-EXAMPLES: tuple[Example, ...] = (
+GROUP_EXAMPLES: tuple[GroupExample, ...] = (
     _dyad("RRR", {}),
     _dyad("RRP", {"C": 0}),
     _dyad("RPR", {"B": 55}),
     _dyad("PRP", {"A": 0, "C": 0}),
     _dyad("RPP", {"B": 55, "C": 0}),
-    Example(
+    GroupExample(
         3,
         3,
         "",
@@ -61,7 +66,7 @@ EXAMPLES: tuple[Example, ...] = (
         ("PQR", "PA", "QB", "RC"),
         {"A": 225, "B": 315, "C": 90},
     ),
-    Example(
+    GroupExample(
         3,
         4,
         "",
@@ -79,7 +84,7 @@ EXAMPLES: tuple[Example, ...] = (
         ("MPQ", "MRS", "PA", "QB", "RC", "SD"),
         {"A": 135, "B": 225, "C": 45, "D": 315},
     ),
-    Example(
+    GroupExample(
         4,
         2,
         "",
@@ -87,7 +92,7 @@ EXAMPLES: tuple[Example, ...] = (
         ("PQA", "RSB", "PR", "QS"),
         {"A": 200, "B": 340},
     ),
-    Example(
+    GroupExample(
         4,
         3,
         "",
@@ -105,7 +110,7 @@ EXAMPLES: tuple[Example, ...] = (
         ("PQA", "RSB", "PR", "QST", "AU", "BV"),
         {"U": 120, "V": 60, "T": 270},
     ),
-    Example(
+    GroupExample(
         5,
         3,
         "",
@@ -123,7 +128,7 @@ EXAMPLES: tuple[Example, ...] = (
         ("PQA", "QR", "RSB", "STC", "TP", "CD"),
         {"A": 110, "B": 270, "D": 300},
     ),
-    Example(
+    GroupExample(
         6,
         3,
         "",
@@ -144,36 +149,38 @@ EXAMPLES: tuple[Example, ...] = (
 )
 
 
-def sheets() -> Iterator[tuple[str, Drawing]]:
+def draw_group_table() -> Iterator[tuple[str, Drawing]]:
     """The sheet, by the name of its file."""
-    sheet = Sheet(_("Assur groups of classes II to VI"), _("By class and order; leads are dotted"), paper=LANDSCAPE)
-    size, places = cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, GAP)
-    for example, (low, high) in zip(EXAMPLES, places, strict=False):
-        side = min(size.real, size.imag - CAPTION) - 2 * LEAD
-        middle = (low + high + 1j * CAPTION) / 2
-        _draw(sheet, example, middle - side * (0.5 + 0.5j), side)
+    sheet = DrawingSheet(
+        _("Assur groups of classes II to VI"), _("By class and order; leads are dotted"), paper=LANDSCAPE
+    )
+    size, places = divide_into_cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, CELL_GAP)
+    for example, (low, high) in zip(GROUP_EXAMPLES, places, strict=False):
+        side = min(size.real, size.imag - CAPTION_HEIGHT) - 2 * PAIR_STUB
+        middle = (low + high + 1j * CAPTION_HEIGHT) / 2
+        _draw_example(sheet, example, middle - side * (0.5 + 0.5j), side)
         words = _("class {number}, order {order}").format(number=ROMAN[example.group_class], order=example.order)
         at = complex((low + high).real / 2, low.imag + 2)
         sheet.text(at, f"{words}: {example.name}" if example.name else words, 9, colour=GREY_TEXT, ha="center")
     yield "assur-groups", sheet.finish()
 
 
-def _draw(sheet: Sheet, example: Example, corner: complex, side: float) -> None:
+def _draw_example(sheet: DrawingSheet, example: GroupExample, corner: complex, side: float) -> None:
     at = {name: corner + side * point for name, point in example.points.items()}
     for name, turn in example.leads.items():
-        way = _unit(turn)
-        sheet.line([at[name], at[name] + LEAD * way], DARK, 0.8, ":")
+        way = _direction(turn)
+        sheet.line([at[name], at[name] + PAIR_STUB * way], DARK_COLOUR, 0.8, ":")
     with sheet.on_layer("links"):
         for link in example.links:
             corners = [at[point] for point in link]
             if len(link) > 2:
-                sheet.area(corners, PLATE, DARK, 1.0, 2)
+                sheet.area(corners, PLATE_COLOUR, DARK_COLOUR, 1.0, 2)
             else:
-                sheet.line(corners, DARK, 1.6)
+                sheet.line(corners, DARK_COLOUR, 1.6)
         for name, place in at.items():
             if name in example.stones:
-                along = _unit(example.stones[name])
-                length, height = (part / 2 * way for part, way in zip(STONE, (along, 1j * along), strict=True))
+                along = _direction(example.stones[name])
+                length, height = (part / 2 * way for part, way in zip(BLOCK_SIZE, (along, 1j * along), strict=True))
                 sheet.area(
                     [
                         place + length + height,
@@ -182,14 +189,14 @@ def _draw(sheet: Sheet, example: Example, corner: complex, side: float) -> None:
                         place + length - height,
                     ],
                     "white",
-                    DARK,
+                    DARK_COLOUR,
                     1.0,
                     5,
                 )
-                sheet.line([place - 2 * length, place + 2 * length], DARK, 0.6, "-.")
+                sheet.line([place - 2 * length, place + 2 * length], DARK_COLOUR, 0.6, "-.")
             else:
-                sheet.circle(place, RADIUS, "white", DARK, 1.0)
+                sheet.circle(place, HINGE_RADIUS, "white", DARK_COLOUR, 1.0)
 
 
-def _unit(degrees: float) -> complex:
+def _direction(degrees: float) -> complex:
     return complex(unit(math.radians(degrees)))

@@ -7,9 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.drawing.paper import Across, Drawing, Sheet, across, axis_room, draw_chart, safe, scale_words, with_unit
-from tmm_cli.drawing.sheets.diagrams import plotted
-from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
+from tmm_cli.drawing.paper import (
+    CommonAxis,
+    Drawing,
+    DrawingSheet,
+    axis_extent,
+    draw_chart,
+    file_safe_name,
+    round_axis,
+    scale_words,
+    with_unit,
+)
+from tmm_cli.drawing.sheets.diagrams import plot_quantities
+from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH
@@ -21,15 +31,15 @@ if TYPE_CHECKING:
 def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
     """A sheet a wheel: its angle and its angular speed over the driver's way."""
     for wheel in results.wheels or ():
-        yield f"intermittent-{safe(wheel.task.name)}", _sheet(results, wheel)
+        yield f"intermittent-{file_safe_name(wheel.task.name)}", _intermittent_sheet(results, wheel)
 
 
-def _sheet(results: Results, wheel: Intermittent) -> Drawing:
+def _intermittent_sheet(results: Results, wheel: Intermittent) -> Drawing:
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     factor = np.pi / 180 if crank else units.factor(LENGTH)
     caption = _("Intermittent motion over a cycle: {name}").format(name=wheel.task.name)
-    sheet = Sheet(results.problem.title, caption)
-    axis = across(0.0, wheel.way / factor, *axis_room(sheet), degrees=crank)
+    sheet = DrawingSheet(results.problem.title, caption)
+    axis = round_axis(0.0, wheel.way / factor, *axis_extent(sheet), degrees=crank)
     if crank:
         words = (f"{_('turn of the crank, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
     else:
@@ -40,13 +50,13 @@ def _sheet(results: Results, wheel: Intermittent) -> Drawing:
     )
     borders = (np.cumsum([len(part.ways) for part in wheel.parts])[:-1] - 1).tolist()
     every = [
-        Quantities(_("angle of the wheel"), ANGLE, [Course("", angles, np.nan)]),
-        Quantities(_("angular speed of the wheel"), ANGULAR_SPEED, [Course("", omegas, np.nan)]),
+        QuantityPlot(_("angle of the wheel"), ANGLE, [SampledCurve("", angles, np.nan)]),
+        QuantityPlot(_("angular speed of the wheel"), ANGULAR_SPEED, [SampledCurve("", omegas, np.nan)]),
     ]
     spans = [
         (part.ways[0] / factor, part.ways[-1] / factor, _("driven") if part.ride.driven else _("stands"))
         for part in wheel.parts
     ]
-    plots = [plotted(one, units, ways / factor, np.zeros(0), borders) for one in every]
-    draw_chart(sheet, plots, Across(axis, words, spans=spans))
+    plots = [plot_quantities(one, units, ways / factor, np.zeros(0), borders) for one in every]
+    draw_chart(sheet, plots, CommonAxis(axis, words, spans=spans))
     return sheet.finish()

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_cli.drawing.paper import Drawing
-from tmm_cli.drawing.sheets.diagrams import BESIDE, over_turn
-from tmm_cli.drawing.sheets.energy_mass import energy_mass
-from tmm_cli.drawing.sheets.over_cycle import Course, Quantities
+from tmm_cli.drawing.sheets.diagrams import BORDER_OFFSET, plot_over_driver
+from tmm_cli.drawing.sheets.energy_mass import energy_mass_sheet
+from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.forces import applied, inertias, reduced_moment
@@ -25,61 +25,63 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.dynamics import Running
 
 
-FINEST = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
-PARTS = 6  # loads, or links, that have a curve each; the smallest of more are summed up
+LEAST_STRETCH = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
+MOST_CURVES = 6  # loads, or links, that have a curve each; the smallest of more are summed up
 
 
 def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Of a file that asks for it: what acts, what comes of it, and the energy-mass diagram."""
-    yield from over_cycle(results)
-    yield from diagram(results)
+    yield from draw_law_curves(results)
+    yield from draw_energy_mass(results)
 
 
-def over_cycle(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
     """What acts, and what comes of it, over the cycle."""
     running = results.steady
     if running is None or results.motion is None:
         return
-    way, borders = _closely(running)
+    way, borders = _dense_travel(running)
     q, here = running.start + running.sense * way, running.way(results.motion.q)
     moments = _("Reduced moments, works and energies; what drives is positive; dots: computed positions")
-    yield from over_turn(results, "law-moments", moments, q, borders, _acting(results, running, way, here))
+    yield from plot_over_driver(results, "law-moments", moments, q, borders, _load_plots(results, running, way, here))
     motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
-    yield from over_turn(results, "law-motion", motion, q, borders, _moving(results, running, way, here))
+    yield from plot_over_driver(results, "law-motion", motion, q, borders, _motion_plots(results, running, way, here))
 
 
-def diagram(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The energy-mass diagram."""
     if results.steady is not None and results.motion is not None:
-        yield "energy-mass", energy_mass(results, results.steady, _closely(results.steady)[0])
+        yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
 
 
-def _closely(running: Running) -> tuple[Real, list[int]]:
+def _dense_travel(running: Running) -> tuple[Real, list[int]]:
     """Ways close together, and after which of them a panel of the functions ends: there they may jump."""
-    lows, highs = stretches_on_paper(running.steady.law.energy.edges)
+    lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
-    low, high = lows[:, None] + BESIDE, highs[:, None] - BESIDE
+    low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
     places = low + (high - low) * inner
     return places.ravel(), (len(inner) * np.arange(1, len(lows)) - 1).tolist()
 
 
-def stretches_on_paper(edges: Real) -> tuple[Real, Real]:
+def visible_stretches(edges: Real) -> tuple[Real, Real]:
     """The starts and the ends of the panels between these edges that are wide enough to be seen on paper.
 
     Narrow panels side by side are one stretch; together narrower than a line is wide, they are left out: a jump.
     """
-    least = FINEST * (edges[-1] - edges[0])
+    least = LEAST_STRETCH * (edges[-1] - edges[0])
     wide = np.diff(edges) >= least
     kept = edges[np.append(True, wide) | np.append(wide, True)]
     seen = np.diff(kept) >= least
     return kept[:-1][seen], kept[1:][seen]
 
 
-def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Quantities]:
+def _load_plots(results: Results, running: Running, way: Real, here: Real) -> list[QuantityPlot]:
     """Moments of the loads and their sum; that of what drives; works; energies."""
     steady = running.steady
     law, machine = steady.law, steady.machine
-    loads = _summed(_loads(results, running, way), _loads(results, running, here), _("sum"))
+    loads = _curves_with_sum(
+        _reduced_load_moments(results, running, way), _reduced_load_moments(results, running, here), _("sum")
+    )
 
     def works(x: Real) -> tuple[Real, Real, Real]:
         return machine.work(x), steady.work(x) - machine.work(x), steady.work(x)
@@ -89,49 +91,53 @@ def _acting(results: Results, running: Running, way: Real, here: Real) -> list[Q
         return machine.inertia(x) * square, law.flywheel * (square - law.speed(0 * x) ** 2 / 2)
 
     driver = _("constant moment") if steady.task.motor is None else _("motor")
-    driving = [_course(_("loads"), machine.moment, way, here), _course(driver, law.driving, way, here)]
+    driving = [_sample_curve(_("loads"), machine.moment, way, here), _sample_curve(driver, law.driving, way, here)]
     return [
-        Quantities(_("reduced moments of the loads"), MOMENT, loads),
-        Quantities(_("moments"), MOMENT, driving),
-        Quantities(_("works, J"), NUMBER, _courses((_("loads"), driver, _("sum")), works, way, here), "A"),
-        Quantities(
+        QuantityPlot(_("reduced moments of the loads"), MOMENT, loads),
+        QuantityPlot(_("moments"), MOMENT, driving),
+        QuantityPlot(_("works, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, way, here), "A"),
+        QuantityPlot(
             _("kinetic energy, J"),
             NUMBER,
-            _courses((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1],
+            _sample_curves((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1],
             "T",
         ),
     ]
 
 
-def _moving(results: Results, running: Running, way: Real, here: Real) -> list[Quantities]:
+def _motion_plots(results: Results, running: Running, way: Real, here: Real) -> list[QuantityPlot]:
     """Inertia of each link and the sum, and its slope; speed, acceleration, time."""
     steady = running.steady
     law = steady.law
-    parts = _summed(_links(results, running, way), _links(results, running, here), _("sum"))
-    mean = Course(
+    parts = _curves_with_sum(
+        _reduced_link_inertias(results, running, way), _reduced_link_inertias(results, running, here), _("sum")
+    )
+    mean = SampledCurve(
         _("mean of the largest and the least"),
         np.full(np.shape(way), np.mean(steady.speeds)),
         np.full(np.shape(here), np.nan),
         limit=True,
     )
     return [
-        Quantities(_("reduced inertia of the links"), INERTIA, parts),
-        Quantities("dJ/dφ", INERTIA, [_course("", steady.machine.slope, way, here)], "J′"),
-        Quantities(_("angular velocity ω"), ANGULAR_SPEED, [_course(_("ω"), law.speed, way, here), mean]),
-        Quantities(_("angular acceleration ε"), ANGULAR_ACCELERATION, [_course("", law.acceleration, way, here)]),
-        Quantities(_("time t, s"), NUMBER, [_course("", law.time, way, here)], "t"),
+        QuantityPlot(_("reduced inertia of the links"), INERTIA, parts),
+        QuantityPlot("dJ/dφ", INERTIA, [_sample_curve("", steady.machine.slope, way, here)], "J′"),
+        QuantityPlot(_("angular velocity ω"), ANGULAR_SPEED, [_sample_curve(_("ω"), law.speed, way, here), mean]),
+        QuantityPlot(
+            _("angular acceleration ε"), ANGULAR_ACCELERATION, [_sample_curve("", law.acceleration, way, here)]
+        ),
+        QuantityPlot(_("time t, s"), NUMBER, [_sample_curve("", law.time, way, here)], "t"),
     ]
 
 
-def _course(name: str, of: Any, way: Real, here: Real) -> Course:
-    return Course(name, of(way), of(here))
+def _sample_curve(name: str, of: Any, way: Real, here: Real) -> SampledCurve:
+    return SampledCurve(name, of(way), of(here))
 
 
-def _courses(names: Sequence[str], of: Any, way: Real, here: Real) -> list[Course]:
-    return [Course(name, *both) for name, *both in zip(names, of(way), of(here), strict=True)]
+def _sample_curves(names: Sequence[str], of: Any, way: Real, here: Real) -> list[SampledCurve]:
+    return [SampledCurve(name, *both) for name, *both in zip(names, of(way), of(here), strict=True)]
 
 
-def _loads(results: Results, running: Running, way: Real) -> dict[str, Real]:
+def _reduced_load_moments(results: Results, running: Running, way: Real) -> dict[str, Real]:
     """Reduced moments by names of loads, along the sense of the driver."""
     motion = at_positions(results, running.start + running.sense * way)
     found: dict[str, Real] = {}
@@ -143,25 +149,27 @@ def _loads(results: Results, running: Running, way: Real) -> dict[str, Real]:
     return found
 
 
-def _links(results: Results, running: Running, way: Real) -> dict[str, Real]:
+def _reduced_link_inertias(results: Results, running: Running, way: Real) -> dict[str, Real]:
     motion = at_positions(results, running.start + running.sense * way)
     text = _("link {link}")
     return {text.format(link=link): own + 0.0 * way for link, (own, __) in inertias(motion).items()}
 
 
-def _summed(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[Course]:
+def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
     """A course of each part that is not nothing, the small ones of many as one, after the sum of all."""
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
-    courses = [Course(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
-    every = _all(courses, total)
-    if len(courses) > PARTS:
-        kept = sorted(courses, key=lambda one: -sizes[one.name])[: PARTS - 1]
+    courses = [SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
+    every = _total_curve(courses, total)
+    if len(courses) > MOST_CURVES:
+        kept = sorted(courses, key=lambda one: -sizes[one.name])[: MOST_CURVES - 1]
         rest = [one for one in courses if one not in kept]
-        courses = [*(one for one in courses if one in kept), _all(rest, _("others"))]
+        courses = [*(one for one in courses if one in kept), _total_curve(rest, _("others"))]
     return [every, *courses] if len(courses) > 1 else [replace(every, name=one.name) for one in courses] or [every]
 
 
-def _all(courses: Sequence[Course], name: str) -> Course:
-    still = Course(name, np.zeros(1), np.zeros(1))
-    return Course(name, sum((c.values for c in courses), still.values), sum((c.points for c in courses), still.points))
+def _total_curve(courses: Sequence[SampledCurve], name: str) -> SampledCurve:
+    still = SampledCurve(name, np.zeros(1), np.zeros(1))
+    return SampledCurve(
+        name, sum((c.values for c in courses), still.values), sum((c.points for c in courses), still.points)
+    )

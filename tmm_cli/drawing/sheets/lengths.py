@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.drawing.paper import Row, Words
+from tmm_cli.drawing.paper import TableRow, Words
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol
@@ -17,25 +17,25 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import SAME_PLACES, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, Dimension
 
-Size = tuple[Words, str, float, Dimension]
+TableSize = tuple[Words, str, float, Dimension]
 
 
-def lengths(results: Results) -> list[Row]:
+def length_rows(results: Results) -> list[TableRow]:
     """Rows with name and value in the units of the file; between them the parameter, where any is called otherwise."""
-    sizes = [*_links(results), *_wheels(results.linkage), *_frame(results)]
+    sizes = [*_link_lengths(results), *_gear_radii(results.linkage), *_frame_sizes(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
     titles: list[Words] = [_("length"), *([_("in the file")] if named else []), units.spelt(LENGTH)]
-    rows = [Row(tuple(titles), head=True)]
+    rows = [TableRow(tuple(titles), head=True)]
     for name, parameter, value, dimension in sizes:
         shown = numeral(units.from_si(value, dimension), ".6g") + (
             f" {units.spelt(ANGLE)}" if dimension == ANGLE else ""
         )
-        rows.append(Row((name, *([parameter] if named else []), shown)))
+        rows.append(TableRow((name, *([parameter] if named else []), shown)))
     return rows
 
 
-def _links(results: Results) -> Iterator[Size]:
+def _link_lengths(results: Results) -> Iterator[TableSize]:
     """Distances between points of a link, as many as tell where they are: of the first two, then from both of them."""
     linkage = results.linkage
     for link in linkage.moving:
@@ -44,10 +44,10 @@ def _links(results: Results) -> Iterator[Size]:
             for other, place in points[: min(k, 2)]:
                 if abs(local - place) > 0:
                     both = other + name
-                    yield both, _parameter(results, link, both), float(abs(local - place)), LENGTH
+                    yield both, _length_parameter(results, link, both), float(abs(local - place)), LENGTH
 
 
-def _wheels(linkage: Linkage) -> Iterator[Size]:
+def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
     """Radii of pitch circles of wheels in mesh; the mesh is named where there are several."""
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
@@ -61,31 +61,33 @@ def _wheels(linkage: Linkage) -> Iterator[Size]:
             yield (Symbol("r", link), *where), "", radius, LENGTH
 
 
-def _parameter(results: Results, link: str, name: str) -> str:
+def _length_parameter(results: Results, link: str, name: str) -> str:
     """The parameter of the file that is the length of a link between these points, where it is called otherwise."""
-    own = _written(results, "links", link)
+    own = _file_value(results, "links", link)
     ends = own.get("points") if isinstance(own, dict) else None
     if not isinstance(ends, list) or "".join(map(str, ends)) != name:
         return ""
-    return _named(results, own.get("length"), name)
+    return _renaming_parameter(results, own.get("length"), name)
 
 
-def _coordinate(results: Results, written: Any, place: complex, size: float, name: str) -> str:
+def _coordinate_parameter(results: Results, written: Any, place: complex, size: float, name: str) -> str:
     """The parameter that is one of the coordinates of a place, the one of this size."""
     if not isinstance(written, list):
         return ""
     both = zip(written, (place.real, place.imag), strict=False)
-    found = [_named(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_PLACES * size]
+    found = [
+        _renaming_parameter(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_PLACES * size
+    ]
     return next((parameter for parameter in found if parameter), "")
 
 
-def _named(results: Results, text: Any, name: str) -> str:
+def _renaming_parameter(results: Results, text: Any, name: str) -> str:
     """The parameter that a text of the file consists of, where its letters are others than those of a name."""
-    known, word = _written(results, "parameters"), str(text).lstrip("-")
+    known, word = _file_value(results, "parameters"), str(text).lstrip("-")
     return word if isinstance(known, dict) and word in known and sorted(word) != sorted(name) else ""
 
 
-def _written(results: Results, *path: str) -> Any:
+def _file_value(results: Results, *path: str) -> Any:
     """What the file has there; None where it has nothing."""
     source = results.problem.source
     found: Any = None if source is None else source.data
@@ -94,7 +96,7 @@ def _written(results: Results, *path: str) -> Any:
     return found
 
 
-def _frame(results: Results) -> Iterator[Size]:
+def _frame_sizes(results: Results) -> Iterator[TableSize]:
     """Pivots on the frame from the first of them, and guides on the frame by their distance from it and their slope."""
     linkage = results.linkage
     pivots = {h.point: complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links}
@@ -102,7 +104,7 @@ def _frame(results: Results) -> Iterator[Size]:
     for name, place in list(pivots.items())[1:]:
         off, both = place - origin, start + name
         if min(abs(off.real), abs(off.imag)) < SAME_PLACES * abs(off):
-            parameter = _coordinate(results, _written(results, "points", name), place, abs(off), both)
+            parameter = _coordinate_parameter(results, _file_value(results, "points", name), place, abs(off), both)
             yield both, parameter, abs(off), LENGTH
         else:
             yield from (((Symbol("x", name),), "", off.real, LENGTH), ((Symbol("y", name),), "", off.imag, LENGTH))
@@ -111,8 +113,8 @@ def _frame(results: Results) -> Iterator[Size]:
             along, through = complex(unit(slide.direction)), complex(slide.through)
             far = abs(float(cross(along, origin - through)))
             far = far if far > SAME_PLACES * abs(through) else 0.0
-            written = _written(results, "guides", slide.name, "through")
-            parameter = _coordinate(results, written, through, far, "") if far else ""
+            written = _file_value(results, "guides", slide.name, "through")
+            parameter = _coordinate_parameter(results, written, through, far, "") if far else ""
             title = _("guide {name} from {point}").format(name=slide.name, point=start or "0")
             yield title, parameter, far, LENGTH
             turn = math.degrees(np.angle(along)) % 180

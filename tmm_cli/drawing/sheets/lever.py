@@ -7,32 +7,46 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper import DARK, THIN, Drawing, Sheet, Words, gather_labels, scale_words, written_here
-from tmm_cli.drawing.sheets.acting import Forces, arms, extent
-from tmm_cli.drawing.sheets.beneath import Beneath, above
-from tmm_cli.drawing.sheets.group_loads import figure, table_of_arms, table_of_forces, written
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    THIN_COLOUR,
+    Drawing,
+    DrawingSheet,
+    Words,
+    gather_coincident,
+    scale_words,
+    writes_equations,
+)
+from tmm_cli.drawing.sheets.acting import ForceArrows, arrow_extent, draw_arms
+from tmm_cli.drawing.sheets.beneath import DrawingCaption, captioned_sheets
+from tmm_cli.drawing.sheets.group_loads import arms_table, equation_lines, forces_table, format_figures
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, filled, numeral, spelt
 from tmm_cli.mechanics.forces import Acting, Symbol, balance_symbol
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
 from tmm_cli.mechanics.plans import LEVER_POLE, LeverPlan, Pair, in_letters, lever_plan
 
-MANY, SLIGHT = 20, 1e-3  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
+MOST_FORCES, SLIGHT_SHARE = (
+    20,
+    1e-3,
+)  # forces and couples beyond which one sees no more; of the largest: a load that hardly counts
 
 
-def letter_points(sheet: Sheet, ends: Mapping[str, complex], pole: str) -> None:
+def draw_plan_points(sheet: DrawingSheet, ends: Mapping[str, complex], pole: str) -> None:
     """The lettered points; those that coincide share a place and a label."""
-    for at, names in gather_labels((sheet.on(end), name) for name, end in ends.items()):
-        sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK, DARK, 1.0)
+    for at, names in gather_coincident((sheet.on(end), name) for name, end in ends.items()):
+        sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK_COLOUR, DARK_COLOUR, 1.0)
         sheet.label(", ".join(map(in_letters, names)), at, 11 if pole in names else 10)
 
 
-def weighty(plan: LeverPlan) -> Sequence[Acting]:
+def significant_forces(plan: LeverPlan) -> Sequence[Acting]:
     """Of many forces and couples those that count: no load below a thousandth of the largest force or moment."""
-    if len(plan.acting) <= MANY:
+    if len(plan.acting) <= MOST_FORCES:
         return plan.acting
     force, moment = max(abs(a.force) for a in plan.acting), max(abs(term.moment) for term in plan.equation.terms)
-    return [a for a in plan.acting if a.pair or abs(a.force) > SLIGHT * force or abs(a.moment) > SLIGHT * moment]
+    return [
+        a for a in plan.acting if a.pair or abs(a.force) > SLIGHT_SHARE * force or abs(a.moment) > SLIGHT_SHARE * moment
+    ]
 
 
 def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
@@ -49,43 +63,50 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
         else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90° clockwise. {caption}")
     )
     unit = "N·m" if crank else "N"
-    pairs = [word for pair in plan.pairs for word in _pair(pair)]
+    pairs = [word for pair in plan.pairs for word in _couple_equation(pair)]
     lines = (
-        [*written(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_checked(here)] if written_here() else []
+        [*equation_lines(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_force_plan_check(here)]
+        if writes_equations()
+        else []
     )
     units = results.problem.units if crank else None
 
-    def beneath(mu: float) -> Beneath:
-        return Beneath(lines, (table_of_forces(plan.acting, unit), table_of_arms([plan.equation], units, mu)))
+    def beneath(mu: float) -> DrawingCaption:
+        return DrawingCaption(lines, (forces_table(plan.acting, unit), arms_table([plan.equation], units, mu)))
 
-    sheet, text = above(here, title, [*((place, 0j) for place in places), *extent(plan.acting)], beneath)
+    sheet, text = captioned_sheets(
+        here, title, [*((place, 0j) for place in places), *arrow_extent(plan.acting)], beneath
+    )
     for bar in plan.bars:
-        sheet.line([sheet.on(bar.start), sheet.on(bar.end)], DARK if bar.kind == "absolute" else THIN, 1.5, z=3)
+        sheet.line(
+            [sheet.on(bar.start), sheet.on(bar.end)], DARK_COLOUR if bar.kind == "absolute" else THIN_COLOUR, 1.5, z=3
+        )
     bars = sheet.ground.crowd
-    shown = weighty(plan)
-    Forces(sheet).draw(shown)
-    arms(sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in shown))], bars)
-    letter_points(sheet, plan.ends, LEVER_POLE)
+    shown = significant_forces(plan)
+    ForceArrows(sheet).draw(shown)
+    draw_arms(sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in shown))], bars)
+    draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(shown) < len(plan.acting)
     sheet.note(_("forces without scale, below 0.1 % only in the table") if few else _("forces without scale"))
     sheet.note(_("moments positive counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
         sheet.note(_("M′: M times the ratio of the link's speed to the driver's"))
-    for line in _several(here):
+    for line in _several_driver_notes(here):
         sheet.note(line)
     yield here.stem("lever"), sheet.finish()
     if text is not None:
         yield here.stem("lever") + "-sheet-2", text.finish()
 
 
-def _pair(pair: Pair) -> tuple[str | Symbol, ...]:
+def _couple_equation(pair: Pair) -> tuple[str | Symbol, ...]:
     """P = M / AB: the forces that stand for a couple."""
-    numbers = f"{figure(abs(pair.moment))} / {figure(pair.distance)} = {figure(pair.force)} {spelt('N')}"
+    moment, distance, force = map(format_figures, (abs(pair.moment), pair.distance, pair.force))
+    numbers = f"{moment} / {distance} = {force} {spelt('N')}"
     return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
 
 
-def _checked(here: Position) -> Iterable[Words]:
+def _force_plan_check(here: Position) -> Iterable[Words]:
     """What the force plan has found for the one driver, and the difference."""
     results, reactions = here.results, here.results.reactions
     assert reactions is not None and results.lever is not None
@@ -97,13 +118,13 @@ def _checked(here: Position) -> Iterable[Words]:
     yield filled(
         _("force plan: {name} = {value} {unit}, difference {percent} %"),
         name=balance_symbol(balance.driver.link, several=False, turns=turns),
-        value=figure(abs(value)),
+        value=format_figures(abs(value)),
         unit=spelt("N·m" if turns else "N"),
-        percent=figure(difference if difference > NO_DIFFERENCE else 0.0),
+        percent=format_figures(difference if difference > NO_DIFFERENCE else 0.0),
     )
 
 
-def _several(here: Position) -> Iterable[str]:
+def _several_driver_notes(here: Position) -> Iterable[str]:
     """What the lever gives with several drivers: the sum of what they do at their speeds."""
     motion, results, k = here.motion, here.results, here.k
     reactions = results.reactions

@@ -27,11 +27,11 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.reports import output_motion
 
-MOST = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
+MOST_CURVES = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
 
 
 @dataclass(frozen=True)
-class Course:
+class SampledCurve:
     """How a quantity goes (SI): at places close together, and at the computed positions. limit: what is allowed."""
 
     name: str
@@ -41,16 +41,16 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Quantities:
+class QuantityPlot:
     """Courses of one kind, which share a panel. symbol: of its scale, where their dimension does not say it."""
 
     words: str
     dimension: Dimension
-    courses: Sequence[Course]
+    courses: Sequence[SampledCurve]
     symbol: str = ""
 
 
-def output(results: Results, motion: Motion, link: str) -> list[Quantities]:
+def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPlot]:
     """Motion of an output; an angle is followed through full turns."""
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
@@ -63,31 +63,31 @@ def output(results: Results, motion: Motion, link: str) -> list[Quantities]:
         if dimension == ANGLE:
             values = np.unwrap(values)
             points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
-        found.append(Quantities(translated(name), dimension, [Course("", values, points)]))
+        found.append(QuantityPlot(translated(name), dimension, [SampledCurve("", values, points)]))
     return found
 
 
-def balances(whole: Results, results: Results) -> list[Quantities]:
+def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """What balances the drivers: moments in one panel, forces in another."""
     if whole.reactions is None or results.reactions is None:
         return []
     several = len(whole.reactions.balances) > 1
-    found: dict[bool, list[Course]] = {True: [], False: []}
+    found: dict[bool, list[SampledCurve]] = {True: [], False: []}
     for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
         turns = curve.moment is not None if several else curve.kind == "moment"
         name = balance_symbol(curve.driver.link, several, turns=turns).name if several else ""
         values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
-        found[turns].append(Course(name, values, dots))
+        found[turns].append(SampledCurve(name, values, dots))
     moments = _("balancing moments") if several else _("balancing moment")
     forces = _("balancing forces") if several else _("balancing force")
     return [
-        Quantities(words, dimension, courses[first : first + MOST])
+        QuantityPlot(words, dimension, courses[first : first + MOST_CURVES])
         for words, dimension, courses in ((moments, MOMENT, found[True]), (forces, FORCE, found[False]))
-        for first in range(0, len(courses), MOST)
+        for first in range(0, len(courses), MOST_CURVES)
     ]
 
 
-def reactions(whole: Results, results: Results) -> list[Quantities]:
+def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Sizes of all reactions, a few in a panel."""
     if whole.reactions is None or results.reactions is None:
         return []
@@ -95,15 +95,17 @@ def reactions(whole: Results, results: Results) -> list[Quantities]:
     found = []
     for words, on_frame in ((_("reactions of the frame"), True), (_("between moving links"), False)):
         courses = [
-            Course(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
+            SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
             for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
             if (FRAME in (r.on, r.by)) == on_frame
         ]
-        found += [Quantities(words, FORCE, courses[i : i + MOST], "R") for i in range(0, len(courses), MOST)]
+        found += [
+            QuantityPlot(words, FORCE, courses[i : i + MOST_CURVES], "R") for i in range(0, len(courses), MOST_CURVES)
+        ]
     return found
 
 
-def energy(whole: Results, results: Results) -> list[Quantities]:
+def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Reduced inertia and moment, kinetic energy, powers; nothing where nothing weighs and nothing acts."""
     curve, given = whole.energy, results.energy
     if curve is None or given is None:
@@ -123,14 +125,14 @@ def energy(whole: Results, results: Results) -> list[Quantities]:
         (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}, "T"),
         (_("power, W"), NUMBER, powers, "P"),
     ):
-        courses = [Course(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
+        courses = [SampledCurve(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
         courses = [course for course in courses if np.any(np.nan_to_num(course.values) != 0)]
         if courses:
-            found.append(Quantities(words, dimension, courses, symbol))
+            found.append(QuantityPlot(words, dimension, courses, symbol))
     return found
 
 
-def shaking(results: Results, q: Any) -> list[Quantities]:
+def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
     """Force and moment on the frame before and after balancing."""
     found = results.balancing
     if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
@@ -143,13 +145,13 @@ def shaking(results: Results, q: Any) -> list[Quantities]:
     def size(force: Any) -> Any:
         return np.where(np.abs(force) > nothing, np.abs(force), 0 * np.abs(force))
 
-    forces = [Course(name, size(curve.force), size(here.force)) for name, here, curve in told]
-    moments = [Course(name, curve.moment, here.moment) for name, here, curve in told]
+    forces = [SampledCurve(name, size(curve.force), size(here.force)) for name, here, curve in told]
+    moments = [SampledCurve(name, curve.moment, here.moment) for name, here, curve in told]
     about = _("shaking moment about {pivot}").format(pivot=found.pivot or _("the origin"))
-    return [Quantities(_("shaking force"), FORCE, forces), Quantities(about, MOMENT, moments)]
+    return [QuantityPlot(_("shaking force"), FORCE, forces), QuantityPlot(about, MOMENT, moments)]
 
 
-def pressure(results: Results, motion: Motion) -> list[Quantities]:
+def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
     """Pressure angles of all driven links, those that slide and those that turn apart: different ones are allowed."""
     with np.errstate(all="ignore"):
         curves = {
@@ -162,11 +164,11 @@ def pressure(results: Results, motion: Motion) -> list[Quantities]:
         here = [p for p in results.pressure if p.slides == slides]
         text = _("link {link} in pair {pair}")
         courses = [
-            Course(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
+            SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
         ]
         words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
-        for first in range(0, len(courses), MOST):
+        for first in range(0, len(courses), MOST_CURVES):
             allowed = np.full(np.shape(motion.q), here[0].allowed)
-            limit = Course(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
-            found.append(Quantities(words, ANGLE, [*courses[first : first + MOST], limit], "θ"))
+            limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
+            found.append(QuantityPlot(words, ANGLE, [*courses[first : first + MOST_CURVES], limit], "θ"))
     return found

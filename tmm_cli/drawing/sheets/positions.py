@@ -10,29 +10,29 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.drawing.paper import (
-    DARK,
+    DARK_COLOUR,
     GREY_TEXT,
-    LOAD,
-    Block,
+    LOAD_COLOUR,
     Drawing,
-    Figure,
-    Number,
+    DrawingSheet,
+    FigureExtent,
+    NoteBlock,
     Ruler,
-    Sheet,
-    angle_mark,
+    RulerNumber,
     choose_scale,
-    dimension,
+    draw_angle,
+    draw_dimension,
     draw_ruler,
-    gather_labels as in_place,
+    fit_ruler,
+    gather_coincident as in_place,
     gather_numbers,
-    roomiest,
-    ruler_of,
+    least_crowded_ruler,
     ruler_reach,
     scale_words,
 )
-from tmm_cli.drawing.sheets.lengths import lengths
-from tmm_cli.drawing.sheets.mechanism import detailed, measured, paths, skeleton, trace
-from tmm_cli.drawing.symbols import MEASURED, Scene, arrows, fixed_pivots, to_scale
+from tmm_cli.drawing.sheets.lengths import length_rows
+from tmm_cli.drawing.sheets.mechanism import detailed_drawings, draw_measured, draw_paths, draw_skeleton, point_paths
+from tmm_cli.drawing.symbols import MEASURED, MechanismScene, draw_driver_arrows, frame_pivots, points_to_scale
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.forces import subscript
@@ -45,7 +45,7 @@ from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 
 
 @dataclass(frozen=True)
-class Extreme:
+class OutputExtreme:
     """An end of the output's way: the driver's place (rad or m), and its mark, a number where it is a position."""
 
     q: float
@@ -53,7 +53,7 @@ class Extreme:
 
 
 @dataclass(frozen=True)
-class Track:
+class NumberedPath:
     """The way of a point of the output: along a line, about a pivot, or any.
 
     line, pivot: direction and place of it, of the two kinds that have one (m).
@@ -70,7 +70,7 @@ class Track:
         return states.poses[self.link].at(self.local)
 
 
-def extremes(results: Results) -> list[Extreme]:
+def output_extremes(results: Results) -> list[OutputExtreme]:
     """Ends of the strokes in order, or of what is asked for where the driver does not turn fully."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
@@ -82,20 +82,20 @@ def extremes(results: Results) -> list[Extreme]:
         cycle, ends = np.inf, [travels[0].low_at, travels[0].high_at]
     else:
         return []
-    found: list[Extreme] = []
+    found: list[OutputExtreme] = []
     asked = results.asked[list(results.numbers)]
     for q in ends:
         off = np.abs(asked - q) if np.isinf(cycle) else np.abs((asked - q + cycle / 2) % cycle - cycle / 2)
         here = int(np.argmin(off))
-        found.append(Extreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else ""))
+        found.append(OutputExtreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else ""))
     between = [extreme for extreme in found if not extreme.mark]
     for number, extreme in enumerate(between, 1):
         mark = "k" + ("" if len(between) == 1 else "′" * (number - 1) if len(between) == 2 else subscript(str(number)))
-        found[found.index(extreme)] = Extreme(extreme.q, mark)
+        found[found.index(extreme)] = OutputExtreme(extreme.q, mark)
     return found
 
 
-def travel(results: Results) -> float:
+def output_travel(results: Results) -> float:
     """The stroke (m) or the swing (rad) of the main output between its ends."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
@@ -103,47 +103,47 @@ def travel(results: Results) -> float:
     return abs(travels[0].high - travels[0].low) if travels else 0.0
 
 
-def output_track(results: Results) -> Track | None:
+def output_path(results: Results) -> NumberedPath | None:
     """Of the main output; None where there is none."""
     linkage, link = results.linkage, results.mechanism.output
     if link is None:
         return None
     point = linkage.output_point(link)
     if point is not None:
-        return Track("any", linkage.owner(point), linkage.local(linkage.owner(point), point))
+        return NumberedPath("any", linkage.owner(point), linkage.local(linkage.owner(point), point))
     slide = linkage.output_guide(link)
     if slide is None:
-        return swinging(linkage, link)
+        return swinging_path(linkage, link)
     runs = linkage.slides_on_frame(link)
     if slide.runner == FRAME:  # the guide moves
-        return Track("any", link, 0j)
-    return Track("line" if runs else "any", link, slide.at, line=complex(unit(slide.direction)))
+        return NumberedPath("any", link, 0j)
+    return NumberedPath("line" if runs else "any", link, slide.at, line=complex(unit(slide.direction)))
 
 
-def swinging(linkage: Linkage, link: str) -> Track:
+def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
     """Of the point of a link that is farthest from its pivot on the frame, or of its first one where it has none."""
     points = linkage.links[link].points
     pivot = next((p for p in points if p in linkage.links[FRAME].points and linkage.hinged_to_frame(link)), None)
     if pivot is None or len(points) < 2:
-        return Track("any", link, next(iter(points.values()), 0j))
+        return NumberedPath("any", link, next(iter(points.values()), 0j))
     own = points[pivot]
     end = max(points.values(), key=lambda local: abs(local - own))
-    return Track("arc", link, end, pivot=linkage.local(FRAME, pivot))
+    return NumberedPath("arc", link, end, pivot=linkage.local(FRAME, pivot))
 
 
-def driver_track(results: Results) -> Track | None:
+def driver_path(results: Results) -> NumberedPath | None:
     """Of the end of the crank, or of the driven slider; None of a wheel without a point."""
     linkage, driver = results.linkage, results.linkage.driver
     if driver.kind == "turn":
         ends = [local for name, local in linkage.links[driver.link].points.items() if name != driver.joint]
-        return Track("any", driver.link, ends[0]) if ends else None
+        return NumberedPath("any", driver.link, ends[0]) if ends else None
     slide = linkage.slide(driver.joint)
     if driver.base == FRAME and slide.runner == driver.link:
-        return Track("line", driver.link, slide.at, line=complex(unit(slide.direction)))
-    return Track("any", driver.link, slide.at)
+        return NumberedPath("line", driver.link, slide.at, line=complex(unit(slide.direction)))
+    return NumberedPath("any", driver.link, slide.at)
 
 
-def extreme_states(results: Results, found: list[Extreme]) -> LinkStates:
+def extreme_states(results: Results, found: list[OutputExtreme]) -> LinkStates:
     """The mechanism at the ends of the output's way."""
     return at_positions(results, np.array([extreme.q for extreme in found]), 0)
 
@@ -151,16 +151,21 @@ def extreme_states(results: Results, found: list[Extreme]) -> LinkStates:
 # The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths.
 
 
-SHOWN, NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
-OF_LENGTHS = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
-STRAIGHT = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
-DIMENSION = 13.0  # mm beside a ruler for the stroke
-BEYOND, SHORT = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
-EXTREME = "#6a6a6a"
-BOLD = 4  # how much more a link in full is in the way than a thin one
-BETWEEN = np.linspace(0, 1, 30)  # of a line: points that stand for it
-NEAR, FULL, PIVOT, GUIDE = 3.0, 8.0, 11.0, 13.0  # mm about thin lines, what is drawn in full, pivots, sliders
-RIM = 10.0  # mm about the pitch line of a wheel, for a hatched rim
+MOST_SHOWN, MOST_NUMBERED = 48, 24  # positions drawn thin, and with numbers, at most
+EXTRA_SCALES = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
+LARGEST_ANGLE = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
+STROKE_OFFSET = 13.0  # mm beside a ruler for the stroke
+RULER_OVERHANG, SHORT_STROKE = 4.0, 30.0  # mm at its ends for numbers; a stroke that has no room for its text
+EXTREME_COLOUR = "#6a6a6a"
+BOLD_WEIGHT = 4  # how much more a link in full is in the way than a thin one
+LINE_SHARES = np.linspace(0, 1, 30)  # of a line: points that stand for it
+THIN_CLEARANCE, BOLD_CLEARANCE, PIVOT_CLEARANCE, GUIDE_CLEARANCE = (
+    3.0,
+    8.0,
+    11.0,
+    13.0,
+)  # mm about thin lines, what is drawn in full, pivots, sliders
+RIM_CLEARANCE = 10.0  # mm about the pitch line of a wheel, for a hatched rim
 
 
 @dataclass(frozen=True)
@@ -174,13 +179,13 @@ class PositionMark:
 
 
 @dataclass(frozen=True)
-class View:
+class PositionsView:
     """What is on the sheet: the motion with one position in full, the ends of the output's way."""
 
     results: Results
     motion: Motion
-    scene: Scene
-    ends: list[Extreme]
+    scene: MechanismScene
+    ends: list[OutputExtreme]
     states: LinkStates | None
 
     def lines(self, k: int) -> Vector:
@@ -188,22 +193,22 @@ class View:
         scene, found = replace(self.scene, k=k), []
         for link in self.results.linkage.moving:
             places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
-            found += [place + (places[n - 1] - place) * BETWEEN for n, place in enumerate(places)]
+            found += [place + (places[n - 1] - place) * LINE_SHARES for n, place in enumerate(places)]
         return np.concatenate(found)
 
     @property
     def shown(self) -> list[int]:
         """Positions drawn thin."""
-        step = max(1, len(self.results.numbers) // SHOWN)
+        step = max(1, len(self.results.numbers) // MOST_SHOWN)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
     @property
     def numbered(self) -> list[int]:
         """Positions with numbers."""
-        step = math.ceil(len(self.results.numbers) / NUMBERED)
+        step = math.ceil(len(self.results.numbers) / MOST_NUMBERED)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
-    def marks(self, track: Track) -> list[PositionMark]:
+    def marks(self, track: NumberedPath) -> list[PositionMark]:
         """Numbers and letters of positions along a track, ends of the output's way among them."""
         named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
         working = np.ones(len(places), bool)
@@ -221,124 +226,136 @@ class View:
         return found
 
 
-def all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers, stroke, lengths."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
-    chosen = detailed(results)
+    chosen = detailed_drawings(results)
     k = chosen[0].k if chosen else int(np.argmax(motion.placed))
-    ends = extremes(results)
+    ends = output_extremes(results)
     states = extreme_states(results, ends) if ends else None
-    view = View(results, motion, Scene(linkage, results.structure, motion.poses, k), ends, states)
-    whole, track = paths(results), output_track(results)
+    view = PositionsView(results, motion, MechanismScene(linkage, results.structure, motion.poses, k), ends, states)
+    whole, track = point_paths(results), output_path(results)
     marks = view.marks(track) if track is not None else []
     ruled = track is not None and track.kind != "any" and bool(marks) and bool(ends)
-    notes, rows = list(_notes(view, track, marks)), lengths(results)
-    figure = _figure(view, whole)
-    off = _reserve(figure, view, track, marks, whole) if track is not None and ruled else 0.0
-    found = choose_scale(figure, Block([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), OF_LENGTHS)
+    notes, rows = list(_position_notes(view, track, marks)), length_rows(results)
+    figure = _figure_extent(view, whole)
+    off = _reserve_ruler(figure, view, track, marks, whole) if track is not None and ruled else 0.0
+    found = choose_scale(
+        figure, NoteBlock([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), EXTRA_SCALES
+    )
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
-    sheet = Sheet(results.problem.title, caption, room=found)
-    trace(sheet, whole)
+    sheet = DrawingSheet(results.problem.title, caption, room=found)
+    draw_paths(sheet, whole)
     for other in view.shown:
         if other != k:
-            skeleton(sheet, replace(view.scene, k=other))
+            draw_skeleton(sheet, replace(view.scene, k=other))
     if states is not None:
         for other in range(len(ends)):
-            skeleton(sheet, replace(view.scene, poses=states.poses, k=other), EXTREME, 0.9, 1.1)
+            draw_skeleton(sheet, replace(view.scene, poses=states.poses, k=other), EXTREME_COLOUR, 0.9, 1.1)
     if motion.placed[k]:
-        arrows(sheet, view.scene, measured(sheet, view.scene), MEASURED, dict.fromkeys(linkage.links, LOAD))
-    driver = driver_track(results)
+        draw_driver_arrows(
+            sheet, view.scene, draw_measured(sheet, view.scene), MEASURED, dict.fromkeys(linkage.links, LOAD_COLOUR)
+        )
+    driver = driver_path(results)
     if driver is not None:
-        _spots(sheet, view.marks(driver))
+        _number_points(sheet, view.marks(driver))
     if track is not None and ruled:
-        _output(sheet, view, track, marks, off)
+        _draw_output_ruler(sheet, view, track, marks, off)
     elif track is not None and track != driver:
-        _spots(sheet, marks)
-    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {ratio(sheet.mu)}"))
+        _number_points(sheet, marks)
+    sheet.note((*scale_words("l", sheet.mu, "m/mm"), f", {scale_ratio(sheet.mu)}"))
     for note in notes:
         sheet.note(note)
     sheet.table(rows, 1)
     yield "mechanism", sheet.finish()
 
 
-def ratio(mu: float) -> str:
+def scale_ratio(mu: float) -> str:
     """A scale factor (m/mm) as the scale of a drawing, 1:4."""
     return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
 
 
-def _figure(view: View, whole: list[Vector]) -> Figure:
+def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
     """Everything but the numbers of the output, with the room that it needs."""
-    figure, pivots = Figure(), fixed_pivots(view.results.linkage)
+    figure, pivots = FigureExtent(), frame_pivots(view.results.linkage)
     used = [*pivots, *(place for path in whole for place in path.tolist())]
-    figure.spots(pivots, PIVOT)
-    figure.spots(used, NEAR)
-    figure.spots(to_scale(view.scene, used)[len(used) :], RIM)
+    figure.spots(pivots, PIVOT_CLEARANCE)
+    figure.spots(used, THIN_CLEARANCE)
+    figure.spots(points_to_scale(view.scene, used)[len(used) :], RIM_CLEARANCE)
     for k in view.shown:
-        figure.spots(view.lines(k), FULL if k == view.scene.k else NEAR)
+        figure.spots(view.lines(k), BOLD_CLEARANCE if k == view.scene.k else THIN_CLEARANCE)
     sliding = [pair for pair in view.scene.structure.pairs if pair.slide is not None]
-    figure.spots([view.scene.at(pair) for pair in sliding], GUIDE)
-    crank = driver_track(view.results)
+    figure.spots([view.scene.at(pair) for pair in sliding], GUIDE_CLEARANCE)
+    crank = driver_path(view.results)
     if crank is not None:
-        figure.spots([mark.place for mark in view.marks(crank)], FULL)
+        figure.spots([mark.place for mark in view.marks(crank)], BOLD_CLEARANCE)
     return figure
 
 
-def _reserve(figure: Figure, view: View, track: Track, marks: list[PositionMark], whole: list[Vector]) -> float:
+def _reserve_ruler(
+    figure: FigureExtent, view: PositionsView, track: NumberedPath, marks: list[PositionMark], whole: list[Vector]
+) -> float:
     """Room for the scale of the output and for its stroke beyond it; how far off the way it is, whatever the scale."""
     mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
-    plain, numbers = _numbers(track, marks, lambda place: place / mu)
-    bold = [view.lines(view.scene.k)] * BOLD
+    plain, numbers = _ruler_numbers(track, marks, lambda place: place / mu)
+    bold = [view.lines(view.scene.k)] * BOLD_WEIGHT
     lines = np.concatenate([*(view.lines(k) for k in view.shown), *bold]) / mu
-    ruler = roomiest(plain, numbers, lines)
+    ruler = least_crowded_ruler(plain, numbers, lines)
     low, high = min(number.run for number in numbers), max(number.run for number in numbers)
-    more = BEYOND if high - low > SHORT else BEYOND + SHORT  # the text of a short stroke stands beside it
-    for run in np.linspace(low - more, high + more, len(BETWEEN)).tolist():
+    more = (
+        RULER_OVERHANG if high - low > SHORT_STROKE else RULER_OVERHANG + SHORT_STROKE
+    )  # the text of a short stroke stands beside it
+    for run in np.linspace(low - more, high + more, len(LINE_SHARES)).tolist():
         way = ruler.way(min(max(run, low), high))
-        for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + DIMENSION):
-            figure.spots([way * mu], NEAR, ruler.at(run, out) - way)
+        for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + STROKE_OFFSET):
+            figure.spots([way * mu], THIN_CLEARANCE, ruler.at(run, out) - way)
     return ruler.off
 
 
-def _numbers(track: Track, marks: list[PositionMark], on: Callable[[complex], complex]) -> tuple[Ruler, list[Number]]:
+def _ruler_numbers(
+    track: NumberedPath, marks: list[PositionMark], on: Callable[[complex], complex]
+) -> tuple[Ruler, list[RulerNumber]]:
     """A scale along the way of the output, and its numbers."""
     pivot = on(track.pivot) if track.kind == "arc" else None
-    plain = ruler_of([on(mark.place) for mark in marks], track.line, pivot)
-    numbers = gather_numbers([Number(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
+    plain = fit_ruler([on(mark.place) for mark in marks], track.line, pivot)
+    numbers = gather_numbers([RulerNumber(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
     return plain, numbers
 
 
-def _output(sheet: Sheet, view: View, track: Track, marks: list[PositionMark], off: float) -> None:
+def _draw_output_ruler(
+    sheet: DrawingSheet, view: PositionsView, track: NumberedPath, marks: list[PositionMark], off: float
+) -> None:
     """Numbers of positions along the way of the output, so far off it, and its stroke or swing."""
-    plain, numbers = _numbers(track, marks, sheet.on)
+    plain, numbers = _ruler_numbers(track, marks, sheet.on)
     ruler = replace(plain, off=off)
     draw_ruler(sheet, ruler, numbers)
     if view.states is None:
         return
-    first, last = _farthest(track.places(view.states))
+    first, last = _farthest_ends(track.places(view.states))
     with sheet.on_layer("dimensions"):
         if track.kind == "line":
             ends = [ruler.at(float(ruler.run(sheet.on(place))), ruler_reach(ruler, numbers)) for place in (first, last)]
-            dimension(sheet, ends[0], ends[1], _size(view))
-        elif travel(view.results) < STRAIGHT:
-            angle_mark(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _size(view), right=False)
+            draw_dimension(sheet, ends[0], ends[1], _travel_text(view))
+        elif output_travel(view.results) < LARGEST_ANGLE:
+            draw_angle(sheet, sheet.on(track.pivot), sheet.on(first), sheet.on(last), _travel_text(view), right=False)
 
 
-def _size(view: View) -> str:
+def _travel_text(view: PositionsView) -> str:
     """The stroke H, or the swing ψ."""
     results, units = view.results, view.results.problem.units
     turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
     measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
-    return f"{letter} = {numeral(units.from_si(travel(results), measure), '.4g')} {units.spelt(measure)}"
+    return f"{letter} = {numeral(units.from_si(output_travel(results), measure), '.4g')} {units.spelt(measure)}"
 
 
-def _farthest(places: Vector) -> tuple[complex, complex]:
+def _farthest_ends(places: Vector) -> tuple[complex, complex]:
     """The two ends that are farthest from one another."""
     found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
     return max(found, key=lambda ends: abs(ends[0] - ends[1]))
 
 
-def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
+def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
     """Numbers of positions beside the places of a point, outside its way."""
     finite = [mark for mark in marks if np.isfinite(mark.place)]
     if not finite:
@@ -348,17 +365,19 @@ def _spots(sheet: Sheet, marks: list[PositionMark]) -> None:
     for at, here in in_place((sheet.on(mark.place), mark) for mark in finite):
         out = at - middle
         end = any(mark.end for mark in here)
-        sheet.circle(at, 0.7 if end else 0.5, DARK, DARK, 0.3, 5)
+        sheet.circle(at, 0.7 if end else 0.5, DARK_COLOUR, DARK_COLOUR, 0.3, 5)
         text = ", ".join(mark.text for mark in here)
-        sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK if end else GREY_TEXT)
+        sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK_COLOUR if end else GREY_TEXT)
 
 
-def _notes(view: View, track: Track | None, marks: list[PositionMark]) -> Iterable[str]:
+def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list[PositionMark]) -> Iterable[str]:
     """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
     yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
-        if track is not None and (track.kind == "any" or (track.kind == "arc" and travel(view.results) >= STRAIGHT)):
-            yield _size(view)
+        if track is not None and (
+            track.kind == "any" or (track.kind == "arc" and output_travel(view.results) >= LARGEST_ANGLE)
+        ):
+            yield _travel_text(view)
         if track is not None and track.kind != "any" and not all(mark.working for mark in marks):
             yield _("outer numbers: working stroke")

@@ -10,30 +10,41 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper import DARK, THIN, Drawing, Ground, Sheet, cells, extent, on_large_sheet, safe, snug
-from tmm_cli.drawing.sheets.mechanism import place_of_driver
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    THIN_COLOUR,
+    Drawing,
+    DrawingSheet,
+    OccupiedArea,
+    divide_into_cells,
+    file_safe_name,
+    on_large_sheet,
+    scaleless_layout,
+    text_extent,
+)
+from tmm_cli.drawing.sheets.mechanism import driver_caption
 from tmm_cli.drawing.symbols import (
-    BEYOND,
-    FREE,
-    PALETTE,
+    FREE_COLOUR,
+    GUIDE_EXTENSION,
+    PART_COLOURS,
     STRUCTURAL,
-    Form,
-    Look,
-    Scene,
-    arrows,
-    box,
-    draw,
-    fitted,
-    names,
-    numbers,
-    outline,
-    quiet,
-    rails,
+    LinkForm,
+    MechanismScene,
+    SymbolStyle,
+    draw_box,
+    draw_driver_arrows,
+    draw_higher_pair,
+    draw_link_numbers,
+    draw_names,
+    draw_rails,
+    fit_links,
+    higher_pair_outline,
+    name_anchor,
+    quiet_direction,
     render_scene,
-    replacement,
-    scale_to,
-    spot,
-    symbol_size,
+    replacement_link,
+    scale_to_fit,
+    symbol_scale,
 )
 from tmm_cli.language import _, printed, typeset
 from tmm_cli.mechanics.analysis import Results, at_positions
@@ -43,17 +54,23 @@ from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, ground_of
 from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
 from tmm_cli.reports import ROLES, counted_mobility, left_out
 
-PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
-LEAST, A_LINK = 45.0, 25.0  # mm: a scheme is not drawn larger than this and so much more a moving link
-WIDEST = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
-ROW = 5.4  # mm of a line of the legend
-JOINT = 0.9  # mm: pairs of a link in place of a higher pair
-PLACES, MANY = 47, 40  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
-HIDDEN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
+SCHEME_PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
+SCHEME_BASE_SIZE, SCHEME_SIZE_PER_LINK = (
+    45.0,
+    25.0,
+)  # mm: a scheme is not drawn larger than this and so much more a moving link
+LEGEND_WIDTH = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
+LEGEND_ROW = 5.4  # mm of a line of the legend
+JOINT_RADIUS = 0.9  # mm: pairs of a link in place of a higher pair
+COORDINATES_TRIED, MOST_PAIRS = (
+    47,
+    40,
+)  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
+HIDDEN_WITHIN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
 
 
 @dataclass(frozen=True)
-class Part:
+class MechanismPart:
     """A driver on the frame (no group), an Assur group, or a redundant link; with its colour."""
 
     title: str
@@ -63,25 +80,29 @@ class Part:
     redundant: RedundantLink | None = None
 
 
-def parts(structure: Structure) -> tuple[Part, ...]:
+def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
     """The primary mechanisms and the groups, in solving order; then the redundant links."""
     cranks = [driver for driver in structure.drivers if driver.base == FRAME]
     every: list[tuple[str, tuple[str, ...], Group | None]] = [
         *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
         *((group.title, group.links, group) for group in structure.groups),
     ]
-    coloured = [Part(title, links, PALETTE[n % len(PALETTE)], g) for n, (title, links, g) in enumerate(every)]
-    redundant = [Part(", ".join(r.links), r.links, FREE, redundant=r) for r in structure.reduction.links]
+    coloured = [
+        MechanismPart(title, links, PART_COLOURS[n % len(PART_COLOURS)], g) for n, (title, links, g) in enumerate(every)
+    ]
+    redundant = [
+        MechanismPart(", ".join(r.links), r.links, FREE_COLOUR, redundant=r) for r in structure.reduction.links
+    ]
     return tuple(coloured + redundant)
 
 
-def colours(structure: Structure) -> dict[str, str]:
+def link_colours(structure: Structure) -> dict[str, str]:
     """The colour of every link, by solving order; the frame, and what is rigid to it, is dark."""
-    of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK)
-    return of_frame | {link: part.colour for part in parts(structure) for link in part.links}
+    of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK_COLOUR)
+    return of_frame | {link: part.colour for part in mechanism_parts(structure) for link in part.links}
 
 
-def at_sketch(results: Results) -> tuple[str, Scene] | None:
+def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
     """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
 
     None when the linkage cannot be assembled at the sketch.
@@ -90,19 +111,19 @@ def at_sketch(results: Results) -> tuple[str, Scene] | None:
     driver_range = results.driver_range
     if driver_range is None:
         return None
-    others = PLACES if len(structure.pairs) <= MANY else 0
+    others = COORDINATES_TRIED if len(structure.pairs) <= MOST_PAIRS else 0
     places = np.linspace(driver_range.start, driver_range.end, others + 2)
     motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
     if not bool(motion.placed[0]):
         return None
-    scenes = [Scene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
+    scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
     clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
     best = int(np.argmax(clear))
-    k = best if clear[0] < HIDDEN and clear[best] > 2 * clear[0] else 0
-    return place_of_driver(results, float(motion.q[k])), scenes[k]
+    k = best if clear[0] < HIDDEN_WITHIN and clear[best] > 2 * clear[0] else 0
+    return driver_caption(results, float(motion.q[k])), scenes[k]
 
 
-def _clearness(scenes: Sequence[Scene]) -> Real:
+def _clearness(scenes: Sequence[MechanismScene]) -> Real:
     """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
 
     Pairs that always coincide do not count.
@@ -123,65 +144,65 @@ def _clearness(scenes: Sequence[Scene]) -> Real:
     return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
 
 
-def whole_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
+def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
     """The sheet of the scheme at the sketch; none when the linkage cannot be assembled there."""
-    found = at_sketch(results)
+    found = sketch_scene(results)
     if found is not None:
-        yield "structure", scheme(results.problem.title, *found).finish()
+        yield "structure", scheme_sheet(results.problem.title, *found).finish()
 
 
-def scheme(title: str, place: str, scene: Scene) -> Sheet:
+def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     """The whole mechanism with its legend below; labels are placed."""
     legend = Legend(scene.structure)
-    links, pairs, hue = scene.structure.links, scene.structure.pairs, colours(scene.structure)
-    places, most = scene.extent(links), LEAST + A_LINK * len(links)
+    links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
+    places, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
 
     def scale(paper: tuple[float, float]) -> float:
         low, high = ground_of(paper)
-        return scale_to(places, high - low - 2 * PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
+        return scale_to_fit(places, high - low - 2 * SCHEME_PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
     subject = _("Structural scheme, {place} (not to scale)").format(place=place)
     if on_large_sheet():
         most = math.inf
-        sheet = Sheet(title, subject, room=snug(places, PAD, WIDEST, legend.height))
+        sheet = DrawingSheet(title, subject, room=scaleless_layout(places, SCHEME_PAD, LEGEND_WIDTH, legend.height))
     else:
         # upright only where the mechanism becomes much larger
         paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
-        sheet = Sheet(title, subject, paper=paper)
+        sheet = DrawingSheet(title, subject, paper=paper)
     sheet.ground.low += 1j * legend.height(sheet.paper[0])
-    scene = fitted(sheet, scene, links, PAD, most)
-    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
+    scene = fit_links(sheet, scene, links, SCHEME_PAD, most)
+    look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
     drawn = render_scene(sheet, scene, links, pairs, look, hue)
-    arrows(sheet, scene, drawn, look, hue)
-    _replacements(sheet, scene)
-    numbers(sheet, drawn.forms, hue)
-    names(sheet, [(spot(sheet, scene, p, look), p.name, DARK) for p in pairs])
+    draw_driver_arrows(sheet, scene, drawn, look, hue)
+    _draw_replacements(sheet, scene)
+    draw_link_numbers(sheet, drawn.forms, hue)
+    draw_names(sheet, [(name_anchor(sheet, scene, p, look), p.name, DARK_COLOUR) for p in pairs])
     sheet.settle()
     legend.draw(sheet)
     return sheet
 
 
-def _replacements(sheet: Sheet, scene: Scene) -> None:
+def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
     """The links in place of higher pairs, dashed: with a turning pair at an end, or a stone on a straight profile."""
     with sheet.on_layer("links"):
         for mesh in scene.linkage.meshes:
-            link = replacement(outline(scene, mesh))
+            link = replacement_link(higher_pair_outline(scene, mesh))
             start, end = sheet.on(link.start), sheet.on(link.end)
-            sheet.line([start, end], DARK, 0.9, "--", 6)
-            sheet.circle(start, JOINT, "white", DARK, 0.7)
+            sheet.line([start, end], DARK_COLOUR, 0.9, "--", 6)
+            sheet.circle(start, JOINT_RADIUS, "white", DARK_COLOUR, 0.7)
             if link.slides:
                 along = (end - start) / (abs(end - start) or 1.0)
-                corners = [end + JOINT * along * way for way in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)]
-                sheet.area(corners, "white", DARK, 0.7, 7)
+                corners = [end + JOINT_RADIUS * along * way for way in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)]
+                sheet.area(corners, "white", DARK_COLOUR, 0.7, 7)
             else:
-                sheet.circle(end, JOINT, "white", DARK, 0.7)
+                sheet.circle(end, JOINT_RADIUS, "white", DARK_COLOUR, 0.7)
 
 
 class Legend:
     """The band below the scheme: colours of the parts on the left; formula, mobility and class on the right."""
 
     def __init__(self, structure: Structure) -> None:
-        self.structure, self.parts = structure, parts(structure)
+        self.structure, self.parts = structure, mechanism_parts(structure)
         lower = sum(p.lower for p in structure.pairs)
         n, higher = len(structure.links), len(structure.pairs) - lower
         self.facts = [
@@ -215,12 +236,12 @@ class Legend:
     def split(self, paper: float) -> tuple[float, list[str]]:
         """Where the right part begins (mm), and its lines."""
         width = paper - 2 * MARGIN
-        left = min(0.5 * width, 14 + max(extent(self.words(part), 9)[0] for part in self.parts))
+        left = min(0.5 * width, 14 + max(text_extent(self.words(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
         wrapped = (textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4) for fact in self.facts)
         return left, [line for lines in wrapped for line in lines]
 
-    def words(self, part: Part) -> str:
+    def words(self, part: MechanismPart) -> str:
         """What a part is."""
         if part.redundant is not None:
             return _("{title}: redundant, adds q = {q}").format(title=part.title, q=part.redundant.constraints)
@@ -228,118 +249,124 @@ class Legend:
             return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
         group = part.group
         return _("{title}: class {roman}, order {order}, {type}").format(
-            title=part.title, roman=group.roman, order=group.order, type=counted(group.type)
+            title=part.title, roman=group.roman, order=group.order, type=count_pair_letters(group.type)
         )
 
     def height(self, paper: float) -> float:
         __, lines = self.split(paper)
-        return ROW * min(max(len(self.parts), len(lines)), 14) + 4
+        return LEGEND_ROW * min(max(len(self.parts), len(lines)), 14) + 4
 
-    def draw(self, sheet: Sheet) -> None:
+    def draw(self, sheet: DrawingSheet) -> None:
         """Into the band that was kept free."""
         rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
         top = MARGIN + self.height(sheet.paper[0])
-        sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK, 0.6, blocks=False)
-        most = int((top - MARGIN - 4) / ROW + 0.5)
+        sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK_COLOUR, 0.6, blocks=False)
+        most = int((top - MARGIN - 4) / LEGEND_ROW + 0.5)
         for row, part in enumerate(self.parts[:most]):
-            at = complex(MARGIN, top - 4 - ROW * row)
+            at = complex(MARGIN, top - 4 - LEGEND_ROW * row)
             sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
             text = _("... and {count} parts more").format(count=rows - most + 1) if hidden else self.words(part)
             sheet.text(at + 12, text, 9, colour=part.colour)
         for row, line in enumerate(lines[:most]):
-            sheet.text(complex(MARGIN + left + 4, top - 4 - ROW * row), line, 9)
+            sheet.text(complex(MARGIN + left + 4, top - 4 - LEGEND_ROW * row), line, 9)
 
 
-def counted(kind: str) -> str:
+def count_pair_letters(kind: str) -> str:
     """RRRRRR as 6R: types of large groups only count their pairs."""
     if len(kind) <= 5:
         return kind
     return "".join(f"{kind.count(letter)}{letter}" for letter in dict.fromkeys(kind))
 
 
-LEAST_GROUP, A_LINK_OF_GROUP = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
-A_SHEET, A_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
-LINE, GROUP_PAD, GAP = 4.6, (17.0, 12.5), 6.0  # mm: a line of a caption, room about a group (few, many), between two
-WORDS = 110.0  # mm: width of a caption on a large sheet
-STUB = 8.0  # mm of what a lead would be joined to
+GROUP_BASE_SIZE, GROUP_SIZE_PER_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
+GROUPS_PER_SHEET, GROUPS_PER_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
+GROUP_CAPTION_LINE, GROUP_PAD, GROUP_GAP = (
+    4.6,
+    (17.0, 12.5),
+    6.0,
+)  # mm: a line of a caption, room about a group (few, many), between two
+GROUP_CAPTION_WIDTH = 110.0  # mm: width of a caption on a large sheet
+STUB_LENGTH = 8.0  # mm of what a lead would be joined to
 
 
-def all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
+def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Sheets of the groups at the sketch; none when the linkage cannot be assembled there."""
-    found = at_sketch(results)
-    return () if found is None else groups(results.problem.title, *found, results.roles)
+    found = sketch_scene(results)
+    return () if found is None else draw_groups(results.problem.title, *found, results.roles)
 
 
-def groups(
-    title: str, place: str, scene: Scene, roles: Mapping[str, str] | None = None
+def draw_groups(
+    title: str, place: str, scene: MechanismScene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
     """All groups side by side, on more than one sheet when there are many; on large sheets each alone."""
-    every = parts(scene.structure)
+    every = mechanism_parts(scene.structure)
     if on_large_sheet():
         for part in every:
-            yield safe(f"groups-{part.title}"), _alone(title, scene, part, roles or {}).finish()
+            yield file_safe_name(f"groups-{part.title}"), _group_picture(title, scene, part, roles or {}).finish()
         return
-    for first in range(0, len(every), A_SHEET):
-        stem = "groups" if first == 0 else f"groups-sheet-{first // A_SHEET + 1}"
-        yield stem, side_by_side(title, place, scene, every[first : first + A_SHEET], roles or {}).finish()
+    for first in range(0, len(every), GROUPS_PER_SHEET):
+        stem = "groups" if first == 0 else f"groups-sheet-{first // GROUPS_PER_SHEET + 1}"
+        yield stem, groups_sheet(title, place, scene, every[first : first + GROUPS_PER_SHEET], roles or {}).finish()
 
 
-def _alone(title: str, scene: Scene, part: Part, roles: Mapping[str, str]) -> Sheet:
+def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles: Mapping[str, str]) -> DrawingSheet:
     """One part on a large sheet, below its caption."""
-    words = caption(part, scene.structure.pairs, roles, WORDS)
-    sheet = Sheet(title, words[0], room=snug(scene.extent(part.links), GROUP_PAD[0], 0.0))
+    words = part_caption(part, scene.structure.pairs, roles, GROUP_CAPTION_WIDTH)
+    sheet = DrawingSheet(title, words[0], room=scaleless_layout(scene.extent(part.links), GROUP_PAD[0], 0.0))
     sheet.remarks = words[1:]
-    _part(sheet, scene, part, GROUP_PAD[0])
+    _draw_part(sheet, scene, part, GROUP_PAD[0])
     return sheet
 
 
-def side_by_side(title: str, place: str, scene: Scene, every: Sequence[Part], roles: Mapping[str, str]) -> Sheet:
+def groups_sheet(
+    title: str, place: str, scene: MechanismScene, every: Sequence[MechanismPart], roles: Mapping[str, str]
+) -> DrawingSheet:
     """A sheet of these parts, each in a cell with its caption below it."""
     subject = _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place)
-    sheet = Sheet(title, subject, paper=LANDSCAPE)
-    rows = math.ceil(len(every) / A_ROW)
+    sheet = DrawingSheet(title, subject, paper=LANDSCAPE)
+    rows = math.ceil(len(every) / GROUPS_PER_ROW)
     columns = math.ceil(len(every) / rows)
-    size, places = cells(sheet.ground.low, sheet.ground.high, columns, rows, GAP)
-    told = [caption(part, scene.structure.pairs, roles, size.real) for part in every]
+    size, places = divide_into_cells(sheet.ground.low, sheet.ground.high, columns, rows, GROUP_GAP)
+    told = [part_caption(part, scene.structure.pairs, roles, size.real) for part in every]
     for index, (part, words, (low, high)) in enumerate(zip(every, told, places, strict=False)):
         row, column = divmod(index, columns)
         lines = max(map(len, told[row * columns : (row + 1) * columns]))
         if column:
-            x = low.real - GAP / 2
-            sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN, 0.4, blocks=False)
-        sheet.ground = Ground(low + 1j * (LINE * (lines + 0.5)), high)
-        top = low + 1j * LINE * (lines - 0.5)
+            x = low.real - GROUP_GAP / 2
+            sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN_COLOUR, 0.4, blocks=False)
+        sheet.ground = OccupiedArea(low + 1j * (GROUP_CAPTION_LINE * (lines + 0.5)), high)
+        top = low + 1j * GROUP_CAPTION_LINE * (lines - 0.5)
         sheet.text(top, words[0], 11, colour=part.colour, weight="bold")
         for line, text in enumerate(words[1:], 1):
-            sheet.text(top - 1j * LINE * line, text, 8.5)
-        _part(sheet, scene, part, GROUP_PAD[rows > 1])
+            sheet.text(top - 1j * GROUP_CAPTION_LINE * line, text, 8.5)
+        _draw_part(sheet, scene, part, GROUP_PAD[rows > 1])
     return sheet
 
 
-def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
+def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
     """What a part is, in lines that fit a width (mm)."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
         q = _("redundant, adds q = {q}").format(q=part.redundant.constraints)
         words = [q, _("links: {links}").format(links=links)]
-        words.append(_("pairs: {pairs}").format(pairs=_listed(pairs_outside(part, pairs))))
+        words.append(_("pairs: {pairs}").format(pairs=_list_pairs(external_pairs(part, pairs))))
     elif part.group is None:
         words = [_("primary mechanism: driver and frame"), _("links: {links}").format(links=links)]
         driving = [pair for pair in pairs if FRAME in (pair.i, pair.j) and {pair.i, pair.j} <= {FRAME, *part.links}]
         if driving:
-            words.append(_("driving pair: {pair}").format(pair=_listed(driving[-1:])))
+            words.append(_("driving pair: {pair}").format(pair=_list_pairs(driving[-1:])))
     else:
         group = part.group
         words = [
             _("class {roman}, order {order}, type {type}").format(
-                roman=group.roman, order=group.order, type=counted(group.type)
+                roman=group.roman, order=group.order, type=count_pair_letters(group.type)
             ),
             _("links: {links}").format(links=links),
         ]
         if group.inner:
-            words.append(_("inner pairs: {pairs}").format(pairs=_listed(group.inner)))
-        words.append(_("outer pairs: {pairs}").format(pairs=_listed(group.outer)))
+            words.append(_("inner pairs: {pairs}").format(pairs=_list_pairs(group.inner)))
+        words.append(_("outer pairs: {pairs}").format(pairs=_list_pairs(group.outer)))
         if group.drivers:
             drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in group.drivers)
             words.append(_("with drivers: {drivers}").format(drivers=drivers))
@@ -347,7 +374,7 @@ def caption(part: Part, pairs: Iterable[Pair], roles: Mapping[str, str], width: 
     return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
 
 
-def pairs_outside(part: Part, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
+def external_pairs(part: MechanismPart, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
     """The pairs that join a part to other links: those of a group, or all of a redundant link."""
     if part.group is not None:
         return part.group.outer
@@ -355,66 +382,74 @@ def pairs_outside(part: Part, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
     return tuple(p for p in pairs if part.redundant and {p.i, p.j} & links and not {p.i, p.j} <= links)
 
 
-def _listed(pairs: Iterable[Pair]) -> str:
+def _list_pairs(pairs: Iterable[Pair]) -> str:
     return ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in pairs)
 
 
-def _part(sheet: Sheet, scene: Scene, part: Part, pad: float) -> None:
+def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, pad: float) -> None:
     """One part in the field that the ground of the sheet has."""
     pairs, links = scene.structure.pairs, part.links
-    outer, frame = pairs_outside(part, pairs), () if part.group or part.redundant else (FRAME,)
+    outer, frame = external_pairs(part, pairs), () if part.group or part.redundant else (FRAME,)
     inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
-    most = math.inf if on_large_sheet() else LEAST_GROUP + A_LINK_OF_GROUP * len(links)
-    scene = fitted(sheet, scene, links, pad, most)
-    look = STRUCTURAL.sized(symbol_size(sheet, scene, links))
+    most = math.inf if on_large_sheet() else GROUP_BASE_SIZE + GROUP_SIZE_PER_LINK * len(links)
+    scene = fit_links(sheet, scene, links, pad, most)
+    look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
     own = dict.fromkeys(links, part.colour)
     for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side
         if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
-            draw(sheet, scene.higher(pair), own)
+            draw_higher_pair(sheet, scene.higher(pair), own)
     for pair in outer:
         if pair.slide is not None:
-            sliding_lead(sheet, scene, pair, part, look)
-    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK} | own, leads=outer)
+            draw_free_prismatic(sheet, scene, pair, part, look)
+    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK_COLOUR} | own, leads=outer)
     for pair in outer:
         if pair.kind == "R":
-            _stub(sheet, scene, pair, drawn.forms, look)
-    arrows(sheet, scene, drawn, look, own)
-    numbers(sheet, drawn.forms, own)
-    names(sheet, ((spot(sheet, scene, p, look), p.name, part.colour if part.group else DARK) for p in inner))
-    names(sheet, ((spot(sheet, scene, p, look), lead_name(p, part), DARK) for p in outer))
-    _later(sheet, scene, part, (*inner, *outer), look)
+            _draw_stub(sheet, scene, pair, drawn.forms, look)
+    draw_driver_arrows(sheet, scene, drawn, look, own)
+    draw_link_numbers(sheet, drawn.forms, own)
+    draw_names(
+        sheet, ((name_anchor(sheet, scene, p, look), p.name, part.colour if part.group else DARK_COLOUR) for p in inner)
+    )
+    draw_names(sheet, ((name_anchor(sheet, scene, p, look), external_pair_name(p, part), DARK_COLOUR) for p in outer))
+    _mark_later_pairs(sheet, scene, part, (*inner, *outer), look)
     sheet.settle()
 
 
-def lead_name(pair: Pair, part: Part) -> str:
+def external_pair_name(pair: Pair, part: MechanismPart) -> str:
     """A (to 1): a lead and the link that it is joined to."""
     return _("{pair} (to {link})").format(pair=pair.name, link=printed(pair.i if pair.j in part.links else pair.j))
 
 
-def sliding_lead(sheet: Sheet, scene: Scene, pair: Pair, part: Part, look: Look) -> None:
+def draw_free_prismatic(
+    sheet: DrawingSheet, scene: MechanismScene, pair: Pair, part: MechanismPart, look: SymbolStyle
+) -> None:
     """A free sliding pair: the box with a piece of the guide, or the bar with the stone, that it would be joined to."""
     assert pair.slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
     if pair.slide.runner not in part.links:
-        box(sheet, at, along, FREE, look.box, look, "--")
+        draw_box(sheet, at, along, FREE_COLOUR, look.box, look, "--")
         return
-    reach = (look.box[0] / 2 + BEYOND + 2) * along
-    rails(sheet, at - reach, at + reach, look.box[1])
-    box(sheet, at, along, part.colour, look.box, look)
+    reach = (look.box[0] / 2 + GUIDE_EXTENSION + 2) * along
+    draw_rails(sheet, at - reach, at + reach, look.box[1])
+    draw_box(sheet, at, along, part.colour, look.box, look)
 
 
-def _stub(sheet: Sheet, scene: Scene, pair: Pair, forms: Mapping[str, Form], look: Look) -> None:
+def _draw_stub(
+    sheet: DrawingSheet, scene: MechanismScene, pair: Pair, forms: Mapping[str, LinkForm], look: SymbolStyle
+) -> None:
     """A short dashed piece of the link that a free hinge would be joined to, on its empty side."""
     at = sheet.on(scene.at(pair))
     arm = (forms.get(pair.j) or forms[pair.i]).middle - at
-    out = quiet(sheet, at, -arm / abs(arm) if abs(arm) > 0.5 else 1j, STUB + 2)
-    start, end = at + look.hinge * out, at + (look.hinge + STUB) * out
-    sheet.line([start, end], FREE, 1.3, "--", 4.4)
+    out = quiet_direction(sheet, at, -arm / abs(arm) if abs(arm) > 0.5 else 1j, STUB_LENGTH + 2)
+    start, end = at + look.hinge * out, at + (look.hinge + STUB_LENGTH) * out
+    sheet.line([start, end], FREE_COLOUR, 1.3, "--", 4.4)
     for side in look.sides:
         sheet.ground.line(start + side * out, end + side * out)
 
 
-def _later(sheet: Sheet, scene: Scene, part: Part, drawn: Iterable[Pair], look: Look) -> None:
+def _mark_later_pairs(
+    sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, drawn: Iterable[Pair], look: SymbolStyle
+) -> None:
     """Pairs in which later groups will be joined to the links: dots with grey names."""
     known = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
@@ -424,4 +459,4 @@ def _later(sheet: Sheet, scene: Scene, part: Part, drawn: Iterable[Pair], look: 
         at = sheet.on(scene.at(pair))
         if np.isfinite(at):
             sheet.circle(at, 0.55 * look.hinge, part.colour, part.colour, 0.5, 6)
-    names(sheet, [(sheet.on(scene.at(p)), p.name, FREE) for p in fresh])
+    draw_names(sheet, [(sheet.on(scene.at(p)), p.name, FREE_COLOUR) for p in fresh])

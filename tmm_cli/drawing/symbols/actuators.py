@@ -7,20 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.drawing.paper import DARK, Sheet, hatch
-from tmm_cli.drawing.symbols.scene import ON_LINE, Scene
+from tmm_cli.drawing.paper import DARK_COLOUR, DrawingSheet, draw_hatching
+from tmm_cli.drawing.symbols.scene import ON_LINE, MechanismScene
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide, Spring
 from tmm_cli.mechanics.numerics import cross, dot, unit
 
-BARREL, LEAST = 2.3, 8.0  # mm: half the width of a cylinder, its least length
-COIL, AMPLITUDE, STUB = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends
-SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
-SPRING = "#5f3b8a"
-SPRING_OF = "{}|spring"  # the body that a spring is, which is stretched
+BARREL_HALF_WIDTH, LEAST_BARREL = 2.3, 8.0  # mm: half the width of a cylinder, its least length
+COIL_PITCH, COIL_HALF_WIDTH, SPRING_END = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends
+TORSION_SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
+SPRING_COLOUR = "#5f3b8a"
+SPRING_BODY = "{}|spring"  # the body that a spring is, which is stretched
 
 
-def cylinders(linkage: Linkage) -> dict[str, Driver]:
+def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:
     """Drivers that slide between two moving links, by their sliding pair."""
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
@@ -36,7 +36,7 @@ class Cylinder:
     end: complex
 
     @staticmethod
-    def of(sheet: Sheet, scene: Scene, slide: Slide) -> Cylinder:
+    def of(sheet: DrawingSheet, scene: MechanismScene, slide: Slide) -> Cylinder:
         """The barrel begins at the last point that its link has behind the rod's end, else a stroke before it.
 
         Where it cannot hold the stroke (no real one could) the piston goes slower than the rod.
@@ -47,9 +47,9 @@ class Cylinder:
         run = float(dot(along, end - foot))
         arms = [sheet.on(point) - foot for point in scene.ends(slide.carrier)]
         runs = [float(dot(along, arm)) for arm in arms if abs(cross(along, arm)) < ON_LINE]
-        behind = [r for r in runs if r < low - LEAST / 2]
-        start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST)
-        length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST, low - start))
+        behind = [r for r in runs if r < low - LEAST_BARREL / 2]
+        start = min(behind) if behind else low - max(1.4 * stroke, 1.5 * LEAST_BARREL)
+        length = max(min(max(1.25 * stroke, 0.6 * (low - start)), 0.88 * (low - start)), min(LEAST_BARREL, low - start))
         share = (run - low) / max(stroke, 0.74 * length, 1e-9)
         piston = start + length * (0.13 + 0.74 * share)
         return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
@@ -58,9 +58,9 @@ class Cylinder:
         """The barrel or the rod."""
         return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
 
-    def draw(self, sheet: Sheet, hue: Mapping[str, str]) -> None:
+    def draw(self, sheet: DrawingSheet, hue: Mapping[str, str]) -> None:
         """The barrel cut open, the piston and its rod in it."""
-        side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL
+        side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL_HALF_WIDTH
         corners = [self.back + side, self.front + side, self.front - side, self.back - side]
         with sheet.part(self.slide.carrier):
             sheet.area(corners, "white", hue[self.slide.carrier], 1.3, 4.6)
@@ -70,65 +70,65 @@ class Cylinder:
             sheet.line([self.piston, self.end], rod, 1.8, z=4.7)
 
 
-def driver_name(driver: Driver, letter: str) -> Symbol:
+def driver_symbol(driver: Driver, letter: str) -> Symbol:
     """ω1, or ω21 where the base moves: of link 2 against link 1."""
     return Symbol(letter, driver.link + ("" if driver.base == FRAME else driver.base))
 
 
-def springs(sheet: Sheet, scene: Scene) -> None:
+def draw_springs(sheet: DrawingSheet, scene: MechanismScene) -> None:
     """All springs, with their names."""
     for spring in scene.linkage.springs:
         if spring.turns:
             with sheet.part(spring.j):
-                torsion(sheet, scene, spring)
+                draw_torsion_spring(sheet, scene, spring)
             continue
         start, end = sheet.on(scene.place(spring.i, spring.at_i)), sheet.on(scene.place(spring.j, spring.at_j))
         if not np.isfinite(start + end) or abs(end - start) < 0.5:
             continue
-        with sheet.part(SPRING_OF.format(spring.name)):
-            (coils if spring.rate > 0 else gas)(sheet, start, end)
+        with sheet.part(SPRING_BODY.format(spring.name)):
+            (draw_coil_spring if spring.rate > 0 else draw_gas_spring)(sheet, start, end)
         for link, at in ((spring.i, start), (spring.j, end)):
             with sheet.part(link):
-                sheet.circle(at, 0.75, "white", SPRING, 1.0, 6.1)
+                sheet.circle(at, 0.75, "white", SPRING_COLOUR, 1.0, 6.1)
                 if link == FRAME:
                     out = (at - start - end + at) / abs(end - start)
                     low, high = at + out * (1 - 2.6j), at + out * (1 + 2.6j)
-                    sheet.line([low, high], DARK, 1.1, z=2.7)
-                    hatch(sheet, low, high, out)
+                    sheet.line([low, high], DARK_COLOUR, 1.1, z=2.7)
+                    draw_hatching(sheet, low, high, out)
         middle = (start + end) / 2
-        sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * AMPLITUDE, 9, SPRING)
+        sheet.label(spring.name, middle + 1j * (end - start) / abs(end - start) * COIL_HALF_WIDTH, 9, SPRING_COLOUR)
 
 
-def coils(sheet: Sheet, start: complex, end: complex) -> None:
+def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
     """A zigzag between two straight ends."""
     length = abs(end - start)
     along = (end - start) / length
-    stub = min(STUB, 0.15 * length)
-    number = int(np.clip((length - 2 * stub) / COIL, 4, 14))
+    stub = min(SPRING_END, 0.15 * length)
+    number = int(np.clip((length - 2 * stub) / COIL_PITCH, 4, 14))
     step = (length - 2 * stub) / number
-    side = 1j * along * min(AMPLITUDE, length / 5)
+    side = 1j * along * min(COIL_HALF_WIDTH, length / 5)
     coils = [start + along * (stub + (k + 0.5) * step) + (-1) ** k * side for k in range(number)]
-    sheet.line([start, start + stub * along, *coils, end - stub * along, end], SPRING, 1.1, z=3.8)
+    sheet.line([start, start + stub * along, *coils, end - stub * along, end], SPRING_COLOUR, 1.1, z=3.8)
 
 
-def gas(sheet: Sheet, start: complex, end: complex) -> None:
+def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
     """A cylinder that only pushes, or a force that does not change with length."""
     along = (end - start) / abs(end - start)
     neck, side = start + 0.6 * (end - start), 1j * along * 1.6
-    sheet.line([start, end], SPRING, 1.1, z=3.7)
-    sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING, 1.1, 3.8)
+    sheet.line([start, end], SPRING_COLOUR, 1.1, z=3.7)
+    sheet.area([start + side, neck + side, neck - side, start - side], "white", SPRING_COLOUR, 1.1, 3.8)
 
 
-def torsion(sheet: Sheet, scene: Scene, spring: Spring) -> None:
+def draw_torsion_spring(sheet: DrawingSheet, scene: MechanismScene, spring: Spring) -> None:
     """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
     point = scene.linkage.shared(spring.i, spring.j)
     centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))
     if not np.isfinite(centre):
         return
-    inner, outer, turns = SPIRAL
+    inner, outer, turns = TORSION_SPIRAL
     share = np.linspace(0, 1, 120)
     arc = centre + (inner + (outer - inner) * share) * unit(scene.turn(spring.j) + 2 * np.pi * turns * share)
-    sheet.line([complex(p) for p in arc], SPRING, 1.1, z=5.5)
+    sheet.line([complex(p) for p in arc], SPRING_COLOUR, 1.1, z=5.5)
     last = complex(arc[-1])
-    sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING, 1.1, z=5.5)
-    sheet.label(spring.name, last, 9, SPRING)
+    sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING_COLOUR, 1.1, z=5.5)
+    sheet.label(spring.name, last, 9, SPRING_COLOUR)

@@ -11,20 +11,23 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper import Sheet, border, convex_hull
-from tmm_cli.drawing.symbols.actuators import Cylinder, cylinders
-from tmm_cli.drawing.symbols.scene import BEYOND, ON_LINE, Scene, apart
-from tmm_cli.drawing.symbols.wheels import bars as follower_bars, outline as shape_of
+from tmm_cli.drawing.paper import DrawingSheet, convex_hull, leave_field
+from tmm_cli.drawing.symbols.actuators import Cylinder, cylinder_drivers
+from tmm_cli.drawing.symbols.scene import GUIDE_EXTENSION, ON_LINE, MechanismScene, drop_coincident
+from tmm_cli.drawing.symbols.wheels import follower_segments as follower_bars, higher_pair_outline as shape_of
 from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import cross, dot
 
-Line = tuple[complex, complex]
-GUIDE = 5.0 + BEYOND  # mm from the middle of a stone to the end of the bar that guides it
-STONE, OVER = 3.75, 7.0  # mm, to scale: half a stone; how far such a bar goes on beyond the way of its middle
+Segment = tuple[complex, complex]
+GUIDE_REACH = 5.0 + GUIDE_EXTENSION  # mm from the middle of a stone to the end of the bar that guides it
+BLOCK_HALF_LENGTH, GUIDE_OVERHANG = (
+    3.75,
+    7.0,
+)  # mm, to scale: half a stone; how far such a bar goes on beyond the way of its middle
 
 
 @dataclass
-class Bar:
+class LinkBar:
     """A straight bar along a guide, from low to high (mm) of its base; `holds` are the link's pairs on it."""
 
     base: complex
@@ -45,12 +48,12 @@ class Bar:
         return self.base + self.along * float(dot(self.along, place - self.base))
 
     @property
-    def tips(self) -> Line:
+    def tips(self) -> Segment:
         return self.base + self.low * self.along, self.base + self.high * self.along
 
 
 @dataclass(frozen=True)
-class Form:
+class LinkForm:
     """A link on paper: corners of its plate (or the two ends of its bar), bars, struts with rigid corners.
 
     joints are its pairs but for the stones on its bars; boxes are those of them where it is the stone itself.
@@ -59,12 +62,12 @@ class Form:
     joints: Sequence[complex] = ()
     boxes: Sequence[complex] = ()
     hull: Sequence[complex] = ()
-    bars: Sequence[Bar] = ()
-    struts: Sequence[Line] = ()
+    bars: Sequence[LinkBar] = ()
+    struts: Sequence[Segment] = ()
     welds: Sequence[tuple[complex, complex, complex]] = ()
 
     @property
-    def lines(self) -> list[Line]:
+    def lines(self) -> list[Segment]:
         """Its straight parts."""
         lines = [bar.tips for bar in self.bars] + list(self.struts)
         if len(self.hull) == 2:
@@ -72,7 +75,7 @@ class Form:
         return lines
 
     @property
-    def edges(self) -> list[Line]:
+    def edges(self) -> list[Segment]:
         """Its straight parts and the sides of its plate."""
         return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
@@ -106,98 +109,100 @@ class Form:
         return None
 
 
-def by_points(sheet: Sheet, scene: Scene, link: str, *, whole: bool = True) -> Form:
+def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, whole: bool = True) -> LinkForm:
     """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them.
 
     Not whole: its guides end at their stones, as thin lines of many positions do.
     """
-    joints = apart(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
-    bars: list[Bar] = []
-    for slide in _guides(scene, link):
+    joints = drop_coincident(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
+    bars: list[LinkBar] = []
+    for slide in _carried_guides(scene, link):
         stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
         (low, high), here = scene.way(slide), scene.run(slide)
-        bar = _bar(bars, stone, along)
+        bar = _bar_through(bars, stone, along)
         for end, side in ((low - here, -along), (high - here, along)) if whole else ():
             tip = stone + end / sheet.mu * along
-            if not any(bar.meets(j) and dot(side, j - tip) > STONE for j in joints):
-                bar.take(border(stone, tip + OVER * side, *sheet.field))
-    return _joined(sheet, scene, link, joints, bars)
+            if not any(bar.meets(j) and dot(side, j - tip) > BLOCK_HALF_LENGTH for j in joints):
+                bar.take(leave_field(stone, tip + GUIDE_OVERHANG * side, *sheet.field))
+    return _join_parts(sheet, scene, link, joints, bars)
 
 
-def by_pairs(sheet: Sheet, scene: Scene, link: str) -> Form:
+def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> LinkForm:
     """The form of a link from its pairs, on paper."""
-    joints = apart(sheet.on(p) for p in scene.joints(link))
-    bars: list[Bar] = []
-    for slide in _guides(scene, link):
+    joints = drop_coincident(sheet.on(p) for p in scene.joints(link))
+    bars: list[LinkBar] = []
+    for slide in _carried_guides(scene, link):
         at, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
-        bar = _bar(bars, at, along)
-        bar.take(at - GUIDE * along)
-        bar.take(at + GUIDE * along)
+        bar = _bar_through(bars, at, along)
+        bar.take(at - GUIDE_REACH * along)
+        bar.take(at + GUIDE_REACH * along)
     for bar in bars:
         for end in scene.ends(link):
             if bar.meets(sheet.on(end)):
                 bar.take(sheet.on(end))
-    return _joined(sheet, scene, link, joints, bars)
+    return _join_parts(sheet, scene, link, joints, bars)
 
 
-def _guides(scene: Scene, link: str) -> list[Slide]:
+def _carried_guides(scene: MechanismScene, link: str) -> list[Slide]:
     """Guides that a link carries, but for those in its cylinders."""
     slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
-    return [slide for slide in slides if slide.name not in cylinders(scene.linkage)]
+    return [slide for slide in slides if slide.name not in cylinder_drivers(scene.linkage)]
 
 
-def _bar(bars: list[Bar], at: complex, along: complex) -> Bar:
+def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
     """The bar on a line through a place: one that is there already, or a new one."""
     same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
     if same is None:
-        same = Bar(at, along, 0.0, 0.0)
+        same = LinkBar(at, along, 0.0, 0.0)
         bars.append(same)
     return same
 
 
-def _lay(bars: list[Bar], start: complex, end: complex) -> None:
+def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
     """A bar between two places (mm), or the one on their line made to reach them."""
     if abs(end - start) > ON_LINE:
-        bar = _bar(bars, start, (end - start) / abs(end - start))
+        bar = _bar_through(bars, start, (end - start) / abs(end - start))
         bar.take(start)
         bar.take(end)
 
 
-def _joined(sheet: Sheet, scene: Scene, link: str, joints: Sequence[complex], bars: list[Bar]) -> Form:
+def _join_parts(
+    sheet: DrawingSheet, scene: MechanismScene, link: str, joints: Sequence[complex], bars: list[LinkBar]
+) -> LinkForm:
     """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
-    driven, boxes = cylinders(scene.linkage), []
+    driven, boxes = cylinder_drivers(scene.linkage), []
     for pair in scene.of(link):
         if pair.slide is not None and pair.name in driven:
-            _lay(bars, *Cylinder.of(sheet, scene, pair.slide).part(link))
+            _lay_bar(bars, *Cylinder.of(sheet, scene, pair.slide).part(link))
         elif pair.slide is not None and pair.slide.runner == link:
             boxes.append(sheet.on(scene.at(pair)))
     for mesh in scene.linkage.meshes:
         for start, end in follower_bars(shape_of(scene, mesh)) if mesh.j == link else ():
-            _lay(bars, sheet.on(start), sheet.on(end))
+            _lay_bar(bars, sheet.on(start), sheet.on(end))
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]
         for place in bar.holds:
             bar.take(place)
-    struts: list[Line] = []
+    struts: list[Segment] = []
     welds: list[tuple[complex, complex, complex]] = []
     for number, bar in enumerate(bars[1:], 1):
-        _join(bars[:number], bar, struts, welds)
+        _join_bars(bars[:number], bar, struts, welds)
     loose = [j for j in joints if not any(bar.meets(j) for bar in bars)]
     if loose and bars:
-        bar, near, foot = _nearest(bars, loose)
+        bar, near, foot = _nearest_joint(bars, loose)
         bar.take(foot)
         if len(loose) > 1 and bar.holds:
             loose.append(foot)
         else:
             struts.append((near, foot))
-            welds.append((foot, near - foot, _longer(bar, foot)))
+            welds.append((foot, near - foot, _longer_arm(bar, foot)))
             # at a hinge, bars of one link would look like two links without a mark
             welds += [(near, foot - near, other - near) for other in loose if other != near]
-    hull = _flat(convex_hull(loose)) if len(loose) > 1 else ()
-    return Form(joints, boxes, hull, bars, struts, welds)
+    hull = _flatten_hull(convex_hull(loose)) if len(loose) > 1 else ()
+    return LinkForm(joints, boxes, hull, bars, struts, welds)
 
 
-def _flat(hull: Sequence[complex]) -> Sequence[complex]:
+def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
     """Corners of a plate; the two ends of one whose corners lie on a line."""
     if len(hull) < 3:
         return hull
@@ -206,24 +211,24 @@ def _flat(hull: Sequence[complex]) -> Sequence[complex]:
     return hull if max(abs(cross(along, p - start)) for p in hull) > ON_LINE else (start, end)
 
 
-def _nearest(bars: Sequence[Bar], loose: Sequence[complex]) -> tuple[Bar, complex, complex]:
+def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[LinkBar, complex, complex]:
     """Where pairs beside the bars are joined to them: at a pair on a bar, or at the foot of the perpendicular."""
 
-    def foot(bar: Bar, place: complex) -> complex:
+    def foot(bar: LinkBar, place: complex) -> complex:
         return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
 
     ways = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
     return min(ways, key=lambda way: abs(way[1] - way[2]))
 
 
-def _longer(bar: Bar, foot: complex) -> complex:
+def _longer_arm(bar: LinkBar, foot: complex) -> complex:
     return max((tip - foot for tip in bar.tips), key=abs)
 
 
-def _join(
-    others: Sequence[Bar],
-    bar: Bar,
-    struts: list[Line],
+def _join_bars(
+    others: Sequence[LinkBar],
+    bar: LinkBar,
+    struts: list[Segment],
     welds: list[tuple[complex, complex, complex]],
 ) -> None:
     """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
@@ -234,7 +239,7 @@ def _join(
             if abs(meet - bar.base) < 150 and abs(meet - other.base) < 150:
                 bar.take(meet)
                 other.take(meet)
-                welds.append((meet, _longer(bar, meet), _longer(other, meet)))
+                welds.append((meet, _longer_arm(bar, meet), _longer_arm(other, meet)))
                 return
     start, end = min(((p, q) for p in bar.tips for other in others for q in other.tips), key=lambda w: abs(w[1] - w[0]))
     struts.append((start, end))

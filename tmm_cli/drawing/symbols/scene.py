@@ -7,8 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper import Sheet
-from tmm_cli.drawing.symbols.wheels import Outline, contact, extent as wheels_extent, outline
+from tmm_cli.drawing.paper import DrawingSheet
+from tmm_cli.drawing.symbols.wheels import (
+    HigherPairOutline,
+    contact_point,
+    higher_pair_outline,
+    outline_extent as wheels_extent,
+)
 from tmm_cli.mechanics.groups import Pose
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.mechanics.numerics import cross, dot, unit
@@ -16,15 +21,18 @@ from tmm_cli.mechanics.plans import extent
 from tmm_cli.mechanics.structure import Pair, Structure
 
 ON_LINE = 0.3  # mm: what still lies on a line
-BEYOND = 6.0  # mm: how far a guide goes on beyond its stone
-APART, ASIDE = 12.0, 19.0  # mm: boxes nearer to one another would cover them; how far one is drawn away then
+GUIDE_EXTENSION = 6.0  # mm: how far a guide goes on beyond its stone
+LEAST_BOX_GAP, BOX_SHIFT = (
+    12.0,
+    19.0,
+)  # mm: boxes nearer to one another would cover them; how far one is drawn away then
 
 
-STILL = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of the frame
+FRAME_POSE = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of the frame
 
 
 @dataclass(frozen=True)
-class Scene:
+class MechanismScene:
     """A linkage with its structure at index k of the poses of its links.
 
     moved: by how much (m) boxes are drawn away from their running points, along their guides.
@@ -58,7 +66,7 @@ class Scene:
 
     def way(self, slide: Slide) -> tuple[float, float]:
         """The least and the largest run in all positions, m."""
-        carrier, runner = (self.poses.get(link, STILL) for link in (slide.carrier, slide.runner))
+        carrier, runner = (self.poses.get(link, FRAME_POSE) for link in (slide.carrier, slide.runner))
         runs = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return float(np.nanmin(runs)), float(np.nanmax(runs))
 
@@ -74,12 +82,12 @@ class Scene:
         if pair.kind == "R":
             link = pair.j if pair.i == FRAME else pair.i
             return self.place(link, self.linkage.local(link, pair.point))
-        return contact(self.higher(pair))
+        return contact_point(self.higher(pair))
 
-    def higher(self, pair: Pair) -> Outline:
+    def higher(self, pair: Pair) -> HigherPairOutline:
         """The wheels, or the cam and its follower, of a higher pair."""
         assert pair.mesh is not None
-        return outline(self, pair.mesh)
+        return higher_pair_outline(self, pair.mesh)
 
     def of(self, link: str) -> tuple[Pair, ...]:
         """The lower pairs of a link."""
@@ -121,29 +129,31 @@ class Scene:
         return complex(row[self.k if row.size > 1 else 0])
 
 
-def fitted(sheet: Sheet, scene: Scene, links: Sequence[str], pad: float, most: float) -> Scene:
+def fit_links(
+    sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str], pad: float, most: float
+) -> MechanismScene:
     """Put these links onto the ground of the sheet; no slider covers another one."""
-    fit(sheet, scene.extent(links), pad, most)
-    parted = spread(sheet, scene, links)
+    fit_points(sheet, scene.extent(links), pad, most)
+    parted = spread_boxes(sheet, scene, links)
     if parted is not scene:
-        fit(sheet, parted.extent(links), pad, most)
-        parted = spread(sheet, scene, links)
-        centre(sheet, parted.extent(links))
+        fit_points(sheet, parted.extent(links), pad, most)
+        parted = spread_boxes(sheet, scene, links)
+        centre_points(sheet, parted.extent(links))
     return parted
 
 
-def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
+def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
     """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
     boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
-    every = apart(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    every = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
     for pair in (p for link in links for p in scene.of(link)):
         if pair.slide is None or pair.slide.carrier != FRAME:
             continue
         at = boxes[pair.name]
-        if any(abs(place - at) < APART for name, place in boxes.items() if name != pair.name):
+        if any(abs(place - at) < LEAST_BOX_GAP for name, place in boxes.items() if name != pair.name):
             others = [place for place in (*every, *boxes.values()) if abs(place - at) > ON_LINE]
-            choices = [at + side * ASIDE * scene.along(pair.slide) for side in (1, -1)]
+            choices = [at + side * BOX_SHIFT * scene.along(pair.slide) for side in (1, -1)]
             # farther from the others; without any, lower
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
             boxes[pair.name] = free
@@ -151,24 +161,24 @@ def spread(sheet: Sheet, scene: Scene, links: Sequence[str]) -> Scene:
     return replace(scene, moved=moved) if moved else scene
 
 
-def scale_to(places: Sequence[complex], room: complex, most: float) -> float:
+def scale_to_fit(places: Sequence[complex], room: complex, most: float) -> float:
     """Metres a millimetre at which places (m) fit into a room (mm) and are not larger than `most` (mm)."""
     larger, across, up, __ = extent(places or [0j])
     return max(across / room.real, up / room.imag, larger / most) or 1.0
 
 
-def fit(sheet: Sheet, places: Sequence[complex], pad: float, most: float) -> None:
+def fit_points(sheet: DrawingSheet, places: Sequence[complex], pad: float, most: float) -> None:
     """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
-    sheet.mu = scale_to(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
-    centre(sheet, places)
+    sheet.mu = scale_to_fit(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    centre_points(sheet, places)
 
 
-def centre(sheet: Sheet, places: Sequence[complex]) -> None:
+def centre_points(sheet: DrawingSheet, places: Sequence[complex]) -> None:
     """Put places (m) into the middle of the ground of the sheet, at its scale."""
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
 
 
-def apart(places: Iterable[complex]) -> list[complex]:
+def drop_coincident(places: Iterable[complex]) -> list[complex]:
     """Places without those that coincide with an earlier one."""
     found: list[complex] = []
     for place in places:
@@ -177,16 +187,16 @@ def apart(places: Iterable[complex]) -> list[complex]:
     return found
 
 
-def to_scale(scene: Scene, places: Sequence[complex]) -> list[complex]:
+def points_to_scale(scene: MechanismScene, places: Sequence[complex]) -> list[complex]:
     """Places (m) with what else must be on a sheet that has them: wheels, cams, ends of springs on the frame."""
     size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
-    found = [*places, *wheels_extent((outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
+    found = [*places, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
         if not spring.turns:
             found += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
     return found
 
 
-def fixed_pivots(linkage: Linkage) -> list[complex]:
+def frame_pivots(linkage: Linkage) -> list[complex]:
     """Hinges with the frame, m."""
     return [complex(linkage.local(FRAME, hinge.point)) for hinge in linkage.hinges if FRAME in hinge.links]

@@ -19,17 +19,19 @@ from tmm_cli.mechanics.linkage import Mesh
 from tmm_cli.mechanics.numerics import Vector, dot, unit
 
 if TYPE_CHECKING:
-    from tmm_cli.drawing.symbols.scene import Scene
+    from tmm_cli.drawing.symbols.scene import MechanismScene
 
 
-ARM, ROLLER = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
-STEPS = 361
-AROUND = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
-LARGE = 3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
+ROLLER_ARM, ROLLER_RADIUS = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
+PROFILE_STEPS = 361
+CIRCLE_ANGLES = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
+LARGE_GEAR = (
+    3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
+)
 
 
 @dataclass(frozen=True)
-class Disc:
+class GearDisc:
     """A wheel of a mesh: its pitch circle (m); ring: it has inner teeth."""
 
     link: str
@@ -39,7 +41,7 @@ class Disc:
 
 
 @dataclass(frozen=True)
-class Teeth:
+class MeshOutline:
     """A mesh of a wheel with a wheel or a rack: pitch point, direction of the pitch line there, wheels.
 
     side: from the pitch point to where the rack is (a unit vector), for racks; start is its running point.
@@ -48,13 +50,13 @@ class Teeth:
     mesh: Mesh
     pitch: complex
     along: complex
-    discs: tuple[Disc, ...]
+    discs: tuple[GearDisc, ...]
     side: complex = 0j
     start: complex = 0j
 
 
 @dataclass(frozen=True)
-class CamShape:
+class CamOutline:
     """A cam's disk about its axis, where its follower touches it, and the follower: face or arm, roller's radius.
 
     true: it is the cam that has this flat-faced follower, at its running point; else only a sign for one.
@@ -70,65 +72,67 @@ class CamShape:
     true: bool = False
 
 
-Outline = Teeth | CamShape
+HigherPairOutline = MeshOutline | CamOutline
 
 
-def outline(scene: Scene, mesh: Mesh) -> Outline:
+def higher_pair_outline(scene: MechanismScene, mesh: Mesh) -> HigherPairOutline:
     """A higher pair at a pose."""
     if mesh.kind == "cam":
-        return _flat_faced(scene, mesh) if mesh.slide else _with_roller(scene, mesh)
-    return _gear(scene, mesh) if mesh.kind == "gear" else _rack(scene, mesh)
+        return _flat_faced_cam(scene, mesh) if mesh.slide else _roller_cam(scene, mesh)
+    return _gear_outline(scene, mesh) if mesh.kind == "gear" else _rack_outline(scene, mesh)
 
 
-def _axis(scene: Scene, mesh: Mesh, link: str) -> complex:
+def _axis_point(scene: MechanismScene, mesh: Mesh, link: str) -> complex:
     """Where the axis of a wheel or cam is, m."""
     return scene.place(mesh.carrier, axis(scene.linkage, link, mesh.carrier))
 
 
-def _turned(scene: Scene, mesh: Mesh) -> float:
+def _cam_angle(scene: MechanismScene, mesh: Mesh) -> float:
     """The angle of a cam from its carrier, rad."""
     return scene.turn(mesh.i) - scene.turn(mesh.carrier)
 
 
-def contact(found: Outline) -> complex:
+def contact_point(found: HigherPairOutline) -> complex:
     """Where the two links touch, m."""
-    return found.pitch if isinstance(found, Teeth) else found.touch
+    return found.pitch if isinstance(found, MeshOutline) else found.touch
 
 
-def bars(found: Outline) -> list[tuple[complex, complex]]:
+def follower_segments(found: HigherPairOutline) -> list[tuple[complex, complex]]:
     """Straight parts of a cam's follower, m: its stem, and its face or none where it has a roller."""
-    return [] if isinstance(found, Teeth) else [part for part in (found.stem, found.face) if part[0] != part[1]]
+    return [] if isinstance(found, MeshOutline) else [part for part in (found.stem, found.face) if part[0] != part[1]]
 
 
-def extent(found: Iterable[Outline], size: float, links: Collection[str] | None = None) -> list[complex]:
+def outline_extent(
+    found: Iterable[HigherPairOutline], size: float, links: Collection[str] | None = None
+) -> list[complex]:
     """Places that must be on the sheet, m: of all links or some; `size` is that of the rest of the mechanism (m)."""
     places: list[complex] = []
     for one in found:
-        if isinstance(one, CamShape):
+        if isinstance(one, CamOutline):
             places += [*one.disk.tolist(), one.touch, *one.face]
             continue
         if one.side != 0 and (links is None or one.mesh.j in links):
             places.append(one.pitch)
         apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
         for disc in one.discs:
-            if disc.radius < LARGE * max(size, apart) and (links is None or disc.link in links):
-                places += [disc.centre + disc.radius * complex(unit(turn)) for turn in AROUND]
+            if disc.radius < LARGE_GEAR * max(size, apart) and (links is None or disc.link in links):
+                places += [disc.centre + disc.radius * complex(unit(turn)) for turn in CIRCLE_ANGLES]
     return [p for p in places if np.isfinite(p)]
 
 
-def _gear(scene: Scene, mesh: Mesh) -> Teeth:
-    one, other = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
+def _gear_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
+    one, other = (_axis_point(scene, mesh, link) for link in (mesh.i, mesh.j))
     pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
     radii = abs(pitch - one), abs(pitch - other)
     inner = mesh.ratio > 0
     discs = (
-        Disc(mesh.i, one, radii[0], inner and radii[0] > radii[1]),
-        Disc(mesh.j, other, radii[1], inner and radii[1] > radii[0]),
+        GearDisc(mesh.i, one, radii[0], inner and radii[0] > radii[1]),
+        GearDisc(mesh.j, other, radii[1], inner and radii[1] > radii[0]),
     )
-    return Teeth(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
+    return MeshOutline(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
 
 
-def _guided(scene: Scene, mesh: Mesh) -> tuple[complex, complex]:
+def _guide_direction(scene: MechanismScene, mesh: Mesh) -> tuple[complex, complex]:
     """Of a rack or a sliding follower: the way in which it goes, and its running point."""
     slide = scene.linkage.slide(mesh.slide)
     if slide.runner == mesh.j:
@@ -136,20 +140,20 @@ def _guided(scene: Scene, mesh: Mesh) -> tuple[complex, complex]:
     return -scene.along(slide), scene.place(slide.carrier, slide.through)
 
 
-def _rack(scene: Scene, mesh: Mesh) -> Teeth:
-    forward, start = _guided(scene, mesh)
-    centre = _axis(scene, mesh, mesh.i)
+def _rack_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
+    forward, start = _guide_direction(scene, mesh)
+    centre = _axis_point(scene, mesh, mesh.i)
     side = -1j * forward * math.copysign(1.0, mesh.ratio)
     pitch = centre + side * abs(mesh.ratio)
-    return Teeth(mesh, pitch, forward, (Disc(mesh.i, centre, abs(mesh.ratio)),), side, start)
+    return MeshOutline(mesh, pitch, forward, (GearDisc(mesh.i, centre, abs(mesh.ratio)),), side, start)
 
 
-def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
+def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
     assert mesh.law is not None
-    forward, runs = _guided(scene, mesh)
-    centre, angle = _axis(scene, mesh, mesh.i), _turned(scene, mesh)
-    turn = np.linspace(0, 2 * np.pi, STEPS)
+    forward, runs = _guide_direction(scene, mesh)
+    centre, angle = _axis_point(scene, mesh, mesh.i), _cam_angle(scene, mesh)
+    turn = np.linspace(0, 2 * np.pi, PROFILE_STEPS)
     rise, slope, bend = mesh.law(turn)
     now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
     height = float(dot(forward, runs - centre)) - now
@@ -165,32 +169,32 @@ def _flat_faced(scene: Scene, mesh: Mesh) -> CamShape:
     foot = centre + (height + now) * forward
     reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward
     touch = foot - 1j * slope_now * forward
-    return CamShape(mesh, centre, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
+    return CamOutline(mesh, centre, disk, touch, (foot - reach, foot + reach), (foot, runs), true=true)
 
 
-def _with_roller(scene: Scene, mesh: Mesh) -> CamShape:
+def _roller_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     """The disk of a roller on a follower that swings."""
     assert mesh.law is not None
-    centre, pivot = (_axis(scene, mesh, link) for link in (mesh.i, mesh.j))
-    turn = np.linspace(0, 2 * np.pi, STEPS)
-    rise, angle = mesh.law(turn)[0], _turned(scene, mesh)
+    centre, pivot = (_axis_point(scene, mesh, link) for link in (mesh.i, mesh.j))
+    turn = np.linspace(0, 2 * np.pi, PROFILE_STEPS)
+    rise, angle = mesh.law(turn)[0], _cam_angle(scene, mesh)
     middle = (float(np.max(rise)) + float(np.min(rise))) / 2
     outward = 1.0 if middle >= 0 else -1.0  # a rise leads away from the cam
-    arm = ARM * (centre - pivot) * complex(unit(outward * math.acos(ARM)))
+    arm = ROLLER_ARM * (centre - pivot) * complex(unit(outward * math.acos(ROLLER_ARM)))
     path = centre + (pivot + arm * unit(rise - middle) - centre) * unit(angle - turn)
     now = float(mesh.law(np.array(angle))[0])
     here = pivot + arm * complex(unit(now - middle))
     tangent = np.gradient(path)
     normal = 1j * tangent / np.maximum(np.abs(tangent), 1e-300)
     normal = normal * np.sign(dot(normal, centre - path))
-    roller = ROLLER * abs(centre - pivot)
+    roller = ROLLER_RADIUS * abs(centre - pivot)
     disk = path + roller * normal
     touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
-    return CamShape(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
+    return CamOutline(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
 
 
 @dataclass(frozen=True)
-class Replacement:
+class ReplacementLink:
     """The link in place of a higher pair, m: from the centre of curvature of i's profile to that of j's.
 
     slides: the profile of j is straight, so the link slides along it at `end` instead of turning about a centre.
@@ -201,23 +205,23 @@ class Replacement:
     slides: bool
 
 
-def replacement(found: Outline) -> Replacement:
+def replacement_link(found: HigherPairOutline) -> ReplacementLink:
     """The replacing link at a pose (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
 
     Involute teeth touch along a common tangent of their base circles, where the centres of curvature lie.
     """
-    if isinstance(found, Teeth):
+    if isinstance(found, MeshOutline):
         mesh = found.mesh
         line = found.along * complex(unit(mesh.pressure))
         centres = [found.pitch + line * float(dot(line, disc.centre - found.pitch)) for disc in found.discs]
-        return Replacement(centres[0], centres[1] if len(centres) > 1 else found.pitch, len(centres) == 1)
-    centre = _curved_about(found.disk, found.touch)
+        return ReplacementLink(centres[0], centres[1] if len(centres) > 1 else found.pitch, len(centres) == 1)
+    centre = _curvature_centre(found.disk, found.touch)
     if found.roller:
-        return Replacement(centre, found.stem[1], False)
-    return Replacement(centre, found.touch, True)
+        return ReplacementLink(centre, found.stem[1], False)
+    return ReplacementLink(centre, found.touch, True)
 
 
-def _curved_about(disk: Vector, touch: complex) -> complex:
+def _curvature_centre(disk: Vector, touch: complex) -> complex:
     """The centre of curvature of a closed outline near a place: that of the circle through three points about it."""
     size = len(disk)
     at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tmm_cli.drawing.paper import safe
+from tmm_cli.drawing.paper import file_safe_name
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Applied, Symbol, balance_symbol, load_symbols
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
@@ -161,7 +161,7 @@ def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
         return
     here, link = subject.position(k), f"link-{drawn.link.links[0]}"
     names = ("group-loads", "forces", "lever")
-    stems = [safe(here.stem(name) if name == "lever" else f"{here.stem(name)}-{link}") for name in names]
+    stems = [file_safe_name(here.stem(name) if name == "lever" else f"{here.stem(name)}-{link}") for name in names]
     scales = drawn.scales()
     if subject.drawn:
         scales = Scales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))

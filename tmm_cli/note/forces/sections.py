@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from tmm_cli.drawing.paper import safe
-from tmm_cli.drawing.sheets import sheetfuls
+from tmm_cli.drawing.paper import file_safe_name
+from tmm_cli.drawing.sheets import split_equations
 from tmm_cli.language import _, filled
 from tmm_cli.mechanics.forces import (
     DRIVE,
@@ -126,14 +126,14 @@ class Part:
         """The scale of the drawing on which the arms of an equation are, m/mm; None where arms are told in metres."""
         if self.subject.results.problem.note_style.arms != "paper":
             return None
-        number = next(n for n, few in enumerate(sheetfuls(self.loaded.equations)) if equation in few)
+        number = next(n for n, few in enumerate(split_equations(self.loaded.equations)) if equation in few)
         stem = self.stem("group-loads") + (f"-sheet-{number + 1}" if number else "")
         return self.subject.scale("group-loads", self.here.k, stem)
 
     def stem(self, name: str) -> str:
         """Of its drawing."""
         kind = "links" if len(self.links) > 1 else "link"
-        return safe("-".join([self.subject.position(self.here.k).stem(name), kind, *self.links]))
+        return file_safe_name("-".join([self.subject.position(self.here.k).stem(name), kind, *self.links]))
 
 
 def parts_of(subject: Subject, k: int) -> Iterable[Part]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from tmm_cli.drawing.paper import Picture
+from tmm_cli.drawing.paper import SheetPicture
 from tmm_cli.language import _, symbol
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.kinematics import Strokes, Travel
@@ -140,7 +140,7 @@ def positions(subject: Subject) -> Iterable[Block]:
     if count > 1:
         yield said(text, count=str(count))
     for drawing in subject.drawings("positions").values():
-        if isinstance(drawing, Picture) and drawing.mu is not None:
+        if isinstance(drawing, SheetPicture) and drawing.mu is not None:
             text = _("The scale factor of the plan of positions is {mu} = {value} m/mm.")
             yield said(text, mu=Symbol("μ", "l"), value=subject.text(drawing.mu))
     yield from subject.figures(

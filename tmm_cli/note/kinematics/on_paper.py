@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from tmm_cli.drawing.paper import Picture
-from tmm_cli.drawing.sheets import Sort, sorts
+from tmm_cli.drawing.paper import SheetPicture
+from tmm_cli.drawing.sheets import MotionPlanKind, motion_plan_kinds
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.kinematics import Motion
@@ -46,9 +46,9 @@ class OnPaper:
     name: Literal["velocity", "acceleration"]
 
     @cached_property
-    def sort(self) -> Sort:
+    def sort(self) -> MotionPlanKind:
         """Its letters and units."""
-        return next(sort for sort in sorts() if sort.stem == self.name)
+        return next(sort for sort in motion_plan_kinds() if sort.stem == self.name)
 
     @cached_property
     def plan(self) -> Plan:
@@ -59,7 +59,7 @@ class OnPaper:
     def mu(self) -> float:
         """SI a millimetre: of its drawing, or as it would be drawn."""
         for drawing in self.subject.drawings(self.name, self.k).values():
-            if isinstance(drawing, Picture) and drawing.mu is not None:
+            if isinstance(drawing, SheetPicture) and drawing.mu is not None:
                 return drawing.mu
         longest = OF_POSITION[self.name][1]
         __, across, up, ___ = extent([0j, *(p for v in self.plan.vectors for p in (v.start, v.end))])
