@@ -48,14 +48,14 @@ from tmm_cli.mechanics.accuracy import at, exact
 from tmm_cli.mechanics.numerics import array, exactly, rounded
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import (
-    FOREIGN,
+    KEYS_IN_OTHER_LANGUAGES,
     SYMBOLS,
     File,
     ProblemError,
     SpatialFile,
+    build_any_problem,
     build_chain,
     is_chain,
-    problem_of,
     read_text,
 )
 from tmm_cli.reports import accuracy, cells_with_digits, computed_tables, json_text, keys_of, sections, walk
@@ -240,7 +240,9 @@ class Grammar:
             name, one = self.random.choice(list(model.model_fields.items()))
             own[one.alias or name] = self.value(one.annotation)
         elif isinstance(spot.parent, dict):
-            spot.parent[self.random.choice([self.name(), *FOREIGN, str(spot.key) + "s"])] = spot.parent.pop(spot.key)
+            spot.parent[self.random.choice([self.name(), *KEYS_IN_OTHER_LANGUAGES, str(spot.key) + "s"])] = (
+                spot.parent.pop(spot.key)
+            )
         else:
             spot.parent.insert(spot.key, deepcopy(own))  # of rows of a table: a jump
 
@@ -425,7 +427,7 @@ def _ended(text: str, solving: bool) -> tuple[str, str]:
             if is_chain(tree):
                 build_chain(tree)
                 return "loaded", ""
-            problem = problem_of(tree)
+            problem = build_any_problem(tree)
             if "synthesis" in tree.data and tree.data["synthesis"]["task"] == "optimal":
                 read_task(tree)  # which a file with a search does not need before it is solved
             if not solving:

@@ -36,7 +36,7 @@ from tmm_cli.bench import (
 )
 from tmm_cli.bench.methods import board
 from tmm_cli.mechanics.plans import sheet_scale
-from tmm_cli.problem import problem_of, read_text
+from tmm_cli.problem import build_any_problem, read_text
 from tmm_cli.synthesis import load
 
 BY_NAME = {method.name: method for method in METHODS}
@@ -73,7 +73,7 @@ def test_references_are_what_sixty_digits_say(name, k):
 
 def test_references_are_of_the_linkages_of_the_bank(name):
     content = json.loads((DATA / f"{name}.json").read_text(encoding="utf-8"))
-    assert problem_of(read_text(content["problem"], name)).linkage == load(str(BANK / f"{name}.yaml")).linkage
+    assert build_any_problem(read_text(content["problem"], name)).linkage == load(str(BANK / f"{name}.yaml")).linkage
 
 
 def test_references_have_forces_in_every_pair_and_points_on_every_moving_link(name):

@@ -8,13 +8,13 @@ from dataclasses import replace
 from test_commands import ROOT, tmm
 
 from tmm_cli.bench import Figure, Grades, grading, grading_task_text
-from tmm_cli.problem import problem_of, read_text
+from tmm_cli.problem import build_any_problem, read_text
 from tmm_cli.synthesis import load
 
 
 def test_the_task_is_the_six_bar_of_the_bank_with_twelve_answers():
     bank = load(str(ROOT / "problems" / "six-bar.yaml"))
-    assert problem_of(read_text(grading_task_text(), "six-bar")).linkage == bank.linkage
+    assert build_any_problem(read_text(grading_task_text(), "six-bar")).linkage == bank.linkage
     assert len(grading.group(2).task.asked) == 12
 
 

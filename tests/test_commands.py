@@ -23,7 +23,7 @@ from bank import EVERY, solved
 from rich.console import Console
 
 from tmm_cli.cli import COMMANDS, MEASUREMENTS, main
-from tmm_cli.problem import UnitSystem, list_templates, template_text, translations
+from tmm_cli.problem import UnitSystem, list_templates, load_translations, template_text
 from tmm_cli.reports import (
     MORE_ROWS,
     MORE_ROWS_AS_JSON,
@@ -336,8 +336,8 @@ def test_templates_are_the_same_problems_in_every_language(language):
         assert translated == data
         assert max(map(len, other.split("\n"))) <= 120
         plain = re.sub(r"\n *# ", " ", other)
-        used |= {e["en"] for e in translations() if e[language].replace("{file}", f"{name}.yaml") in plain}
-    assert used == {entry["en"] for entry in translations()}
+        used |= {e["en"] for e in load_translations() if e[language].replace("{file}", f"{name}.yaml") in plain}
+    assert used == {entry["en"] for entry in load_translations()}
 
 
 def test_a_template_has_the_comments_of_the_language_and_the_name_of_its_file(tmp_path):

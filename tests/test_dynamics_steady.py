@@ -29,7 +29,7 @@ from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillEr
 from tmm_cli.mechanics.forces import applied, react
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import move
-from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.problem import ProblemError, build_any_problem, read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TURN = 2 * np.pi
@@ -288,7 +288,7 @@ def test_the_flywheel_takes_what_the_links_leave_of_the_driving_moment():
 
 def with_ram(mass):
     text = (PROBLEMS / "shaper-motor.yaml").read_text().replace("5: {mass: 52 kg", f"5: {{mass: {mass} kg")
-    return problem_of(read_text(text, "shaper.yaml"))
+    return build_any_problem(read_text(text, "shaper.yaml"))
 
 
 @pytest.mark.parametrize("mass", ["5e11", "5.00000000000001e11", "2e11"])
@@ -322,7 +322,7 @@ def test_a_fluctuation_that_is_kept_already_is_told_with_what_keeps_it(flywheel,
         "delta: 1/80, flywheel: {shape: rim", f"mean speed: 6000 rpm, delta: 0.9, flywheel: {{shape: rim{flywheel}"
     )
     with pytest.raises(ProblemError, match=f"the fluctuation is smaller than this {how}"):
-        solve(problem_of(read_text(text, "engine.yaml")))
+        solve(build_any_problem(read_text(text, "engine.yaml")))
 
 
 LIGHT_ENGINE = """tmm: 1

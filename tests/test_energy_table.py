@@ -9,7 +9,7 @@ from fuzz import beyond
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.problem import problem_of, read_text
+from tmm_cli.problem import build_any_problem, read_text
 from tmm_cli.reports import energy_tables as tables
 
 
@@ -25,4 +25,4 @@ def test_its_bound_has_nothing_of_speeds_in_it():
     text = (PROBLEMS / "hanger.yaml").read_text(encoding="utf-8")
     slow = text.replace("speed: 10 deg/s", "speed: 1e-8 deg/s")
     assert slow != text
-    assert beyond(solve(problem_of(read_text(slow, "x.yaml")))) is None
+    assert beyond(solve(build_any_problem(read_text(slow, "x.yaml")))) is None

@@ -15,7 +15,7 @@ from tmm_cli.problem import (
     UnitSystem,
     ValueReader,
     VariedUnits,
-    build_shape,
+    build_from_shape,
     evaluate_quantity,
     read_file,
     resolve_parameters,
@@ -35,7 +35,7 @@ def maker(name, given):
         units = VariedUnits(units) if any(isinstance(x, TracedNumber) for x in numbers) else units
         varied = {key: PhysicalValue(x, known[key].dimension) for key, x in zip(given, numbers, strict=True)}
         values = ValueReader(varied | resolve_parameters(rest, units, varied), units)
-        linkage = build_shape(shape, tree, values).linkage
+        linkage = build_from_shape(shape, tree, values).linkage
         always = tuple(replace(load, when="always") for load in linkage.loads if load.table is None)
         linkage = replace(linkage, loads=always)
         return Variant(linkage, Request(start=linkage.sketch.at))

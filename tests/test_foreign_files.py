@@ -15,7 +15,7 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli.mechanics.analysis import at_places
-from tmm_cli.problem import DIGITS, ProblemError, foreign_of, problem_of, read_text, written
+from tmm_cli.problem import DIGITS, ProblemError, build_any_problem, problem_file_text, read_mechanism, read_text
 from tmm_cli.synthesis import load, solve
 
 FILES = ROOT / "tests" / "data" / "foreign"
@@ -26,8 +26,8 @@ MIRRORED = {"otis-four-bar": "EFH", "stephenson-iii": "EFH"}
 
 def imported(text, file="file"):
     """The foreign record, and its kinematics by the problem file that is written of it."""
-    foreign = foreign_of(text, file)
-    return foreign, solve(problem_of(read_text(written(foreign, file), file)), "kinematics")
+    foreign = read_mechanism(text, file)
+    return foreign, solve(build_any_problem(read_text(problem_file_text(foreign, file), file)), "kinematics")
 
 
 def places(results, angle, names):
@@ -431,7 +431,7 @@ REFUSED = {
 @pytest.mark.parametrize("text", REFUSED)
 def test_a_mistake_in_a_foreign_file_is_said_with_its_place(text):
     with pytest.raises(ProblemError) as refused:
-        foreign_of(text, "file")
+        read_mechanism(text, "file")
     assert str(refused.value).startswith(REFUSED[text])
 
 

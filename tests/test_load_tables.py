@@ -17,7 +17,7 @@ from tmm_cli.mechanics.accuracy import bounds, judged
 from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.mechanics.dynamics import reduced_machine
 from tmm_cli.mechanics.numerics import DoubleDouble, Table, rounded
-from tmm_cli.problem import problem_of, read_text, template_text
+from tmm_cli.problem import build_any_problem, read_text, template_text
 from tmm_cli.reports import collect_warnings, input_data_tables
 from tmm_cli.sweep import Mechanisms, read_axes, swept
 
@@ -190,7 +190,7 @@ def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
 def test_where_a_table_jumps_from_its_end_to_its_beginning_rounding_does_not_choose_the_side(against, turns, positions):
     table = "[[0, 260 N], [180, 100 N], [360, 0]]"
     text = CRANK_SLIDER.format(against=against, table=table).replace("turns: cw", f"turns: {turns}")
-    results = solve(problem_of(read_text(f"{text}positions: {positions}\n", "x.yaml")))
+    results = solve(build_any_problem(read_text(f"{text}positions: {positions}\n", "x.yaml")))
     assert beyond(results) is None
     if against == "crank angle":
         at_zero = np.abs(np.sin(results.motion.q / 2)) < 1e-6
@@ -201,7 +201,7 @@ def test_where_a_table_jumps_from_its_end_to_its_beginning_rounding_does_not_cho
 def test_a_law_of_motion_tells_of_a_table_that_does_not_close(last, told):
     text = CRANK_SLIDER.format(against="crank angle", table=f"[[0, 500], [90, 800], [360, {last}]]")
     text += "masses: {3: {mass: 1}}\ndynamics: {flywheel: {inertia: 9}}\n"
-    results = solve(problem_of(read_text(text, "x.yaml")))
+    results = solve(build_any_problem(read_text(text, "x.yaml")))
     said = [one for one in collect_warnings(results) if "begins with 500 N and ends with 100 N" in one]
     assert len(said) == told
 
@@ -215,7 +215,7 @@ def slider(against, rows, *, more="", turns="cw", between="linear"):
     text = CRANK_SLIDER.format(against=against, table=table).replace("turns: cw", f"turns: {turns}")
     if more:  # a load that does work in a cycle
         text = text.replace("gas: {on: 3,", "gas: {on: 3, when: working stroke,")
-    return solve(problem_of(read_text(f"{text}positions: {{count: 37, from: 3}}\n{more}", "x.yaml")))
+    return solve(build_any_problem(read_text(f"{text}positions: {{count: 37, from: 3}}\n{more}", "x.yaml")))
 
 
 @pytest.mark.parametrize("between", ["linear", "step", "smooth"])
@@ -245,14 +245,16 @@ def test_shares_may_be_in_per_cent_and_of_a_swing():
     text = (ROOT / "problems/crank-rocker.yaml").read_text("utf-8")
     rocker = "loads: {M: {on: 3, when: working stroke, moment: {against: AGAINST, table: TABLE}}}\n"
     text = text[: text.index("loads:")] + rocker + "output: 3\npositions: {count: 24}\n"
-    psi = solve(problem_of(read_text(text.replace("AGAINST", "stroke").replace("TABLE", "[[0, 1], [1, 1]]"), "x")))
+    psi = solve(
+        build_any_problem(read_text(text.replace("AGAINST", "stroke").replace("TABLE", "[[0, 1], [1, 1]]"), "x"))
+    )
     swing = np.degrees(float(psi.strokes.travel))
     found = []
     for against, table in (
         ("stroke", f"[[0, -20], [{0.25 * float(swing)!r}, -80], [{float(swing)!r}, -50]]"),
         ("share of stroke", "[[0, -20], [25 %, -80], [100 %, -50]]"),
     ):
-        own = problem_of(read_text(text.replace("AGAINST", against).replace("TABLE", table), "x"))
+        own = build_any_problem(read_text(text.replace("AGAINST", against).replace("TABLE", table), "x"))
         found.append(solve(own).reactions.balance.moment)
     assert np.ptp(found[0]) > 10
     assert found[1] == pytest.approx(found[0], rel=1e-9)
@@ -302,7 +304,7 @@ def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
 
 def test_shares_are_told_as_they_are_written():
     text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [5 %, 5 kN], [1, 2 kN]]")
-    *_, told = input_data_tables(problem_of(read_text(text, "x.yaml")))
+    *_, told = input_data_tables(build_any_problem(read_text(text, "x.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
     assert told.title == "gas against the share of the stroke"
@@ -369,7 +371,9 @@ def test_energy_of_a_moment_that_jumps_is_exact_over_the_cycle():
     )
     for turns in ("ccw", "cw"):
         own = text.replace("turns: cw", f"turns: {turns}")
-        results = solve(problem_of(read_text(f"{own}positions: {{at: [59, 60, 61, 179, 180, 181]}}\n", "x.yaml")))
+        results = solve(
+            build_any_problem(read_text(f"{own}positions: {{at: [59, 60, 61, 179, 180, 181]}}\n", "x.yaml"))
+        )
         mean = (10 * 120 + 40 * 240) / 360
         work = np.radians(120) * (mean - 10)
         largest = results.running.steady.law.energy
@@ -383,7 +387,7 @@ def test_many_positions_at_once_and_digits_know_a_table_that_jumps():
     text = CRANK_SLIDER.format(
         against="crank angle", table="[[0, 0], [90, 0], [90, 5 kN], [200, 2 kN], [200, 0], [360, 0]]"
     )
-    problem = problem_of(read_text(f"{text}positions: {{at: [10, 90, 120, 200, 300]}}\n", "x.yaml"))
+    problem = build_any_problem(read_text(f"{text}positions: {{at: [10, 90, 120, 200, 300]}}\n", "x.yaml"))
     results = solve(problem)
     assert prepare(problem)(results.motion.q)["T.1"] == pytest.approx(results.reactions.balance.moment, abs=1e-9)
     forces = np.radians([0, 5000, 5000 - 3000 * 30 / 110, 0, 0])
@@ -460,7 +464,7 @@ def test_the_template_of_a_shaper_shows_a_table_in_shares_that_runs():
     (first,) = (k for k, line in enumerate(lines) if "share of stroke, table" in line)
     table = "\n".join(line.replace("  #", "  ", 1) for line in lines[first : first + 2])
     whole = text.replace("  F: {on: 5, at: [100, 30], force: [1500, 0], when: working stroke}", table)
-    results = solve(problem_of(read_text(whole, "shaper.yaml")))
+    results = solve(build_any_problem(read_text(whole, "shaper.yaml")))
     assert not [one for one in collect_warnings(results) if "table" in one]
     (load,) = [one for one in results.loads if one.name == "F"]
     share = (results.motion.named("E").x.real - results.strokes.strokes[0].low) / results.strokes.strokes[0].run
@@ -478,7 +482,7 @@ def test_tables_of_the_bank_against_the_stroke_end_with_it():
 def test_variants_of_one_mechanism_may_jump_at_different_angles():
     def linkage(angle):
         table = f"[[0, 0], [{angle}, 0], [{angle}, 5 kN], [200, 2 kN], [200, 0], [360, 0]]"
-        return problem_of(read_text(CRANK_SLIDER.format(against="crank angle", table=table), "x.yaml")).linkage
+        return build_any_problem(read_text(CRANK_SLIDER.format(against="crank angle", table=table), "x.yaml")).linkage
 
     q, each = np.radians([50.0, 85, 95, 120, 300]), [linkage(angle) for angle in (80, 90, 100)]
     together = prepare_all(each)(q)["T.1"]
@@ -495,6 +499,6 @@ def test_a_sweep_finds_the_peak_of_a_load_that_jumps():
     found = swept(Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:2"]), ["M_b"]))
     assert found.taped
     for (crank,), (peak,) in zip(found.points, found.values, strict=True):
-        own = solve(problem_of(read_text(text.replace("OA: 50", f"OA: {crank}"), "x.yaml")))
+        own = solve(build_any_problem(read_text(text.replace("OA: 50", f"OA: {crank}"), "x.yaml")))
         moment = at_places(own, np.linspace(0, 2 * np.pi, 20_001)).reactions.balance.moment
         assert peak == pytest.approx(np.max(np.abs(moment)), rel=1e-6)

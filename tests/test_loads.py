@@ -11,7 +11,7 @@ from tmm_cli import prepare, solve
 from tmm_cli.mechanics.analysis import at_positions
 from tmm_cli.mechanics.dynamics import reduced_machine
 from tmm_cli.mechanics.numerics import Table
-from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import collect_warnings, doubts, input_data_tables
 
 MACHINE = """tmm: 1
@@ -30,7 +30,7 @@ STROKE = 0.1  # m
 
 def solved(tail, turns="ccw"):
     return solve(
-        problem_of(read_text(f"{MACHINE.replace('turns: ccw', f'turns: {turns}')}output: 3\n{tail}", "x.yaml"))
+        build_any_problem(read_text(f"{MACHINE.replace('turns: ccw', f'turns: {turns}')}output: 3\n{tail}", "x.yaml"))
     )
 
 
@@ -78,7 +78,7 @@ def test_friction_changes_its_sense_where_the_slider_turns_back(turns):
 @pytest.mark.parametrize("drawn_at", [0, 40, 77, 131])
 def test_what_stays_at_rest_is_not_resisted_however_the_drawing_lies(drawn_at):
     """The coupler of a parallelogram only translates, and the hinges on the frame do not move."""
-    problem = problem_of(
+    problem = build_any_problem(
         read_text(
             f"""tmm: 1
 parameters: {{b: {drawn_at} deg, c: {60 + drawn_at} deg}}
@@ -297,16 +297,18 @@ def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
     own = "  2: {points: [A, B], length: 150, also: {S2: [75, 10]}}"
     machine = MACHINE.replace("  2: {points: [A, B], length: 150}", own)
     mass = "masses: {{2: {{mass: 1 kg, inertia: 0.01, centre: {}}}}}\n"
-    point = complex(solve(problem_of(read_text(machine + mass.format("S2"), "x.yaml"))).linkage.links["2"].centre)
+    point = complex(
+        solve(build_any_problem(read_text(machine + mass.format("S2"), "x.yaml"))).linkage.links["2"].centre
+    )
     assert point == pytest.approx(0.075 + 0.01j)
     with pytest.raises(ProblemError) as refusal:
-        problem_of(read_text(machine + mass.format("[75, 0]"), "x.yaml"))
+        build_any_problem(read_text(machine + mass.format("[75, 0]"), "x.yaml"))
     assert "this centre of mass is called S2, and so is another point" in str(refusal.value)
 
 
 def work_warnings(tail, output="3"):
     text = f"{MACHINE}output: {output}\n{tail}"
-    return [w for w in collect_warnings(solve(problem_of(read_text(text, "x.yaml")))) if w.startswith("load F ")]
+    return [w for w in collect_warnings(solve(build_any_problem(read_text(text, "x.yaml")))) if w.startswith("load F ")]
 
 
 @pytest.mark.parametrize(("turns", "window"), [("ccw", (84.401, 259.985)), ("cw", (-100.016, 84.402))])
@@ -333,13 +335,13 @@ positions: {{from: working stroke}}
     bottom = 180 + math.degrees(math.acos(20 / (160 - 45)))  # the crank points away from B
     expected = (top, bottom) if turns == "ccw" else (bottom - 360, top)
     assert window == pytest.approx(expected, abs=1e-3) and window[0] <= expected[0] and window[1] >= expected[1]
-    driving = solve(problem_of(read_text(text.format(turns=turns, when="working stroke"), "x.yaml")))
+    driving = solve(build_any_problem(read_text(text.format(turns=turns, when="working stroke"), "x.yaml")))
     when = f"when: [{window[0]:.10g} deg, {window[1]:.10g} deg]"
     assert [w for w in collect_warnings(driving) if w.startswith("load gas")] == [
         "load gas acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
         f"other stroke: output: {{link: 3, working: forward}}. In an engine, where the gas drives the piston: {when}"
     ]
-    windowed = solve(problem_of(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))
+    windowed = solve(build_any_problem(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))
     assert not [w for w in collect_warnings(windowed) if w.startswith("load gas")]
     rod, same_rod = (solved.reactions.of("A").force for solved in (driving, windowed))
     assert np.all(np.abs(same_rod - rod) <= 1e-9 * np.max(np.abs(rod))) and np.max(np.abs(rod)) > 20_000

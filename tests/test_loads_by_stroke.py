@@ -11,7 +11,7 @@ from tmm_cli import load, prepare, solve
 from tmm_cli.batch import Task, read_task
 from tmm_cli.grading import Given, Submission, VariantTable, grade
 from tmm_cli.mechanics.accuracy import judged
-from tmm_cli.problem import ProblemError, build_problem, problem_of, read_text
+from tmm_cli.problem import ProblemError, build_any_problem, build_problem, read_text
 from tmm_cli.reports import input_data_tables
 from tmm_cli.sweep import Mechanisms, read_axes, swept
 
@@ -142,7 +142,7 @@ def test_a_sweep_solves_each_mechanism_with_the_strokes_of_both_pistons():
     assert found.taped
     for (crank,), (largest,) in zip(found.points, found.values, strict=True):
         closely = TWO_PISTONS.replace("r: 50", f"r: {crank}").replace("count: 12", "count: 3600")
-        moment = solve(problem_of(read_text(closely, "pistons.yaml"))).reactions.balance.moment
+        moment = solve(build_any_problem(read_text(closely, "pistons.yaml"))).reactions.balance.moment
         assert largest == pytest.approx(np.max(np.abs(moment)), rel=1e-5)
 
 
@@ -174,12 +174,14 @@ def test_tables_of_the_file_name_the_link_whose_stroke_it_is():
 )
 def test_a_stroke_that_there_is_not_is_refused(written, message, found):
     with pytest.raises(ProblemError) as error:
-        solve(problem_of(read_text(TWO_PISTONS.replace("against: stroke", f"against: {written}"), "pistons.yaml")))
+        solve(
+            build_any_problem(read_text(TWO_PISTONS.replace("against: stroke", f"against: {written}"), "pistons.yaml"))
+        )
     assert (error.value.message, error.value.found) == (message, found)
 
 
 def test_words_for_when_a_load_acts():
     with pytest.raises(ProblemError) as error:
         text = TWO_PISTONS.replace("on: 5, force", "on: 5, when: idle, force")
-        problem_of(read_text(text, "pistons.yaml"))
+        build_any_problem(read_text(text, "pistons.yaml"))
     assert (error.value.message, error.value.found) == ("this word is not known here", "'idle'")

@@ -12,7 +12,7 @@ from test_loads import MACHINE
 
 from tmm_cli import solve
 from tmm_cli.mechanics.dynamics import SteadyTask, find_steady_running as running, reduce_machine
-from tmm_cli.problem import problem_of, read_text
+from tmm_cli.problem import build_any_problem, read_text
 
 TURN = 2 * np.pi
 RPM = np.pi / 30
@@ -20,7 +20,7 @@ RPM = np.pi / 30
 
 def steady(speed, tail):
     text = MACHINE.replace("speed: 60 rpm", f"speed: {speed}") + f"gravity: 0\n{tail}"
-    return solve(problem_of(read_text(text, "x.yaml"))).running.steady
+    return solve(build_any_problem(read_text(text, "x.yaml"))).running.steady
 
 
 def extremes(found):
@@ -192,6 +192,6 @@ masses: {1: {mass: 0, inertia: 3, centre: O}, 2: {mass: 0, inertia: 8, centre: C
 gravity: 0
 dynamics: {delta: 0.02}
 """
-    found = solve(problem_of(read_text(text + TWO_TRIANGLES, "x.yaml"))).running.steady
+    found = solve(build_any_problem(read_text(text + TWO_TRIANGLES, "x.yaml"))).running.steady
     assert found.machine.constant == pytest.approx(3 + 8 / 4, rel=1e-12)
     assert found.mertsalov == pytest.approx(100 * np.pi - 5, rel=1e-11)

@@ -12,7 +12,7 @@ from models import SI, results_of
 
 from tmm_cli import solve
 from tmm_cli.mechanics.analysis import at_positions
-from tmm_cli.problem import problem_of, read_text
+from tmm_cli.problem import build_any_problem, read_text
 from tmm_cli.reports import walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -304,7 +304,7 @@ def test_strokes_of_a_class_iii_group():
 def test_strokes_of_a_four_stroke_engine_are_counted_from_position_0_on():
     text = (PROBLEMS / "four-stroke-engine.yaml").read_text()
     for start, first in ((0, 0.0), (90, 0.0), (200, 180.0)):
-        results = solve(problem_of(read_text(text.replace("from: 0", f"from: {start}"), "engine.yaml")))
+        results = solve(build_any_problem(read_text(text.replace("from: 0", f"from: {start}"), "engine.yaml")))
         (table,) = walk(results, ("quality",))
         rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
         assert [rows[f"stroke {n} starts at"] for n in (1, 2, 3, 4)] == pytest.approx(

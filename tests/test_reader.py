@@ -13,12 +13,12 @@ from hypothesis import given, strategies as st
 
 from tmm_cli.problem import (
     MAX_BYTES,
-    Mark,
     ProblemError,
+    SourcePosition,
     WrittenNumber,
     clean,
     decimal_comma_hint,
-    nearest,
+    nearest_name,
     quote,
     read_file,
     read_text,
@@ -86,13 +86,13 @@ def test_every_key_and_value_has_its_place() -> None:
     tree = read_text(
         "\ufefflinks:\r\n  1: {имя: 𝔸, length: [1, x]}\r\n  - \r\n".replace("  - \r\n", "b:\r\n - c: 2\r\n"), "f"
     )
-    assert tree.key_marks[("links",)] == Mark(1, 1)
-    assert tree.key_marks[("links", "1")] == Mark(2, 3)
-    assert tree.marks[("links", "1")] == Mark(2, 6)
-    assert tree.key_marks[("links", "1", "length")] == Mark(2, 15)
-    assert tree.marks[("links", "1", "length", 1)] == Mark(2, 27)
-    assert tree.marks[("b", 0, "c")] == Mark(4, 7)
-    assert tree.marks[()] == Mark(1, 1)
+    assert tree.key_marks[("links",)] == SourcePosition(1, 1)
+    assert tree.key_marks[("links", "1")] == SourcePosition(2, 3)
+    assert tree.marks[("links", "1")] == SourcePosition(2, 6)
+    assert tree.key_marks[("links", "1", "length")] == SourcePosition(2, 15)
+    assert tree.marks[("links", "1", "length", 1)] == SourcePosition(2, 27)
+    assert tree.marks[("b", 0, "c")] == SourcePosition(4, 7)
+    assert tree.marks[()] == SourcePosition(1, 1)
     assert len(tree.marks) == len(tree.key_marks) + 4  # the top and three list items
 
 
@@ -304,10 +304,10 @@ def test_an_error_finds_its_place() -> None:
     assert str(wrong.at("links", "3").located("f", tree)) == "f:2:6: links.3.points: x".replace("2:6", "2:15")
     assert wrong.path == ("points",)
     key = ProblemError("x", path=("links", "3", "points"), key=True).located("f", tree)
-    assert key.mark == Mark(2, 7)
+    assert key.mark == SourcePosition(2, 7)
     missing = ProblemError("x", path=("links", "3", "length")).located("f", tree)
-    assert missing.mark == Mark(2, 3)
-    assert ProblemError("x", mark=Mark(9, 9)).located("f", tree).mark == Mark(9, 9)
+    assert missing.mark == SourcePosition(2, 3)
+    assert ProblemError("x", mark=SourcePosition(9, 9)).located("f", tree).mark == SourcePosition(9, 9)
 
 
 def test_an_error_as_text_and_data() -> None:
@@ -318,7 +318,7 @@ def test_an_error_as_text_and_data() -> None:
         allowed="length, points",
         near="length",
         file="shaper.yaml",
-        mark=Mark(12, 7),
+        mark=SourcePosition(12, 7),
     )
     assert str(error) == (
         "shaper.yaml:12:7: links.3.lenght: unknown key\n  found:   'lenght'\n  allowed: length, points"
@@ -355,7 +355,7 @@ def test_an_error_as_text_and_data() -> None:
     ],
 )
 def test_nearest(name: str, near: str | None) -> None:
-    assert nearest(name, ["points", "length", "slides", "OA"]) == near
+    assert nearest_name(name, ["points", "length", "slides", "OA"]) == near
 
 
 @given(st.text(max_size=200))

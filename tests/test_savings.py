@@ -22,7 +22,7 @@ from tmm_cli.mechanics.groups import DriverMotion, NotComputed, towards
 from tmm_cli.mechanics.kinematics import move
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
 from tmm_cli.mechanics.structure import analyse
-from tmm_cli.problem import UnitSystem, build_chain, problem_of, read_file, read_text
+from tmm_cli.problem import UnitSystem, build_any_problem, build_chain, read_file, read_text
 from tmm_cli.reports import Column, Staged, Table, csv_text, describe_stages, heavy, json_bytes, json_text, listed
 from tmm_cli.synthesis import count, structure_of
 
@@ -198,7 +198,7 @@ def test_closed_form_and_newton_give_the_same_places():
 def test_a_group_that_is_equally_far_from_dead_everywhere_is_not_searched_for_dead_positions():
     """Its margin has hundreds of least values, all of them rounding."""
     text = (ROOT / "problems" / "crossed-slots.yaml").read_text(encoding="utf-8").replace("L: [0, 220]", "L: [0, 440]")
-    results = solve(problem_of(read_text(text, "x.yaml")))
+    results = solve(build_any_problem(read_text(text, "x.yaml")))
     with counted() as count:
         assert results.dead == ()
     assert count.all < 15_000

@@ -8,7 +8,7 @@ import pytest
 from tmm_cli import load, solve
 from tmm_cli.mechanics.dynamics import Kloss, Linear, Profile, RunTask, acceleration, reduce_machine, run
 from tmm_cli.mechanics.errors import LongRunError, StandstillError
-from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import collect_warnings, walk
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -134,14 +134,14 @@ def test_a_run_that_wants_very_many_steps_ends_with_what_it_came_to(monkeypatch)
 def test_a_run_of_very_many_turns_is_refused():
     text = (PROBLEMS / "press-single-run.yaml").read_text().replace("from: -90, to: 270, s", "from: -90000, to: 270, s")
     with pytest.raises(ProblemError) as refused:
-        problem_of(read_text(text, "press.yaml"))
+        build_any_problem(read_text(text, "press.yaml"))
     assert str(refused.value).split("\n", 1)[1] == "  found:   -90000\n  allowed: within 20 turns of the x axis"
 
 
 def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
     slow = "{run: {from: 90, to: 100, speed: 1e-9, drive: 1e-12}, flywheel: {inertia: 1e6}}"
     text = (PROBLEMS / "crank-slider.yaml").read_text() + f"\ndynamics: {slow}\n"
-    results = solve(problem_of(read_text(text, "slow.yaml")))
+    results = solve(build_any_problem(read_text(text, "slow.yaml")))
     summary, law = walk(results, ("dynamics", "law-of-motion"))
     assert summary.notes[0] == "the run ends: the time of 3600 s is over before its way is gone"
     assert np.all(np.isfinite(law.columns[2].values))
@@ -155,7 +155,7 @@ DOWN = "from: 980, to: 640, drive: {against: way, area: 1963, table: [[0, 2 MPa]
 
 def lowered(run, *, speed="-40 mm/s"):
     text = f"{BOOM.replace('40 mm/s', speed)}dynamics: {{run: {{{run}}}}}\npositions: {{at: [640, 820, 980]}}\n"
-    return solve(problem_of(read_text(text, "boom.yaml")))
+    return solve(build_any_problem(read_text(text, "boom.yaml")))
 
 
 def test_oil_that_carries_a_boom_on_its_way_down_resists_the_run():
@@ -173,7 +173,7 @@ def test_a_run_of_links_without_masses_is_refused():
     text = (PROBLEMS / "press-single-run.yaml").read_text().split("masses:")[0]
     tail = "gravity: 0\noutput: 3\ndynamics: {run: {from: 0, to: 30, drive: 40}}\npositions: {count: 4}\n"
     with pytest.raises(ProblemError) as refused:
-        solve(problem_of(read_text(text + tail, "press.yaml")))
+        solve(build_any_problem(read_text(text + tail, "press.yaml")))
     assert str(refused.value).partition(": ")[2] == (
         "dynamics.run: there is no law of motion: nothing that moves with the driver there has mass or inertia\n"
         "  found:   at 0 deg of the driver's way\n  allowed: masses of the links, or flywheel: {inertia: 0.5}"
@@ -185,11 +185,13 @@ def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too
     for sense, turns in ((1, "ccw"), (-1, "cw")):
         run = f"run: {{from: 90, to: {90 + sense * 30}, drive: {sense * 40}}}"
         tail = f"gravity: 0\noutput: 3\ndynamics: {{{run}}}\npositions: {{count: 4}}\n"
-        results = solve(problem_of(read_text(text.replace("turns: ccw", f"turns: {turns}") + tail, "press.yaml")))
+        results = solve(
+            build_any_problem(read_text(text.replace("turns: ccw", f"turns: {turns}") + tail, "press.yaml"))
+        )
         assert results.running.run.driven[-1] == pytest.approx(40 * np.radians(30), rel=1e-9)
         assert not [text for text in collect_warnings(results) if "the run goes" in text]
     with pytest.raises(ProblemError, match="the run does not start") as refused:
-        solve(problem_of(read_text(text + tail.replace("-40", "40"), "press.yaml")))
+        solve(build_any_problem(read_text(text + tail.replace("-40", "40"), "press.yaml")))
     assert "a larger drive (positive along the guide or counterclockwise)" in str(refused.value)
 
 
@@ -204,7 +206,7 @@ def test_a_run_against_the_driver_s_sense_is_warned_of():
         "from and to"
     ]
     text = (PROBLEMS / "press-single-run.yaml").read_text().replace("turns: ccw", "turns: cw")
-    assert of_the_run(solve(problem_of(read_text(text, "press.yaml")))) == [
+    assert of_the_run(solve(build_any_problem(read_text(text, "press.yaml")))) == [
         "the run goes from -90 deg to 270 deg, counterclockwise: write turns: ccw for driver 1, or exchange from and to"
     ]
 

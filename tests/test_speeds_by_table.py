@@ -7,7 +7,7 @@ from test_loads import MACHINE
 
 from tmm_cli import prepare, solve
 from tmm_cli.mechanics.accuracy import bounds
-from tmm_cli.problem import ProblemError, problem_of, read_text
+from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import input_data_tables
 
 BODIES = """masses: {2: {mass: 3 kg, inertia: 0.01, centre: {on: AB}}, 3: {mass: 2 kg}}
@@ -18,7 +18,7 @@ output: 3
 
 def solved(driver, tail=BODIES):
     text = MACHINE.replace("driver: {link: 1, speed: 60 rpm, turns: ccw}", f"driver: {{link: 1, {driver}}}") + tail
-    return solve(problem_of(read_text(text, "x.yaml")))
+    return solve(build_any_problem(read_text(text, "x.yaml")))
 
 
 def table(speed, step=15, between="smooth", end=360):
@@ -117,7 +117,7 @@ def test_near_a_dead_position_the_speed_is_that_of_the_table(between):
     rows = "[[0, 4], [90, 6], [180, 8]]"
     law = f"driver: {{link: 1, speed: {{against: crank angle, between: {between}, table: {rows}}}}}"
     text = text.replace("driver: {link: 1, speed: 60 rpm, turns: ccw}", law)
-    results = solve(problem_of(read_text(f"{text}{BODIES}positions: {{at: [45, 89.99999]}}\n", "x.yaml")))
+    results = solve(build_any_problem(read_text(f"{text}{BODIES}positions: {{at: [45, 89.99999]}}\n", "x.yaml")))
     assert results.motion.where is not None and results.motion.where.tolist() == [False, True]
     if between == "linear":
         assert results.motion.rate[1] == pytest.approx(np.sqrt(16 + 20 * 89.99999 / 90), rel=1e-14)

@@ -13,7 +13,7 @@ from test_commands import ROOT, after_the_echo, tmm
 from tmm_cli.batch import processes
 from tmm_cli.cli import tell_fault
 from tmm_cli.mechanics.quantities import NUMBER, product_text
-from tmm_cli.problem import UnitSystem, problem_of
+from tmm_cli.problem import UnitSystem, build_any_problem
 from tmm_cli.reports import Column, Table, csv_text, table_of_words
 
 SINE = ROOT / "problems" / "sine.yaml"
@@ -262,7 +262,7 @@ def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_
     def broken(tree):
         return 1 / 0
 
-    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", broken)
+    monkeypatch.setattr("tmm_cli.cli.opening.build_any_problem", broken)
     done = tmm("forces", SINE)
     assert done.returncode == 3 and done.stdout == ""
     assert re.fullmatch(
@@ -286,10 +286,10 @@ def test_a_fault_in_another_process_is_placed_where_it_was_raised(capsys):
 
 
 def test_a_fault_of_one_file_does_not_keep_the_others_from_being_worked_on(monkeypatch):
-    def broken(tree, sound=problem_of):
+    def broken(tree, sound=build_any_problem):
         return sound(tree) if tree.name == "shaper" else 1 / 0
 
-    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", broken)
+    monkeypatch.setattr("tmm_cli.cli.opening.build_any_problem", broken)
     done = tmm("forces", SINE, SHAPER_FILE)
     assert done.returncode == 3 and done.stderr.count("internal fault") == 1
     assert f"== {SHAPER_FILE} ==" in done.stdout and "M_b" in done.stdout
@@ -299,7 +299,7 @@ def test_want_of_memory_is_one_line(monkeypatch):
     def greedy(tree):
         raise MemoryError
 
-    monkeypatch.setattr("tmm_cli.cli.opening.problem_of", greedy)
+    monkeypatch.setattr("tmm_cli.cli.opening.build_any_problem", greedy)
     done = tmm("forces", SINE)
     assert (done.returncode, done.stdout) == (3, "")
     assert done.stderr == "error: there is not enough memory; fewer positions, variants or drawings take less\n"

@@ -14,7 +14,7 @@ from test_loads import MACHINE
 from tmm_cli.batch import Task
 from tmm_cli.drawing.paper import contour_lines, hatch_polygons, region_polygons
 from tmm_cli.mechanics.analysis import at_places
-from tmm_cli.problem import ProblemError, problem_of, read_file, read_text, with_settings
+from tmm_cli.problem import ProblemError, apply_settings, build_any_problem, read_file, read_text
 from tmm_cli.sweep import (
     APART,
     LIMIT,
@@ -43,7 +43,7 @@ def sweep(file, over, show=()):
 
 def one_by_one(file, settings):
     """What a run of the file with other parameters finds."""
-    return solve(problem_of(with_settings(read_file(str(PROBLEMS / f"{file}.yaml")), settings)))
+    return solve(build_any_problem(apply_settings(read_file(str(PROBLEMS / f"{file}.yaml")), settings)))
 
 
 def largest(read, results):
@@ -179,7 +179,7 @@ def test_over_two_parameters_each_line_is_a_sweep_over_one():
     both = sweep("crank-rocker", ["l1=60..180:3", "l4=300..500:3"], ["psi,k,M_b"])
     assert both.shape == (3, 3)
     for row, l1 in enumerate(both.axes[0].values):
-        tree = with_settings(read_file(str(PROBLEMS / "crank-rocker.yaml")), [f"l1={l1:g}"])
+        tree = apply_settings(read_file(str(PROBLEMS / "crank-rocker.yaml")), [f"l1={l1:g}"])
         mechanisms = Mechanisms(tree, read_axes(Task(tree), ["l4=300..500:3"]), ["psi,k,M_b"])
         one = swept(mechanisms)
         here = slice(3 * row, 3 * row + 3)
@@ -245,7 +245,7 @@ def test_a_range_that_cannot_be_is_refused(over, message):
 
 def test_a_parameter_that_the_file_computes_of_others_is_swept_by_bare_numbers():
     file = ROOT / "problems" / "shaper.yaml"
-    task = Task(with_settings(read_file(file), ["DE=2*OA - 10"]))
+    task = Task(apply_settings(read_file(file), ["DE=2*OA - 10"]))
     (axis,) = read_axes(task, ["DE=100..200:3"])
     assert axis.values.tolist() == [100, 150, 200] and (axis.unit, axis.dimension, axis.factor) == ("", None, 1)
 

@@ -202,8 +202,8 @@ def test_radians_come_and_go_but_an_angle_is_not_a_number() -> None:
 
 def test_words() -> None:
     units = UnitSystem()
-    assert units.show(PhysicalValue(0.11, LENGTH)) == "a length (110 mm)"
-    assert units.show(PhysicalValue(0.5, NUMBER)) == "a number (0.5)"
-    assert units.show(PhysicalValue(5)) == "a bare number (5)"
-    assert units.show(PhysicalValue(1, TIME.power(2))) == "a quantity in s^2 (1 s^2)"
+    assert units.describe(PhysicalValue(0.11, LENGTH)) == "a length (110 mm)"
+    assert units.describe(PhysicalValue(0.5, NUMBER)) == "a number (0.5)"
+    assert units.describe(PhysicalValue(5)) == "a bare number (5)"
+    assert units.describe(PhysicalValue(1, TIME.power(2))) == "a quantity in s^2 (1 s^2)"
     assert ANGLE.example == "an angle, e.g. 30 deg or 0.5 rad"

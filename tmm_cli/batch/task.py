@@ -33,20 +33,20 @@ from tmm_cli.problem import (
     Value,
     ValueReader,
     VariedUnits,
-    build_shape,
-    checked_shape,
+    apply_settings,
+    build_any_problem,
+    build_from_shape,
+    build_parameters,
     early_parameters,
     evaluate_quantity,
-    in_words_of,
-    parameters,
-    placed_in,
+    locate_errors_in,
     plain_value,
-    problem_of,
+    prefix_errors,
     quote,
-    under,
-    unknown_name,
-    validated,
-    with_settings,
+    translate_errors,
+    unknown_name_error,
+    validate_planar,
+    validate_shape,
 )
 
 MOST = 10_000  # values of a parameter
@@ -180,7 +180,7 @@ class Task:
     def blocks(self) -> Blocks:
         """Its blocks `variants` and `grading`."""
         own: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
-        return validated(Blocks, replace(self.tree, data=own))
+        return validate_shape(Blocks, replace(self.tree, data=own))
 
     @property
     def rules(self) -> Grading:
@@ -203,7 +203,7 @@ class Task:
     @cached_property
     def problem(self) -> Problem | TaskProblem:
         """The file's own variant."""
-        return problem_of(self.tree)
+        return build_any_problem(self.tree)
 
     @cached_property
     def units(self) -> UnitSystem:
@@ -213,7 +213,7 @@ class Task:
     def quantities(self) -> dict[str, Quantity]:
         """All that could be asked, by name."""
         whole = self.problem.whole
-        with in_words_of(whole):
+        with translate_errors(whole):
             return quantities(whole.linkage, mobile(whole.linkage))
 
     @property
@@ -227,7 +227,7 @@ class Task:
         """What is asked, in the order of the file."""
         rules, last = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
-        with placed_in(self.tree):
+        with locate_errors_in(self.tree):
             return tuple(
                 asked
                 for n, rule in enumerate(rules.answers)
@@ -239,7 +239,7 @@ class Task:
         if quantity is None:
             one_of_each = {_kind(name): name for name in reversed(self.quantities)}.values()
             some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
-            raise unknown_name(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
+            raise unknown_name_error(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
         usual = FORCES if quantity.order >= 4 else KINEMATICS
@@ -275,11 +275,11 @@ class Task:
             return {**early_parameters(self.tree), **given}
         raw = self._shape.parameters
         rest = {name: value for name, value in raw.items() if name not in given}
-        return {**given, **parameters(rest, units or self.units, given)}
+        return {**given, **build_parameters(rest, units or self.units, given)}
 
     @cached_property
     def _shape(self) -> Any:
-        return checked_shape(self.tree)
+        return validate_planar(self.tree)
 
     def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
         """The file's own values of parameters."""
@@ -287,7 +287,7 @@ class Task:
         for name in names:
             if name not in found:
                 none = None if found else _("none: the file has no parameters")
-                raise unknown_name(name, found, _("there is no parameter of that name"), none)
+                raise unknown_name_error(name, found, _("there is no parameter of that name"), none)
         return tuple(found[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
@@ -313,13 +313,13 @@ class Task:
             return Variant(whole.linkage, whole.request)
         given = {name: PhysicalValue(x, d) for name, d, x in zip(names, dimensions, numbers, strict=True)}
         units = VariedUnits(self.units) if traced else self.units
-        with placed_in(self.tree):
-            found = build_shape(self._shape, self.tree, ValueReader(self._parameters(given, units), units))
+        with locate_errors_in(self.tree):
+            found = build_from_shape(self._shape, self.tree, ValueReader(self._parameters(given, units), units))
         return Variant(found.linkage, found.request)
 
     def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
         """One variant as a problem of its own, its values as text."""
-        return problem_of(with_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
+        return build_any_problem(apply_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
 
 
 def read_task(tree: Tree) -> Task:
@@ -363,7 +363,7 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
             )
         name, *ends = found.groups()
         given["variants", name] = words
-        with under("variants", name):
+        with prefix_errors("variants", name):
             values = [plain_value(end) for end in ends if end is not None]
         ranges[name] = dict(zip(("from", "to", "step"), values, strict=True)) if len(values) == 3 else values
     return replace(tree, data={**tree.data, "variants": ranges}, given={**tree.given, **given}) if given else tree
@@ -387,7 +387,7 @@ def _choices(task: Task, blocks: Blocks) -> tuple[Choice, ...]:
         )
     found = []
     for name, own in ranges.items():
-        with under("variants", name):
+        with prefix_errors("variants", name):
             (dimension,) = task.dimensions((name,))
             values = (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
             texts = _with_units([str(value) for value in values])

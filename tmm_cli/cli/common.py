@@ -17,7 +17,7 @@ from rich.segment import Segment
 
 from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, tell_fault
 from tmm_cli.language import _, language, spoken
-from tmm_cli.problem import ProblemError, visible
+from tmm_cli.problem import ProblemError, escape_controls
 from tmm_cli.reports import Kind, folder_name, refuse_place
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
@@ -73,7 +73,7 @@ class _VisibleConsole(Console):
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         for segment in super().render(renderable, options):
-            text = segment.text if segment.control else visible(segment.text)
+            text = segment.text if segment.control else escape_controls(segment.text)
             yield segment if text == segment.text else Segment(text, segment.style)
 
 

@@ -30,7 +30,7 @@ from tmm_cli.grading import (
     written,
 )
 from tmm_cli.language import _
-from tmm_cli.problem import ProblemError, chosen_names
+from tmm_cli.problem import ProblemError, parse_names
 from tmm_cli.reports import refuse_place, show
 
 KEPT = ".graded"  # in the output folder: marks of earlier runs
@@ -93,7 +93,7 @@ def _graded(
 ) -> int:
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
     reason = _("there is no such format of the gradebook")
-    names = list(EXPORTS) if formats is None else chosen_names(formats, EXPORTS, "--formats", reason)
+    names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
     introduce(task.problem)
     table = read_table(variants, task)
     with suppress(ProblemError):  # a value that cannot be read is told to its student

@@ -10,7 +10,7 @@ import typer
 from tmm_cli.cli.common import new_file, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _, language
-from tmm_cli.problem import ProblemError, list_templates, nearest, template_text
+from tmm_cli.problem import ProblemError, list_templates, nearest_name, template_text
 
 
 def new(
@@ -30,7 +30,7 @@ def new(
             raise ProblemError(
                 _("there is no template '{template}'").format(template=template),
                 allowed=", ".join(known),
-                near=nearest(template, known),
+                near=nearest_name(template, known),
             )
         file = out or Path(f"{template}.yaml")
         named = None if str(file) == "-" else printable(file)

@@ -11,20 +11,20 @@ from tmm_cli.problem import (
     ProblemError,
     TaskProblem,
     Tree,
-    decoded,
-    file_bytes,
-    language_in,
-    problem_of,
+    apply_settings,
+    build_any_problem,
+    decode_text,
+    find_language,
+    read_bytes,
     read_text,
     refuse_options,
-    with_settings,
 )
 from tmm_cli.reports import bare_units, doubts, summarise_file
 
 
 def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
     """The file as it is read, with other parameters; its language is spoken from here on. Raises ProblemError."""
-    return with_settings(read_in_its_language(file), settings or ())
+    return apply_settings(read_in_its_language(file), settings or ())
 
 
 def read_in_its_language(file: str) -> Tree:
@@ -32,9 +32,9 @@ def read_in_its_language(file: str) -> Tree:
 
     Raises ProblemError.
     """
-    data = file_bytes(file)
-    speak_as(language_in(data))
-    tree = read_text(decoded(data, file), file)
+    data = read_bytes(file)
+    speak_as(find_language(data))
+    tree = read_text(decode_text(data, file), file)
     speak_as(tree.data.get("lang", ENGLISH))
     write_as(tree.data)
     return tree
@@ -47,7 +47,7 @@ def opened(
 
     positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
     """
-    problem = problem_of(tree_of(file, settings))
+    problem = build_any_problem(tree_of(file, settings))
     introduce(problem)
     if digits:
         afford(problem.whole, positions, digits=True)

@@ -13,14 +13,14 @@ from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.problem import (
     ProblemError,
-    chosen_names,
+    build_any_problem,
     clean,
-    file_text,
-    foreign_of,
-    path_text,
-    problem_of,
+    format_path,
+    parse_names,
+    problem_file_text,
+    read_file_text,
+    read_mechanism,
     read_text,
-    written,
 )
 from tmm_cli.reports import EXPORTS
 from tmm_cli.synthesis import solve
@@ -35,14 +35,14 @@ def import_(
 ) -> None:
     """Write a problem file from another program's file."""
     with refusing():
-        foreign = foreign_of(file_text(file), file)
+        foreign = read_mechanism(read_file_text(file), file)
         target = out or Path(f"{Path(file).stem}.yaml")
-        text = written(foreign, Path(file).name)
+        text = problem_file_text(foreign, Path(file).name)
         try:
-            problem_of(read_text(text, str(target)))  # what is written can be read
+            build_any_problem(read_text(text, str(target)))  # what is written can be read
         except ProblemError as error:  # its lines are of a file that nobody sees
             told = _("the problem file of it would be refused: {reason}")
-            reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+            reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
             raise ProblemError(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None
@@ -62,7 +62,7 @@ def export(
 ) -> None:
     """Write the linkage for another program."""
     with refusing():
-        name, *__ = chosen_names(to, EXPORTS, "--to", _("there is no such program to export to"))
+        name, *__ = parse_names(to, EXPORTS, "--to", _("there is no such program to export to"))
         text, left = EXPORTS[name](solve(opened(file), "kinematics"))
         target = out or Path(f"{Path(file).stem}.json")
         if new_file(target, text):

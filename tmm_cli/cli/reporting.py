@@ -12,7 +12,7 @@ from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results, Stage
 from tmm_cli.mechanics.structure import ChainResults
-from tmm_cli.problem import build_chain, is_chain, problem_of
+from tmm_cli.problem import build_any_problem, build_chain, is_chain
 from tmm_cli.reports import (
     AccuracyReport,
     Kind,
@@ -54,7 +54,7 @@ def computed(
     tree = tree_of(file, settings)
     if is_chain(tree):
         return count(build_chain(tree))
-    problem = problem_of(tree)
+    problem = build_any_problem(tree)
     if driver is not None:
         problem = redrive(problem, driver)
     if not silent:

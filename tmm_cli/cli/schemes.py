@@ -12,7 +12,7 @@ import typer
 from tmm_cli.cli.common import Json, console, drawn, emit_json, progress, refusing
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
-from tmm_cli.problem import ProblemError, UnitSystem, build_problem, read_text, unknown_name
+from tmm_cli.problem import ProblemError, UnitSystem, build_problem, read_text, unknown_name_error
 from tmm_cli.reports import (
     MORE_ROWS_AS_JSON,
     Staged,
@@ -128,7 +128,7 @@ def named_types(text: str) -> tuple[str, ...]:
         name = word.strip().upper()
         if name not in GROUP_TYPES and name not in GROUP_CLASSES:
             known = [*GROUP_CLASSES, *(name for name in GROUP_TYPES if name not in GROUP_CLASSES)]
-            raise unknown_name(word.strip(), known, _("there is no such group"), path=("--groups",))
+            raise unknown_name_error(word.strip(), known, _("there is no such group"), path=("--groups",))
         found += GROUP_CLASSES.get(name, (name,))
     return tuple(dict.fromkeys(found))
 

@@ -16,7 +16,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, with_assemblies, with_centres, with_extremes
 from tmm_cli.mechanics.assembly import listed
 from tmm_cli.mechanics.structure import ChainResults
-from tmm_cli.problem import ProblemError, in_words_of
+from tmm_cli.problem import ProblemError, translate_errors
 from tmm_cli.synthesis import inputs_of, solve
 
 Drawings = Annotated[
@@ -123,7 +123,7 @@ def _list_assemblies(
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
     problem = opened(file, settings).whole
-    with in_words_of(problem):
+    with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)
     code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():

@@ -16,7 +16,7 @@ import typer
 
 import tmm_cli
 from tmm_cli.language import ENGLISH, USUAL, _, speak, spoken, write
-from tmm_cli.problem import clean, visible
+from tmm_cli.problem import clean, escape_controls
 
 OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
 TRACEBACK = "TMM_TRACEBACK"  # environment variable: 1 prints the traceback of an internal fault
@@ -33,7 +33,7 @@ _asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
 
 def say(text: str) -> None:
     """Talk goes to standard error, with control characters escaped."""
-    typer.echo(visible(text), err=True)
+    typer.echo(escape_controls(text), err=True)
 
 
 def warn(text: str) -> None:

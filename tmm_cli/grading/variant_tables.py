@@ -12,7 +12,7 @@ from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.untrusted_tables import rows_of
 from tmm_cli.language import _
-from tmm_cli.problem import ProblemError, parse_unit, quote, under, unknown_name
+from tmm_cli.problem import ProblemError, parse_unit, prefix_errors, quote, unknown_name_error
 from tmm_cli.reports import csv_cell, empty_workbook
 
 LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
@@ -52,7 +52,7 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
         asked = students[int(asked) - 1]
     if asked not in table.rows:
         allowed = _("1 to {last}, or a student of the table").format(last=len(students))
-        raise unknown_name(asked, students, _("there is no such variant"), allowed)
+        raise unknown_name_error(asked, students, _("there is no such variant"), allowed)
     return dict(zip(table.names, table.rows[asked], strict=True))
 
 
@@ -121,7 +121,7 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
     for number, row in enumerate(rest, 2):
         cells = [*row, *[""] * (len(head) - len(row))]
         student = str(number - 1) if key is None else FORMULA.sub("", " ".join(cells[key].split()))
-        with under(_("row {number}").format(number=number)):
+        with prefix_errors(_("row {number}").format(number=number)):
             if not student or student in found:
                 raise ProblemError(
                     _("every row wants a student of its own"), found=quote(student), allowed=_("each name once")
@@ -139,7 +139,7 @@ def _heading(text: str) -> tuple[str, str]:
     assert found is not None
     unit = found[2] or found[3] or found[4] or ""
     if unit:
-        with under(text):
+        with prefix_errors(text):
             parse_unit(unit)
     return found[1], unit
 
@@ -147,7 +147,7 @@ def _heading(text: str) -> tuple[str, str]:
 def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
     """A cell as a value of a problem file."""
     text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
-    with under(name):
+    with prefix_errors(name):
         if not text:
             raise ProblemError(_("a value is wanted"), found=_("an empty cell"))
         value = task.value(text)

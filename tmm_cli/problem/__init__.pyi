@@ -10,39 +10,43 @@ from .arithmetic import (
 )
 from .blocks.loads import stroke_dimension as stroke_dimension
 from .build import (
+    build_any_problem as build_any_problem,
     build_chain as build_chain,
+    build_from_shape as build_from_shape,
+    build_parameters as build_parameters,
     build_problem as build_problem,
-    build_shape as build_shape,
-    checked_shape as checked_shape,
+    build_unit_system as build_unit_system,
     early_parameters as early_parameters,
     is_chain as is_chain,
-    parameters as parameters,
-    problem_of as problem_of,
-    refuse_law as refuse_law,
-    unit_system as unit_system,
-    validated as validated,
+    refuse_variable_speed as refuse_variable_speed,
+    validate_planar as validate_planar,
+    validate_shape as validate_shape,
 )
-from .error_messages import in_words_of as in_words_of, mobility as mobility, refusal as refusal
+from .error_messages import (
+    located_problem_error as located_problem_error,
+    mobility_error as mobility_error,
+    translate_errors as translate_errors,
+)
 from .errors import (
-    Mark as Mark,
     Path as Path,
     ProblemError as ProblemError,
+    SourcePosition as SourcePosition,
     Tree as Tree,
     WrittenNumber as WrittenNumber,
-    chosen_names as chosen_names,
     clean as clean,
-    latin as latin,
-    nearest as nearest,
-    no_position as no_position,
-    path_text as path_text,
-    placed_in as placed_in,
+    escape_controls as escape_controls,
+    format_path as format_path,
+    locate_errors_in as locate_errors_in,
+    nearest_name as nearest_name,
+    parse_names as parse_names,
+    prefix_errors as prefix_errors,
     quote as quote,
-    under as under,
-    unknown_name as unknown_name,
-    visible as visible,
+    to_latin as to_latin,
+    unknown_name_error as unknown_name_error,
+    unknown_position_error as unknown_position_error,
 )
-from .formats import foreign_of as foreign_of
-from .formats.imported_mechanism import written as written
+from .formats import read_mechanism as read_mechanism
+from .formats.imported_mechanism import problem_file_text as problem_file_text
 from .formats.pmks_link import DIGITS as DIGITS
 from .problems import (
     ChainProblem as ChainProblem,
@@ -53,25 +57,25 @@ from .problems import (
 from .reader import (
     MAX_BYTES as MAX_BYTES,
     Composer as Composer,
+    apply_settings as apply_settings,
     decimal_comma_hint as decimal_comma_hint,
-    decoded as decoded,
-    file_bytes as file_bytes,
-    file_text as file_text,
-    language_in as language_in,
+    decode_text as decode_text,
+    find_language as find_language,
+    read_bytes as read_bytes,
     read_file as read_file,
+    read_file_text as read_file_text,
     read_text as read_text,
-    unused as unused,
-    with_settings as with_settings,
+    unused_parameters as unused_parameters,
 )
 from .scalars import finite_float as finite_float, plain_value as plain_value
 from .schema import (
     File as File,
     SheetTexts as SheetTexts,
-    Shown as Shown,
+    ShownKeys as ShownKeys,
     SpatialFile as SpatialFile,
     file_schema as file_schema,
 )
-from .schema_errors import FOREIGN as FOREIGN, shape_error as shape_error
+from .schema_errors import KEYS_IN_OTHER_LANGUAGES as KEYS_IN_OTHER_LANGUAGES, shape_error as shape_error
 from .schema_types import (
     VALUE as VALUE,
     FileHead as FileHead,
@@ -81,7 +85,11 @@ from .schema_types import (
     Vector as Vector,
     checked_value as checked_value,
 )
-from .templates import list_templates as list_templates, template_text as template_text, translations as translations
+from .templates import (
+    list_templates as list_templates,
+    load_translations as load_translations,
+    template_text as template_text,
+)
 from .units import (
     SYMBOLS as SYMBOLS,
     ExtendedUnits as ExtendedUnits,
@@ -90,15 +98,15 @@ from .units import (
     UnitError as UnitError,
     UnitSystem as UnitSystem,
     VariedUnits as VariedUnits,
-    dotted_unit as dotted_unit,
-    on_paper as on_paper,
+    dotted_unit_error as dotted_unit_error,
     parse_unit as parse_unit,
     plain_text as plain_text,
+    typeset_unit as typeset_unit,
 )
-from .values import ValueReader as ValueReader, planar as planar
+from .values import ValueReader as ValueReader, make_complex as make_complex
 from .work_limits import (
-    BUDGET as BUDGET,
-    parts as parts,
+    WORK_BUDGET as WORK_BUDGET,
     refuse_options as refuse_options,
     refuse_work as refuse_work,
+    work_size as work_size,
 )

@@ -10,22 +10,22 @@ from typing import Final
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, KINDS, NUMBER, Dimension
-from tmm_cli.problem.errors import Path, ProblemError, WrittenNumber, quote, under, unknown_name
-from tmm_cli.problem.scalars import comma_error
+from tmm_cli.problem.errors import Path, ProblemError, WrittenNumber, prefix_errors, quote, unknown_name_error
+from tmm_cli.problem.scalars import decimal_comma_error
 from tmm_cli.problem.units import (
     PER_TIME,
     PhysicalValue,
     UnitError,
     UnitSystem,
-    dotted_unit,
+    dotted_unit_error,
+    find_unit,
     parse_unit,
     plain_text,
-    symbol,
-    unknown_unit,
+    unknown_unit_error,
 )
 
 MAX_DEPTH: Final = 30
-MOST_POWER: Final = 20
+MAX_POWER: Final = 20
 
 _GROUPED = r"[0-9]{1,3}(?: [0-9]{3})+(?![0-9])"  # thousands set apart by spaces, 12 500
 _NUMBER = re.compile(rf"\s*((?:{_GROUPED}|[0-9]+)\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?)")
@@ -40,14 +40,14 @@ _DOTTED = re.compile(r"\s*((?:[^\W\d_]+\s*[./]\s*)*[^\W\d_]+\.(?:\s*/?\s*[^\W\d_
 _SYMBOL = re.compile(r"[^\W\d_]+|°|%")
 _JOINT = re.compile(r"\s*[*·/]|\s+")
 
-MOST_ANGLE: Final = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
-_ANGLE_IN: Final = ("sin", "cos", "tan")
-_ANGLE_OUT: Final = ("asin", "acos", "atan")
-_OF_MANY: Final = ("atan2", "hypot", "min", "max")
-FUNCTIONS: Final = (*_ANGLE_IN, *_ANGLE_OUT, *_OF_MANY, "sqrt", "abs")
+MAX_ANGLE: Final = 1e6  # rad: of a larger one rounding leaves too few digits of its last turn
+_OF_ANGLE: Final = ("sin", "cos", "tan")
+_TO_ANGLE: Final = ("asin", "acos", "atan")
+_MANY_ARGUMENTS: Final = ("atan2", "hypot", "min", "max")
+FUNCTIONS: Final = (*_OF_ANGLE, *_TO_ANGLE, *_MANY_ARGUMENTS, "sqrt", "abs")
 
 
-def taken(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
+def to_si(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
     """The value in SI, a bare number taken in the file's unit of `want`; None when the dimension does not fit."""
     if found.dimension is None:
         return units.si(found.value, want)
@@ -84,7 +84,7 @@ class Parser:
     def whole(self) -> PhysicalValue:
         found = self.sum()
         rest = self.text[self.at :].strip()
-        if rest and _UNIT.fullmatch(rest) and all(symbol(one) for one in _SYMBOL.findall(rest)):
+        if rest and _UNIT.fullmatch(rest) and all(find_unit(one) for one in _SYMBOL.findall(rest)):
             raise self.fault(_("a unit follows a number only: here write * 1 {unit}").format(unit=rest))
         if rest:
             raise self.fault(_("this is not arithmetic"))
@@ -94,7 +94,7 @@ class Parser:
         rest = self.text[self.at :].strip()
         whole = re.search(rf"(?:{_GROUPED}|[0-9]+)$", self.text[: self.at])
         if whole and (comma := _COMMA.match(rest)):
-            return comma_error(whole[0], comma[1])
+            return decimal_comma_error(whole[0], comma[1])
         found = quote(self.text) + (
             _(", at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
         )
@@ -145,13 +145,13 @@ class Parser:
         literal = number is not None and number.end() == self.at
         if not self.sign("^", "**"):
             return base
-        if literal and (whole := _POWER.match(self.text, self.at)) and abs(int(whole[1][:4])) <= MOST_POWER:
+        if literal and (whole := _POWER.match(self.text, self.at)) and abs(int(whole[1][:4])) <= MAX_POWER:
             self.at = whole.end()  # the unit of 10^3 N belongs to the power
             return self.with_unit(self.real("this power", lambda: base.value ** int(whole[1])))
         self.deeper()
         exponent = self.signed()
         self.depth -= 1
-        if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MOST_POWER:
+        if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MAX_POWER:
             raise self.fault(_("an exponent is a small bare number"))
         dimension = base.dimension
         if dimension is not None:
@@ -177,11 +177,11 @@ class Parser:
         """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
         found = _UNIT.match(self.text, self.at)
         if dotted := _DOTTED.match(self.text, self.at):
-            raise dotted_unit(dotted[1])
+            raise dotted_unit_error(dotted[1])
         if found is None:
             return PhysicalValue(number, None)
         name = _NAME.match(self.text, self.at)
-        if name and symbol(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
+        if name and find_unit(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
             raise self.fault(_("a * is missing before {second}").format(second=name[1]))
         text = found[1]
         for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
@@ -189,11 +189,11 @@ class Parser:
             if head.endswith(("*", "·", "/")):
                 continue
             free = {factor[1] for factor in re.finditer(r"\s[*·/]?\s*([^\W\d_]+)", head)}  # set apart by spaces
-            if all(symbol(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
+            if all(find_unit(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
                 self.at = found.start(1) + end
                 unit = parse_unit(head)
                 return self.finite(unit.si(number), unit.dimension)
-        raise unknown_unit(_SYMBOL.findall(text)[0])
+        raise unknown_unit_error(_SYMBOL.findall(text)[0])
 
     def named(self, match: re.Match[str]) -> PhysicalValue:
         name = match[1]
@@ -208,9 +208,9 @@ class Parser:
         called = self.text[self.at :].lstrip().startswith("(")
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
         message = _("there is no such parameter")
-        if symbol(name):
+        if find_unit(name):
             message = _("there is no parameter {name}, and a unit follows a number: 1 {name}").format(name=name)
-        raise unknown_name(name, names, message, ", ".join(self.parameters) or "none is given")
+        raise unknown_name_error(name, names, message, ", ".join(self.parameters) or "none is given")
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
@@ -223,24 +223,24 @@ class Parser:
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
         if not least <= len(given) <= most:
             raise self.fault(_("{name} wants another number of arguments").format(name=name))
-        return self.of_many(name, given) if name in _OF_MANY else self.of_one(name, given[0])
+        return self.of_many(name, given) if name in _MANY_ARGUMENTS else self.of_one(name, given[0])
 
     def of_one(self, name: str, given: PhysicalValue) -> PhysicalValue:
         compute, dimension = self.units.functions[name], given.dimension
         if name == "abs":
             return PhysicalValue(abs(given.value), dimension)
-        if name in _ANGLE_IN:
-            angle = taken(given, ANGLE, self.units)
+        if name in _OF_ANGLE:
+            angle = to_si(given, ANGLE, self.units)
             if angle is None:
                 raise self.fault(_("{name} wants an angle, not {dimension}").format(name=name, dimension=dimension))
-            if abs(float(angle)) > MOST_ANGLE:
+            if abs(float(angle)) > MAX_ANGLE:
                 raise self.fault(_("{name} of so large an angle has no digit left").format(name=name))
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault(_("tan of a right angle has no value"))
             return PhysicalValue(compute(angle), None)
-        if name in _ANGLE_OUT and dimension not in (None, NUMBER):
+        if name in _TO_ANGLE and dimension not in (None, NUMBER):
             raise self.fault(_("{name} wants a number, not {dimension}").format(name=name, dimension=dimension))
-        root = _half(dimension) if dimension else None
+        root = _square_root_dimension(dimension) if dimension else None
         if name == "sqrt" and dimension is not None and root is None:
             raise self.fault(_("{dimension} has no square root").format(dimension=dimension))
         value = self.real(f"{name} of {given.value:.6g}", lambda: compute(given.value))
@@ -291,7 +291,7 @@ class Parser:
         return float(value) if isinstance(value, int) else value
 
 
-def _half(dimension: Dimension) -> Dimension | None:
+def _square_root_dimension(dimension: Dimension) -> Dimension | None:
     powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
     if any(p % 2 for p in powers):
         return None
@@ -310,24 +310,24 @@ MAX_LENGTH: Final = 200
 def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, want: Dimension) -> float:
     """A value in SI and radians. Raises ProblemError (without a path) for what is not arithmetic or does not fit."""
     try:
-        return _fitting(source, evaluate_quantity(source, parameters, units), units, want)
+        return _checked_si(source, evaluate_quantity(source, parameters, units), units, want)
     except ProblemError as error:
         if not isinstance(source, str):
             raise
         first = error
     try:
         if "pi" in source:  # perhaps a ratio, as in pi * OA
-            return _fitting(source, evaluate_quantity(source, parameters, units, pi=None), units, want)
+            return _checked_si(source, evaluate_quantity(source, parameters, units, pi=None), units, want)
     except ProblemError:
         pass
 
     def fits(others: Mapping[str, PhysicalValue]) -> bool:
-        return taken(evaluate_quantity(source, others, units), want, units) is not None
+        return to_si(evaluate_quantity(source, others, units), want, units) is not None
 
-    raise _missing_unit(source, parameters, units, fits) or first from None
+    raise _missing_unit_error(source, parameters, units, fits) or first from None
 
 
-def _missing_unit(
+def _missing_unit_error(
     source: str,
     parameters: Mapping[str, PhysicalValue],
     units: UnitSystem,
@@ -358,10 +358,10 @@ def _missing_unit(
     return None
 
 
-def _fitting(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
-    value = taken(found, want, units)
+def _checked_si(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
+    value = to_si(found, want, units)
     if value is None:
-        given = f"{quote(source)}, {units.show(found)}"
+        given = f"{quote(source)}, {units.describe(found)}"
         allowed = want.example
         if want == ANGLE and "pi" in str(source):
             allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
@@ -425,12 +425,12 @@ def resolve_parameters(
         cycle: list[str] = error.args[1][::-1]
         raise ProblemError(_("parameters go round in a circle"), path=(cycle[0],), found=" -> ".join(cycle)) from None
     for name in order:
-        with under(name):
-            found[name] = _parameter(raw[name], found, units)
+        with prefix_errors(name):
+            found[name] = _evaluate_parameter(raw[name], found, units)
     return {name: found[name] for name in raw}
 
 
-def _parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:
+def _evaluate_parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:
     """The value of a parameter, whatever it measures."""
     try:
         return evaluate_quantity(source, parameters, units)
@@ -442,4 +442,4 @@ def _parameter(source: object, parameters: Mapping[str, PhysicalValue], units: U
     def fits(others: Mapping[str, PhysicalValue]) -> bool:
         return bool(evaluate_quantity(source, others, units))
 
-    raise _missing_unit(source, parameters, units, fits) or first from None
+    raise _missing_unit_error(source, parameters, units, fits) or first from None

@@ -19,15 +19,15 @@ from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import resolve_parameters
 from tmm_cli.problem.blocks.drivers import build_cycle, build_drivers, build_request, build_sketch
 from tmm_cli.problem.blocks.links import build_links, refuse_attachments, refuse_unused
-from tmm_cli.problem.blocks.loads import build_loads, with_masses
+from tmm_cli.problem.blocks.loads import add_masses, build_loads
 from tmm_cli.problem.blocks.meshes import build_meshes
-from tmm_cli.problem.blocks.springs import with_springs
-from tmm_cli.problem.errors import Path, ProblemError, Tree, placed_in, under
+from tmm_cli.problem.blocks.springs import add_springs
+from tmm_cli.problem.errors import Path, ProblemError, Tree, locate_errors_in, prefix_errors
 from tmm_cli.problem.problems import ChainProblem, Problem, TaskProblem
 from tmm_cli.problem.schema_errors import shape_error
 from tmm_cli.problem.schema_types import MAX_LINKS
 from tmm_cli.problem.units import ExtendedUnits, PhysicalValue, UnitSystem
-from tmm_cli.problem.values import Part, ValueReader, check_name
+from tmm_cli.problem.values import FileSection, ValueReader, check_name
 from tmm_cli.problem.work_limits import refuse_work
 
 if TYPE_CHECKING:
@@ -52,14 +52,14 @@ def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
 
     extended: with its numbers as double-doubles. Raises ProblemError.
     """
-    shape = checked_shape(tree)
-    with placed_in(tree):
-        units = unit_system(shape.units, extended=extended)
-        problem = build_shape(shape, tree, ValueReader(parameters(shape.parameters, units), units))
+    shape = validate_planar(tree)
+    with locate_errors_in(tree):
+        units = build_unit_system(shape.units, extended=extended)
+        problem = build_from_shape(shape, tree, ValueReader(build_parameters(shape.parameters, units), units))
     return replace(problem, extended=partial(build_problem, tree, extended=True))
 
 
-def checked_shape(tree: Tree) -> schema.File:
+def validate_planar(tree: Tree) -> schema.File:
     """The file in the shape of a linkage. Raises ProblemError."""
     if is_chain(tree):
         raise ProblemError(
@@ -68,10 +68,10 @@ def checked_shape(tree: Tree) -> schema.File:
             allowed=_("tmm structure, tmm run, tmm check"),
             key=True,
         ).located(tree.file, tree)
-    return validated(schema.File, tree)
+    return validate_shape(schema.File, tree)
 
 
-def validated(model: type[Model], tree: Tree) -> Model:
+def validate_shape(model: type[Model], tree: Tree) -> Model:
     """The file in the shape of a model. Raises ProblemError."""
     try:
         return model.model_validate(tree.data)
@@ -79,17 +79,17 @@ def validated(model: type[Model], tree: Tree) -> Model:
         raise shape_error(error, tree, model) from None
 
 
-def unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
+def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
     """What bare numbers of a file mean; extended: with numbers as double-doubles. Raises ProblemError."""
-    with under("units"):
+    with prefix_errors("units"):
         return ExtendedUnits(names) if extended else UnitSystem(names)
 
 
-def parameters(
+def build_parameters(
     raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
     """The parameters of a file, which may rest on others that are given. Raises ProblemError."""
-    with under("parameters"):
+    with prefix_errors("parameters"):
         return resolve_parameters(raw, units, given)
 
 
@@ -106,7 +106,7 @@ def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> No
         )
 
 
-def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
+def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     """The problem, its parts built in the order in which they need each other. Raises ProblemError, not yet located."""
     members = build_links(shape, values)
     _refuse_frame_of_a_link(shape, members.links)
@@ -116,7 +116,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     meshes: tuple[Mesh, ...] = ()
     if shape.gears or shape.racks or shape.cams:  # few files have any, and only those import what reads them
         meshes = build_meshes(shape, members, first.sense, values)
-    outputs = _outputs(shape, links, values)
+    outputs = _build_outputs(shape, links, values)
     linkage = Linkage(
         links,
         members.hinges,
@@ -131,11 +131,11 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         turns=build_cycle(shape, first, values),
     )
     refuse_attachments(linkage, shape, values)
-    linkage = with_masses(linkage, shape, values)
+    linkage = add_masses(linkage, shape, values)
     linkage = replace(linkage, loads=build_loads(linkage, shape, values))
-    linkage = with_springs(linkage, shape, values)
-    checks = Part(shape.checks, ("checks",), values)
-    refuse_tables(shape)
+    linkage = add_springs(linkage, shape, values)
+    checks = FileSection(shape.checks, ("checks",), values)
+    _refuse_law_with_table(shape)
     limit = values.fraction(shape.checks.lever, checks.at("lever"), zero=True)
     angles, said = list(Problem.pressure_limits), [False, False]
     for number, key in enumerate(("pressure_sliding", "pressure_turning")):
@@ -144,7 +144,7 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
     name = tree.name
     request = build_request(shape, first, values)
     refuse_work(linkage, request)
-    first_driver = shape.driver if isinstance(shape.driver, schema.Driver) else shape.driver[0]
+    first_driver = shape.driver if isinstance(shape.driver, schema.DriverKeys) else shape.driver[0]
     return Problem(
         name,
         shape.title or name,
@@ -156,28 +156,28 @@ def build_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
         tree.file,
         (angles[0], angles[1]),
         (said[0], said[1]),
-        bare_speed(first_driver, values),
+        has_bare_speed(first_driver, values),
         shape.sheet,
         shape.note,
-        _task("dynamics", shape, linkage, values),
-        _task("balancing", shape, linkage, values),
+        _build_optional_task("dynamics", shape, linkage, values),
+        _build_optional_task("balancing", shape, linkage, values),
         shape.reference,
         shape.shows,
         values,
         tree,
-        wheels=_wheels(shape, tree, linkage, values),
+        wheels=_build_wheel_tasks(shape, tree, linkage, values),
     )
 
 
-def bare_speed(driver: schema.Driver, values: ValueReader) -> bool:
+def has_bare_speed(driver: schema.DriverKeys, values: ValueReader) -> bool:
     """Whether the driver's speed has no unit."""
     speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
-    return any(values.bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
+    return any(values.is_bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
 
 
-def refuse_tables(shape: schema.File) -> None:
+def _refuse_law_with_table(shape: schema.File) -> None:
     """Refuse a law of motion where only a speed and an acceleration of the driver are known. Raises ProblemError."""
-    by_table = isinstance(shape.driver, schema.Driver) and isinstance(shape.driver.speed, schema.Speeds)
+    by_table = isinstance(shape.driver, schema.DriverKeys) and isinstance(shape.driver.speed, schema.Speeds)
     if by_table and shape.dynamics is not None:
         raise ProblemError(
             _("a law of motion is found, or it is given by a table"),
@@ -187,10 +187,10 @@ def refuse_tables(shape: schema.File) -> None:
         )
     searched = isinstance(shape.synthesis, dict) and shape.synthesis.get("task") == "optimal"
     if searched or shape.grading is not None or shape.variants is not None:
-        refuse_law(by_table, shape.dynamics is not None)
+        refuse_variable_speed(by_table, shape.dynamics is not None)
 
 
-def refuse_law(by_table: bool, dynamics: bool) -> None:
+def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
     """Refuse tables of speeds and the block dynamics where they are not known. Raises ProblemError."""
     if by_table or dynamics:
         raise ProblemError(
@@ -201,7 +201,7 @@ def refuse_law(by_table: bool, dynamics: bool) -> None:
         )
 
 
-def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
+def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
     """What a block asks for that few files have: its module in `blocks`, which reads it, is imported for them alone."""
     if getattr(shape, block) is None:
         return None
@@ -209,7 +209,7 @@ def _task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader)
     return getattr(module, f"build_{block}")(shape, linkage, values)
 
 
-def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
+def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
     """What is asked of intermittent motion, which is found in doubles alone."""
     if not shape.intermittent or isinstance(values.units, ExtendedUnits):
         return ()
@@ -217,18 +217,18 @@ def _wheels(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReade
     def other(settings: Mapping[str, object]) -> Linkage:
         """The linkage with other values of parameters; what a task of synthesis found stays."""
         given = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
-        own = parameters({**shape.parameters, **settings}, values.units, given)
+        own = build_parameters({**shape.parameters, **settings}, values.units, given)
         alone = shape.model_copy(update={"intermittent": {}})
-        return build_shape(alone, tree, ValueReader(own, values.units)).linkage
+        return build_from_shape(alone, tree, ValueReader(own, values.units)).linkage
 
     module = import_module("tmm_cli.problem.blocks.optional_blocks")  # few files have the block
     wheels: tuple[WheelTask, ...] = module.build_wheels(shape, linkage, values, other)
     return wheels
 
 
-def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:
+def _build_outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader) -> tuple[Output, ...]:
     moving = [name for name in links if name != FRAME]
-    outputs = cast("list[schema.Output]", shape.output)  # as its validator left it
+    outputs = cast("list[schema.OutputKeys]", shape.output)  # as its validator left it
     paths: list[Path] = [("output", number) if len(outputs) > 1 else ("output",) for number in range(len(outputs))]
     points = [p for name in moving for p in links[name].points if p not in links[FRAME].points and p not in moving]
     found: list[Output] = []
@@ -236,12 +236,12 @@ def _outputs(shape: schema.File, links: Mapping[str, Link], values: ValueReader)
         if given.link in points:
             found += [Output(f"{given.link}.{axis}", given.working) for axis in "xy"]
         else:
-            link = values.known(given.link, dict.fromkeys([*moving, *points]), path, "link or point")
+            link = values.known_name(given.link, dict.fromkeys([*moving, *points]), path, "link or point")
             found.append(Output(link, given.working))
     return tuple(found)
 
 
-def problem_of(tree: Tree) -> Problem | TaskProblem:
+def build_any_problem(tree: Tree) -> Problem | TaskProblem:
     """The problem of a file that has been read. Raises ProblemError."""
     if "synthesis" not in tree.data:
         return build_problem(tree)
@@ -261,19 +261,19 @@ WITHOUT_PARAMETERS = ValueReader({}, UnitSystem())
 
 def build_chain(tree: Tree) -> ChainProblem:
     """A chain from a file that has been read. Raises ProblemError, located in the file."""
-    shape = validated(schema.SpatialFile, tree)
+    shape = validate_shape(schema.SpatialFile, tree)
     name = tree.name
     spatial = shape.structure.spatial
-    with placed_in(tree):
-        chain = _chain(spatial)
+    with locate_errors_in(tree):
+        chain = _build_spatial_chain(spatial)
         if spatial.output is not None:
-            WITHOUT_PARAMETERS.known(spatial.output, chain.links, (*SPATIAL, "output"), "moving link")
+            WITHOUT_PARAMETERS.known_name(spatial.output, chain.links, (*SPATIAL, "output"), "moving link")
         return ChainProblem(
             name,
             shape.title or name,
             chain,
             spatial.output,
-            _local(spatial, chain),
+            _local_freedoms(spatial, chain),
             spatial.wanted,
             WITHOUT_PARAMETERS.units,
             shape.description,
@@ -283,11 +283,11 @@ def build_chain(tree: Tree) -> ChainProblem:
         )
 
 
-def _chain(spatial: schema.Spatial) -> SpatialChain:
-    links = _links(spatial)
+def _build_spatial_chain(spatial: schema.Spatial) -> SpatialChain:
+    links = _chain_links(spatial)
     pairs = []
     for name, pair in spatial.pairs.items():
-        part = Part(pair, (*SPATIAL, "pairs", name), WITHOUT_PARAMETERS)
+        part = FileSection(pair, (*SPATIAL, "pairs", name), WITHOUT_PARAMETERS)
         check_name(name, part.path, "pair")
         i, j = part.two_links((FRAME, *links))
         part.one_of("kind", "freedoms")
@@ -300,7 +300,7 @@ def _chain(spatial: schema.Spatial) -> SpatialChain:
     return chain
 
 
-def _links(spatial: schema.Spatial) -> tuple[str, ...]:
+def _chain_links(spatial: schema.Spatial) -> tuple[str, ...]:
     given = spatial.links
     if isinstance(given, int):
         return tuple(str(number) for number in range(1, given + 1))
@@ -322,9 +322,9 @@ def _links(spatial: schema.Spatial) -> tuple[str, ...]:
     return tuple(given)
 
 
-def _local(spatial: schema.Spatial, chain: SpatialChain) -> int | None:
+def _local_freedoms(spatial: schema.Spatial, chain: SpatialChain) -> int | None:
     if not isinstance(spatial.local, dict):
         return spatial.local
     for link in spatial.local:
-        WITHOUT_PARAMETERS.known(link, chain.links, (*SPATIAL, "local", link), "moving link", key=True)
+        WITHOUT_PARAMETERS.known_name(link, chain.links, (*SPATIAL, "local", link), "moving link", key=True)
     return sum(spatial.local.values())

@@ -39,40 +39,40 @@ from tmm_cli.mechanics.errors import (
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
 from tmm_cli.mechanics.structure import Structure
-from tmm_cli.problem.errors import ProblemError, no_position, quote, unknown_name
+from tmm_cli.problem.errors import ProblemError, quote, unknown_name_error, unknown_position_error
 from tmm_cli.problem.problems import Problem
 from tmm_cli.problem.units import UnitSystem
 
 
 @singledispatch
-def worded(error: LinkageError, problem: Problem) -> ProblemError:
+def problem_error(error: LinkageError, problem: Problem) -> ProblemError:
     """A stage's refusal, with the path of the key that it is about."""
     return ProblemError(str(error))
 
 
-def shown(value: complex | float, units: UnitSystem) -> str:
+def format_coordinate(value: complex | float, units: UnitSystem) -> str:
     """A point (m) or an angle (rad) in the units of the file."""
     if isinstance(value, complex):
         return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
-    return units.told(value, ANGLE)
+    return units.format_value(value, ANGLE)
 
 
 # Refusals of linkages that do not move as their drivers want, or are not assembled as sketched.
 
 
-MOST_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
+MAX_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
 
 
 def _driver_at(problem: Problem) -> str:
     """Where the driver stands in the sketch."""
-    return problem.units.told(problem.linkage.sketch.at, place_dimension(problem.linkage.driver.kind))
+    return problem.units.format_value(problem.linkage.sketch.at, place_dimension(problem.linkage.driver.kind))
 
 
-@worded.register
+@problem_error.register
 def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
     short = _("it never closes")
     if error.residual is not None:
-        short = _("{size} short of closing").format(size=problem.units.told(error.residual, LENGTH))
+        short = _("{size} short of closing").format(size=problem.units.format_value(error.residual, LENGTH))
     return ProblemError(
         _("group {group} cannot be assembled with the driver at {place}").format(
             group=error.group.title, place=_driver_at(problem)
@@ -83,7 +83,7 @@ def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
     group, place, units = error.group.title, _driver_at(problem), problem.units
     if not error.choices:
@@ -93,8 +93,8 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
             found=place,
             allowed=_("another place of the driver"),
         )
-    told = list(error.choices.items())[:MOST_CHOICES]
-    ways = "; ".join(f"{name}: {shown(a, units)} or {shown(b, units)}" for name, (a, b) in told)
+    told = list(error.choices.items())[:MAX_CHOICES]
+    ways = "; ".join(f"{name}: {format_coordinate(a, units)} or {format_coordinate(b, units)}" for name, (a, b) in told)
     undecided = _(
         "the sketch does not say how group {group} is assembled; see tmm kinematics {file} --assemblies"
     ).format(group=group, file=problem.file or "FILE")
@@ -106,19 +106,19 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _no_such_assembly(error: SketchMismatchError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("the sketch fits no assembly"),
         path=("sketch", error.name),
-        found=shown(error.sketched, problem.units),
+        found=format_coordinate(error.sketched, problem.units),
         allowed=_("about {value} with the driver at {place}").format(
-            value=shown(error.found, problem.units), place=_driver_at(problem)
+            value=format_coordinate(error.found, problem.units), place=_driver_at(problem)
         ),
     )
 
 
-@worded.register
+@problem_error.register
 def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("a group of so many links is not solved: {title}").format(title=error.group.title),
@@ -129,7 +129,7 @@ def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("the change points of group {title} take too long to find: so many groups lie before it").format(
@@ -142,11 +142,11 @@ def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> Probl
     )
 
 
-@worded.register
+@problem_error.register
 def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
     lone = _lone_ends(problem.linkage, error.structure.under_constrained)
     hint = _("point {point} is on link {link} alone; a hinge on the frame: points: {{{point}: [x, y]}}")
-    return mobility(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
+    return mobility_error(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
 
 
 def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
@@ -164,7 +164,7 @@ def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]
     return lone
 
 
-def mobility(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
+def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
     """The refusal of a wrong mobility: links that are loose (with hints what holds them), or over-held ones."""
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
@@ -205,7 +205,7 @@ def mobility(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
 # Refusals of what hangs on strokes, on the turns of a cycle, or on how far the driver comes.
 
 
-@worded.register
+@problem_error.register
 def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     block, *__, key = error.path
     if block == "intermittent" and key == "moves_with":
@@ -219,7 +219,7 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     if block == "intermittent":
         return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output that has strokes"))
     if error.limits is not None:
-        first, last = (shown(limit, problem.units) for limit in error.limits)
+        first, last = (format_coordinate(limit, problem.units) for limit in error.limits)
         return ProblemError(
             _("a table against the stroke needs a driver that turns fully, so that the output makes whole strokes"),
             path=error.path,
@@ -232,12 +232,14 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     return ProblemError(text, path=error.path, found=found, allowed=_("see output:"))
 
 
-@worded.register
+@problem_error.register
 def _speeds_end(error: SpeedsEndError, problem: Problem) -> ProblemError:
-    first, last, end = (shown(x, problem.units) for x in (error.first, error.last, error.first + error.cycle))
+    first, last, end = (
+        format_coordinate(x, problem.units) for x in (error.first, error.last, error.first + error.cycle)
+    )
     ends = _("the table goes from {first} to {last}").format(first=first, last=last)
     if error.at is not None:
-        ends = _("{ends}, a position is at {place}").format(ends=ends, place=shown(error.at, problem.units))
+        ends = _("{ends}, a position is at {place}").format(ends=ends, place=format_coordinate(error.at, problem.units))
     closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
     return ProblemError(
         _("the table of speeds does not reach over all positions"),
@@ -248,13 +250,13 @@ def _speeds_end(error: SpeedsEndError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _no_turn(error: NoTurnError, problem: Problem) -> ProblemError:
     full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=error.turns)
     return ProblemError(full, path=("cycle",), key=True)
 
 
-@worded.register
+@problem_error.register
 def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
     wanted = _("a law of motion is found for one crank that turns fully")
     allowed = _("one driver that turns round and round")
@@ -267,9 +269,9 @@ def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
     return ProblemError(wanted, path=error.path, key=True, allowed=allowed)
 
 
-@worded.register
+@problem_error.register
 def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
-    first, last = shown(error.start, problem.units), shown(error.end, problem.units)
+    first, last = format_coordinate(error.start, problem.units), format_coordinate(error.end, problem.units)
     return ProblemError(
         _("the run goes where the driver does not come"),
         path=("dynamics", "run"),
@@ -278,7 +280,7 @@ def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemError:
     turns, units = round(error.cycle / (2 * math.pi)), problem.units
     text = _("this row is never reached: all repeats after {turns} turns of the driver")
@@ -289,13 +291,15 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
         unit=units.spelt(ANGLE),
         turns=max(2, math.ceil(error.argument / math.tau)),
     )
-    return ProblemError(text.format(turns=turns), path=error.path, found=shown(error.argument, units), allowed=allowed)
+    return ProblemError(
+        text.format(turns=turns), path=error.path, found=format_coordinate(error.argument, units), allowed=allowed
+    )
 
 
 # Refusals of laws of motion and of balancing.
 
 
-@worded.register
+@problem_error.register
 def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
@@ -305,7 +309,7 @@ def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _by_speed(error: BySpeedError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("a law of motion is not found where forces hang on reactions or on speeds"),
@@ -315,7 +319,7 @@ def _by_speed(error: BySpeedError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
     reason = _("the run is not computed to its end: after {count} evaluations it has come to {time} s")
     return ProblemError(
@@ -325,7 +329,7 @@ def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
     if problem.dynamics is not None and not problem.dynamics.cyclic:
         return ProblemError(
@@ -338,23 +342,23 @@ def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
         _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),
         path=("dynamics",),
         key=True,
-        found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
+        found=_("at {place} of the driver's way").format(place=format_coordinate(error.place, problem.units)),
         allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
     )
 
 
-@worded.register
+@problem_error.register
 def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("there is no law of motion: nothing that moves with the driver there has mass or inertia"),
         path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",),
         key=True,
-        found=_("at {place} of the driver's way").format(place=shown(error.place, problem.units)),
+        found=_("at {place} of the driver's way").format(place=format_coordinate(error.place, problem.units)),
         allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
     )
 
 
-@worded.register
+@problem_error.register
 def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
     return ProblemError(
         _(
@@ -370,7 +374,7 @@ def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
     found = _(
@@ -393,14 +397,14 @@ def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
             moment=f"{units.from_si(error.pushing, MOMENT):.4g}",
             unit=unit,
             most=f"{units.from_si(error.most, MOMENT):.4g}",
-            place=shown(error.place, units),
-            speed=units.told(error.speed, ANGULAR_SPEED, 4),
-            idle=units.told(error.idle, ANGULAR_SPEED, 4),
+            place=format_coordinate(error.place, units),
+            speed=units.format_value(error.speed, ANGULAR_SPEED, 4),
+            idle=units.format_value(error.idle, ANGULAR_SPEED, 4),
         ),
     )
 
 
-@worded.register
+@problem_error.register
 def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
     return ProblemError(
@@ -408,7 +412,7 @@ def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
         path=("dynamics", "motor"),
         key=True,
         found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way").format(
-            moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=shown(error.place, units)
+            moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=format_coordinate(error.place, units)
         ),
         allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio").format(
             moment=f"{units.from_si(error.wanted, MOMENT):.4g}", unit=unit
@@ -416,7 +420,7 @@ def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
     )
 
 
-@worded.register
+@problem_error.register
 def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
     text, allowed = _("no flywheel keeps this fluctuation with this motor"), _("a larger delta")
     if not math.isnan(error.own):
@@ -430,26 +434,26 @@ def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
 # Refusals of names and numbers that nothing in the file has, and of one setting of several.
 
 
-@worded.register
+@problem_error.register
 def _position(error: UnknownPositionError, problem: Problem) -> ProblemError:
-    return no_position(error.number, error.count, "positions")
+    return unknown_position_error(error.number, error.count, "positions")
 
 
-@worded.register
+@problem_error.register
 def _name(error: UnknownNameError, problem: Problem) -> ProblemError:
     what = _("there is no such point, link or centre of mass")
-    return unknown_name(error.name, error.allowed, what, path=("links",), key=True)
+    return unknown_name_error(error.name, error.allowed, what, path=("links",), key=True)
 
 
-@worded.register
+@problem_error.register
 def _on_frame(error: NotOnFrameError, problem: Problem) -> ProblemError:
     what = _("this link cannot drive: it is not joined to the frame")
-    return unknown_name(error.link, error.allowed, what, path=("links",), key=True)
+    return unknown_name_error(error.link, error.allowed, what, path=("links",), key=True)
 
 
-@worded.register
+@problem_error.register
 def _setting(error: SettingError, problem: Problem) -> ProblemError:
-    own = worded(error.error, problem)
+    own = problem_error(error.error, problem)
     return ProblemError(own.message, path=error.path, found=own.found, allowed=own.allowed)
 
 
@@ -457,15 +461,15 @@ def _setting(error: SettingError, problem: Problem) -> ProblemError:
 
 
 @contextmanager
-def in_words_of(problem: Problem) -> Iterator[None]:
+def translate_errors(problem: Problem) -> Iterator[None]:
     """What a stage refuses inside is said in the terms of the file. Raises ProblemError."""
     try:
         yield
     except LinkageError as error:
-        raise refusal(error, problem) from None
+        raise located_problem_error(error, problem) from None
 
 
-def refusal(error: LinkageError, problem: Problem) -> ProblemError:
+def located_problem_error(error: LinkageError, problem: Problem) -> ProblemError:
     """A stage's refusal in the words and at the place of the file."""
-    found = worded(error, problem)
+    found = problem_error(error, problem)
     return found.located(problem.file, problem.source) if problem.file else found

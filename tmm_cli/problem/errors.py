@@ -34,7 +34,7 @@ class WrittenNumber(float):
 
 
 @dataclass(frozen=True)
-class Mark:
+class SourcePosition:
     """A place in a text; line and column count from 1."""
 
     line: int
@@ -52,8 +52,8 @@ class Tree:
 
     file: str
     data: dict[str, Any]
-    marks: Mapping[Path, Mark]
-    key_marks: Mapping[Path, Mark]
+    marks: Mapping[Path, SourcePosition]
+    key_marks: Mapping[Path, SourcePosition]
     commas: Mapping[Path, str]
     given: Mapping[Path, str] = field(default_factory=dict)
 
@@ -62,7 +62,7 @@ class Tree:
         """That of the problem: its file's without the ending; what of it is no text is lost, and it is one line."""
         return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
-    def mark(self, path: Path, *, key: bool = False) -> Mark | None:
+    def mark(self, path: Path, *, key: bool = False) -> SourcePosition | None:
         """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""
         if path in self.marks:
             return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]
@@ -101,7 +101,7 @@ class ProblemError(Exception):
         allowed: str | None = None,
         near: str | None = None,
         file: str | None = None,
-        mark: Mark | None = None,
+        mark: SourcePosition | None = None,
         key: bool = False,
     ) -> None:
         self.message = clean(message, 400)
@@ -153,7 +153,7 @@ class ProblemError(Exception):
         where = "" if self.file is None else clean(self.file, 300)
         if self.mark is not None:
             where = f"{where or 'line'}:{self.mark.line}:{self.mark.column}"
-        head = ": ".join(part for part in (where, path_text(self.path), self.message) if part)
+        head = ": ".join(part for part in (where, format_path(self.path), self.message) if part)
         lines = [head]
         if self.found is not None:
             lines.append(_("found:   {found}").format(found=self.found))
@@ -164,7 +164,7 @@ class ProblemError(Exception):
             if (
                 self.found is not None
                 and self.found != quote(self.near)
-                and latin(self.found) == latin(quote(self.near))
+                and to_latin(self.found) == to_latin(quote(self.near))
             ):
                 latin_meant = _("did you mean '{near}' in Latin letters?")
                 told = latin_meant if self.near.isascii() else _("did you mean '{near}' in Cyrillic letters?")
@@ -173,7 +173,7 @@ class ProblemError(Exception):
 
 
 @contextmanager
-def under(*path: str | int) -> Iterator[None]:
+def prefix_errors(*path: str | int) -> Iterator[None]:
     """What is refused inside has this path before its own."""
     try:
         yield
@@ -182,7 +182,7 @@ def under(*path: str | int) -> Iterator[None]:
 
 
 @contextmanager
-def placed_in(tree: Tree) -> Iterator[None]:
+def locate_errors_in(tree: Tree) -> Iterator[None]:
     """What is refused inside has the file, line and column of its path."""
     try:
         yield
@@ -190,7 +190,7 @@ def placed_in(tree: Tree) -> Iterator[None]:
         raise error.located(tree.file, tree) from None
 
 
-def path_text(path: Path) -> str:
+def format_path(path: Path) -> str:
     """`links.3.points[0]`, safe to print."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{clean(part, 40)}" for part in path)
     return text.removeprefix(".")
@@ -209,7 +209,7 @@ def _escape(char: str) -> str:
     return char if char.isprintable() else char.encode("unicode_escape").decode("ascii")
 
 
-def visible(text: str) -> str:
+def escape_controls(text: str) -> str:
     """The text with characters escaped that command a terminal or hide text; lines and tabs stay."""
     return CONTROLS.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
@@ -231,7 +231,7 @@ def quote(value: object) -> str:
     return clean(type(value).__name__)
 
 
-def nearest(name: str, names: Iterable[str]) -> str | None:
+def nearest_name(name: str, names: Iterable[str]) -> str | None:
     """The name that was probably meant, or None when nothing is close: case and look-alike letters do not count."""
     known = list(names)
     if name in known:
@@ -247,7 +247,7 @@ def nearest(name: str, names: Iterable[str]) -> str | None:
     return folded[close[0]] if close else None
 
 
-def unknown_name(
+def unknown_name_error(
     name: str,
     known: Iterable[str],
     message: str,
@@ -264,31 +264,31 @@ def unknown_name(
         path=path,
         found=quote(name),
         allowed=allowed or ", ".join(names) or None,
-        near=nearest(name, names),
+        near=nearest_name(name, names),
         file=file,
         key=key,
     )
 
 
-def no_position(number: int, count: int, *path: str | int) -> ProblemError:
+def unknown_position_error(number: int, count: int, *path: str | int) -> ProblemError:
     """Of the number of a position, where there are so many of them."""
     allowed = _("0 to {last}").format(last=count - 1)
     return ProblemError(_("there is no such position"), path=path, found=str(number), allowed=allowed)
 
 
-def chosen_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
+def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
     """Names with commas between them, of those that an option knows. Raises ProblemError with the reason."""
     wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)
     for name in wanted or [text]:
         if name not in allowed:
-            raise unknown_name(name, allowed, reason, file=option)
+            raise unknown_name_error(name, allowed, reason, file=option)
     return wanted
 
 
-def latin(text: str) -> str:
+def to_latin(text: str) -> str:
     """The text with Cyrillic letters that look like Latin ones replaced by these."""
     return text.translate(_LOOKALIKES)
 
 
 def _folded(name: str) -> str:
-    return latin(name).casefold().replace("-", "_").replace(" ", "_")
+    return to_latin(name).casefold().replace("-", "_").replace(" ", "_")

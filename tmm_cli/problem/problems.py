@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tmm_cli.mechanics.linkage import Linkage, Request
 from tmm_cli.mechanics.structure import SpatialChain
 from tmm_cli.problem.errors import Tree
-from tmm_cli.problem.schema import NoteStyle, SheetTexts, Shown
+from tmm_cli.problem.schema import NoteStyle, SheetTexts, ShownKeys
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
 
@@ -58,7 +58,7 @@ class Problem:
     dynamics: SteadyTask | RunTask | None = None
     balancing: BalancingTask | None = None
     reference: str = ""
-    shows: Mapping[str, Shown] = field(default_factory=dict, compare=False, repr=False)
+    shows: Mapping[str, ShownKeys] = field(default_factory=dict, compare=False, repr=False)
     values: ValueReader | None = field(default=None, compare=False, repr=False)
     source: Tree | None = field(default=None, compare=False, repr=False)
     synthesis: Synthesised | None = field(default=None, compare=False, repr=False)
@@ -120,5 +120,5 @@ class ChainProblem:
     units: UnitSystem
     description: str = ""
     reference: str = ""
-    shows: Mapping[str, Shown] = field(default_factory=dict, compare=False)
+    shows: Mapping[str, ShownKeys] = field(default_factory=dict, compare=False)
     source: Tree | None = field(default=None, compare=False, repr=False)

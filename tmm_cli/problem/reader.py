@@ -13,14 +13,14 @@ from typing import Any, Final, NoReturn
 import yaml
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import MAX_DEPTH, Mark, Path, ProblemError, Tree, quote, unknown_name
-from tmm_cli.problem.scalars import HIDDEN, Scalar, comma_error, plain_value, split_number
+from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote, unknown_name_error
+from tmm_cli.problem.scalars import HIDDEN, Scalar, decimal_comma_error, is_split_number, plain_value
 
 # In a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
 _IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
 
 
-def tab_error(file: str, mark: Mark) -> ProblemError:
+def tab_error(file: str, mark: SourcePosition) -> ProblemError:
     """The refusal of a tab where the indentation counts."""
     return ProblemError(
         _("a tab is used for indentation"),
@@ -70,7 +70,7 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
         return _refusal_at(shown.index, text, file, message, allowed)
     if place is None:
         return ProblemError(message, allowed=allowed, file=file)
-    mark = Mark(place.line + 1, place.column + 1)
+    mark = SourcePosition(place.line + 1, place.column + 1)
     rest = text[place.index :]
     if rest.startswith("\t"):
         return tab_error(file, mark)
@@ -79,7 +79,7 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
 
 
 def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) -> ProblemError:
-    mark = Mark(text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index))
+    mark = SourcePosition(text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index))
     found = quote(text[index:].split("\n")[0].strip())
     return ProblemError(message, found=found, allowed=allowed, file=file, mark=mark)
 
@@ -117,7 +117,7 @@ def _start_of_stray_text(text: str, start: int, stop: int) -> int:
 
 MAX_NODES: Final = 50_000
 
-LONGEST_CALL: Final = 100  # so far the end of a call that was cut is looked for
+MAX_CALL_LENGTH: Final = 100  # so far the end of a call that was cut is looked for
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _ITEM_BELOW = re.compile(r"[\r\n] *- ")
@@ -132,8 +132,8 @@ class Composer:
         self.text, self.file = text, file
         self.events = self.parsed()
         self.nodes = 0
-        self.marks: dict[Path, Mark] = {}
-        self.key_marks: dict[Path, Mark] = {}
+        self.marks: dict[Path, SourcePosition] = {}
+        self.key_marks: dict[Path, SourcePosition] = {}
         self.commas: dict[Path, str] = {}
 
     def compose(self) -> dict[str, Any]:
@@ -258,7 +258,7 @@ class Composer:
         """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
         if event.value.count("(") <= event.value.count(")"):
             return
-        if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + LONGEST_CALL]):
+        if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + MAX_CALL_LENGTH]):
             if cut[0].startswith("("):  # as coordinates are written on paper
                 self.refuse(event, path, _("two coordinates [x, y] are wanted"), quote(cut[0]), f"[{cut[0][1:-1]}]")
             self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
@@ -271,13 +271,13 @@ class Composer:
             its_path, number = before
             self.cut_by_comma(number, its_path)
             touching = self.text[number.end_mark.index : key.start_mark.index] == ","
-            if touching and split_number(number.value, key.value):
-                raise self.placed(comma_error(number.value, key.value), number, its_path)
+            if touching and is_split_number(number.value, key.value):
+                raise self.placed(decimal_comma_error(number.value, key.value), number, its_path)
         self.refuse(key, path, _("a key without a value"), quote(key.value), _("'key: value', a space after ':'"))
 
 
-def _mark(event: Any) -> Mark:
-    return Mark(event.start_mark.line + 1, event.start_mark.column + 1)
+def _mark(event: Any) -> SourcePosition:
+    return SourcePosition(event.start_mark.line + 1, event.start_mark.column + 1)
 
 
 # A YAML file to plain data with a line and column for every key and value.
@@ -303,28 +303,28 @@ def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
 def read_file(path: str | os.PathLike[str]) -> Tree:
     """Read a problem file. Raises ProblemError when it is not a readable, bounded, plain YAML mapping."""
     file = os.fspath(path)
-    return read_text(file_text(file), file)
+    return read_text(read_file_text(file), file)
 
 
-def file_text(file: str) -> str:
+def read_file_text(file: str) -> str:
     """The text of a file of bounded size. Raises ProblemError."""
-    return decoded(file_bytes(file), file)
+    return decode_text(read_bytes(file), file)
 
 
-def language_in(data: bytes) -> str | None:
+def find_language(data: bytes) -> str | None:
     """The language that a problem file names in a line `lang: ru`, even if it cannot be read as a whole."""
     named = _LANG.search(data.removeprefix(codecs.BOM_UTF8))
     return None if named is None else named[1].decode()
 
 
-def file_bytes(file: str) -> bytes:
+def read_bytes(file: str) -> bytes:
     """The content of a file of bounded size. Raises ProblemError."""
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
             raise ProblemError(_("this is a directory"), allowed=_("a YAML file"), file=file)
         if found.st_size > MAX_BYTES:
-            raise _too_large(file, f"{found.st_size} bytes")
+            raise _too_large_error(file, f"{found.st_size} bytes")
         with open(file, "rb") as stream:
             # Pipes and devices have no size to look at beforehand.
             data = stream.read(MAX_BYTES + 1)
@@ -334,16 +334,16 @@ def file_bytes(file: str) -> bytes:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason), file=file) from None
     if len(data) > MAX_BYTES:
-        raise _too_large(file, f"more than {MAX_BYTES} bytes")
+        raise _too_large_error(file, f"more than {MAX_BYTES} bytes")
     return data
 
 
-def _too_large(file: str, found: str) -> ProblemError:
+def _too_large_error(file: str, found: str) -> ProblemError:
     allowed = _("at most {max_bytes} bytes").format(max_bytes=MAX_BYTES)
     return ProblemError(_("the file is too large"), found=found, allowed=allowed, file=file)
 
 
-def decoded(data: bytes, file: str) -> str:
+def decode_text(data: bytes, file: str) -> str:
     """The content of a file as text. Raises ProblemError when it is not UTF-8."""
     body = data.removeprefix(codecs.BOM_UTF8)
     try:
@@ -358,7 +358,7 @@ def decoded(data: bytes, file: str) -> str:
             ),
             allowed=_("UTF-8; in the editor: Save with encoding, UTF-8"),
             file=file,
-            mark=Mark(before.count(b"\n") + 1, column),
+            mark=SourcePosition(before.count(b"\n") + 1, column),
         ) from None
 
 
@@ -366,7 +366,7 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
     """Read the text of a problem file; `file` is its name in messages. Raises as `read_file`."""
     text = text.removeprefix("\ufeff")
     if len(text) > MAX_BYTES:
-        raise _too_large(file, f"{len(text)} characters")
+        raise _too_large_error(file, f"{len(text)} characters")
     if hidden := HIDDEN.search(text):
         raise ProblemError(
             _("a control or invisible character"),
@@ -382,15 +382,15 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
     return Tree(file, data, composer.marks, composer.key_marks, composer.commas)
 
 
-def _mark_at(text: str, index: int) -> Mark:
+def _mark_at(text: str, index: int) -> SourcePosition:
     lines = re.split(r"\r\n|\r|\n", text[:index])
-    return Mark(len(lines), len(lines[-1]) + 1)
+    return SourcePosition(len(lines), len(lines[-1]) + 1)
 
 
 # Parameters that are given beside the file: `--set OA=120`.
 
 
-def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
+def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
     """The file with other values of parameters that it has, each read as if it stood there. Raises ProblemError."""
     own = tree.data.get("parameters")
     parameters = dict(own) if isinstance(own, dict) else {}
@@ -403,7 +403,9 @@ def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
             raise ProblemError(_("a name and a value are wanted"), allowed="--set OA=120", file=words)
         if name not in parameters:
             none = None if parameters else _("none: the file has no parameters")
-            raise unknown_name(name, parameters, _("there is no parameter of that name"), none, path=path, file=words)
+            raise unknown_name_error(
+                name, parameters, _("there is no parameter of that name"), none, path=path, file=words
+            )
         if path in given:
             raise ProblemError(_("this is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
         given[path] = words
@@ -414,22 +416,22 @@ def with_settings(tree: Tree, settings: Sequence[str]) -> Tree:
     return replace(tree, data={**tree.data, "parameters": parameters}, given=given) if given else tree
 
 
-def unused(tree: Tree, names: Iterable[str]) -> list[str]:
+def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
     """Those of these parameters that no value of the file names, nor a parameter that one names."""
     own = tree.data.get("parameters", {})
     met: set[str] = set()
     left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
     while left:
-        new = {word for value in left for word in _words(value)} - met
+        new = {word for value in left for word in _find_names(value)} - met
         met |= new
         left = [own[word] for word in new if word in own]
     return [name for name in names if name not in met]
 
 
-def _words(value: Any) -> Iterator[str]:
+def _find_names(value: Any) -> Iterator[str]:
     """What could be names in texts, which arithmetic is too."""
     if isinstance(value, str):
         yield from re.findall(r"[^\W\d]\w*", value)
     elif isinstance(value, dict | list):
         for part in value.values() if isinstance(value, dict) else value:
-            yield from _words(part)
+            yield from _find_names(part)

@@ -44,8 +44,8 @@ def plain_value(text: str) -> Scalar:
     if _NOT_FINITE.fullmatch(text):
         raise ProblemError(_("not a finite number"), found=quote(text), allowed=_("a finite number"))
     whole, comma, part = text.partition(",")
-    if comma and split_number(whole, part):
-        raise comma_error(whole, part)
+    if comma and is_split_number(whole, part):
+        raise decimal_comma_error(whole, part)
     return text
 
 
@@ -59,12 +59,12 @@ def finite_float(text: str) -> float:
     return number
 
 
-def split_number(whole: str, part: str) -> bool:
+def is_split_number(whole: str, part: str) -> bool:
     """Whether the words on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
     return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(part))
 
 
-def comma_error(whole: str, part: str) -> ProblemError:
+def decimal_comma_error(whole: str, part: str) -> ProblemError:
     """The refusal of `whole,part`, naming what to write instead."""
     return ProblemError(
         _("decimal comma: write {whole}.{part}").format(whole=whole, part=part),

@@ -6,12 +6,13 @@ from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema
+from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
-from tmm_cli.problem.blocks.loads import Load, Mass
-from tmm_cli.problem.blocks.meshes import Cam, Gear, Rack
-from tmm_cli.problem.blocks.optional_keys import Balancing, Dynamics, Wheels
-from tmm_cli.problem.blocks.springs import Friction, Spring
+from tmm_cli.problem.blocks.loads import LoadKeys, MassKeys
+from tmm_cli.problem.blocks.meshes import CamKeys, GearKeys, RackKeys
+from tmm_cli.problem.blocks.optional_keys import BalancingKeys, DynamicsKeys, Wheels
+from tmm_cli.problem.blocks.springs import FrictionKeys, SpringKeys
 from tmm_cli.problem.schema_types import (
     MAX_LINKS,
     MAX_POSITIONS,
@@ -26,30 +27,32 @@ from tmm_cli.problem.schema_types import (
     checked_value,
 )
 
-LONGEST = 200
+MAX_TEXT_LENGTH = 200
 
 
-def _words(found: Any) -> str:
+def _checked_short_text(found: Any) -> str:
     """A line of text; the number of a group may be written as a number."""
     if isinstance(found, bool) or not isinstance(found, int | str):
         raise PydanticCustomError("words", "text is wanted")
-    if len(str(found)) > LONGEST:
-        raise PydanticCustomError("words", f"text is at most {LONGEST} characters long")
+    if len(str(found)) > MAX_TEXT_LENGTH:
+        raise PydanticCustomError("words", f"text is at most {MAX_TEXT_LENGTH} characters long")
     return str(found)
 
 
-Words = Annotated[str, BeforeValidator(_words), WithJsonSchema({"anyOf": NAMES})]
+ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema({"anyOf": NAMES})]
 
 
 class SheetTexts(Strict):
     """Texts of the title block. One that is too long for its cell is cut there."""
 
-    student: Words = Field(default="", description="who drew it")
-    group: Words = Field(default="", description="the student's group")
-    teacher: Words = Field(default="", description="who checks it")
-    institution: Words = Field(default="", description="the university, on the title page of the note")
-    department: Words = Field(default="", description="the university and its department")
-    code: Words = Field(default="", description="designation of the project; the number of the sheet is added to it")
+    student: ShortText = Field(default="", description="who drew it")
+    group: ShortText = Field(default="", description="the student's group")
+    teacher: ShortText = Field(default="", description="who checks it")
+    institution: ShortText = Field(default="", description="the university, on the title page of the note")
+    department: ShortText = Field(default="", description="the university and its department")
+    code: ShortText = Field(
+        default="", description="designation of the project; the number of the sheet is added to it"
+    )
     block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")
 
 
@@ -76,7 +79,7 @@ Number = Annotated[int, Field(ge=0)]
 Quantity = Annotated[str, Field(min_length=1, max_length=60)]
 
 
-class Shown(Strict):
+class ShownKeys(Strict):
     """A quantity by the name that the tables give it, as one number."""
 
     of: Quantity = Field(description="what: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; of vectors the size")
@@ -99,7 +102,7 @@ class Shown(Strict):
     expected: Value | None = Field(default=None, description="what it should be, from elsewhere: a run compares it")
 
 
-Shows = Annotated[dict[Annotated[str, Field(max_length=120)], Shown], Field(max_length=50)]
+Shows = Annotated[dict[Annotated[str, Field(max_length=120)], ShownKeys], Field(max_length=50)]
 
 
 # The shape of a problem file that gives a chain in space by its pairs alone.
@@ -126,7 +129,7 @@ Kind = Literal[
 Freedoms = Annotated[int, Field(ge=0, le=MAX_MOBILITY)]
 
 
-class SpatialPair(Strict):
+class SpatialPairKeys(Strict):
     """A pair of two links."""
 
     between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
@@ -140,7 +143,7 @@ class Spatial(Strict):
     links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
         Field(default=None, description="moving links, names or how many; those of the pairs when left out")
     )
-    pairs: dict[Name, SpatialPair] = Field(min_length=1, max_length=MAX_PAIRS)
+    pairs: dict[Name, SpatialPairKeys] = Field(min_length=1, max_length=MAX_PAIRS)
     output: Name | None = Field(default=None, description="the link that is held for the manoeuvrability")
     local: Freedoms | dict[Name, Freedoms] | None = Field(
         default=None, description="local freedoms Wm, all of them or by link; found from the pairs when left out"
@@ -182,7 +185,7 @@ class Guide(Strict):
     unbounded: bool = Field(default=False, description="on a moving link: it goes on beyond the points of `along`")
 
 
-class Slide(Strict):
+class SlideKeys(Strict):
     """A sliding pair of this link."""
 
     on: Name = Field(description="a guide's name, or the link that it slides on")
@@ -195,26 +198,26 @@ class Slide(Strict):
     unbounded: bool = Field(default=False, description="the guide goes on beyond the points of `along`")
 
 
-def _on(found: Any) -> Any:
+def _expand_guide_name(found: Any) -> Any:
     return {"on": found} if isinstance(found, str | int) and not isinstance(found, bool) else found
 
 
-OneSlide = Annotated[Slide, BeforeValidator(_on, json_schema_input_type=Slide | Name)]
+SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_schema_input_type=SlideKeys | Name)]
 
 
-class Link(Strict):
+class LinkKeys(Strict):
     """A moving link. Its axes: origin in its first point, x towards the second; or as coordinates say."""
 
     name: str | None = Field(default=None, max_length=60, description="what the link is called in reports")
     points: list[Name] | dict[Name, Vector] = Field(description="names of its points, or their coordinates in its axes")
     length: Value | None = Field(default=None, description="distance of two points")
     also: dict[Name, Place] = Field(default_factory=dict, description="further points, in its axes")
-    slides: OneSlide | list[OneSlide] | None = Field(
+    slides: SlideOrGuide | list[SlideOrGuide] | None = Field(
         default=None, description="what it slides on: a guide, or {on, along}, or several of them in a list"
     )
 
     @property
-    def sliding(self) -> list[Slide]:
+    def sliding(self) -> list[SlideKeys]:
         """Its sliding pairs, of which the file may give one without a list."""
         return self.slides if isinstance(self.slides, list) else [self.slides] if self.slides else []
 
@@ -237,20 +240,20 @@ class CompoundHinge(Strict):
     )
 
 
-def _by_angle(found: Any) -> Any:
+def _checked_speed(found: Any) -> Any:
     return Speeds.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
 
-class Driver(Strict):
+class DriverKeys(Strict):
     """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
 
     link: Name
     on: Name = Field(default="0", description="the link that it is driven from: the frame, or the cylinder of a piston")
     at: Value | None = Field(default=None, description="its place in the sketch, for drivers after the first")
-    speed: Annotated[Value | Speeds, BeforeValidator(_by_angle)] = Field(
+    speed: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
         description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); of a crank {against, table} too"
     )
-    acceleration: Annotated[Value | Speeds, BeforeValidator(_by_angle)] = Field(
+    acceleration: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
         default=0, description="in the sense of motion; the speed is that of position 0; beside a table: one too"
     )
     stroke: Vector | None = Field(default=None, description="[from, to]: places between which a cylinder works")
@@ -259,7 +262,7 @@ class Driver(Strict):
     end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
 
 
-class Output(Strict):
+class OutputKeys(Strict):
     """The link whose stroke or swing is the purpose of the mechanism, or a point of a moving link: its x and y."""
 
     link: Name = Field(
@@ -271,12 +274,12 @@ class Output(Strict):
     )
 
 
-def _outputs(found: Any) -> list[Output]:
+def _list_outputs(found: Any) -> list[OutputKeys]:
     several = found if isinstance(found, list) else [found]
-    return [Output.model_validate(one if isinstance(one, dict) else {"link": checked_name(one)}) for one in several]
+    return [OutputKeys.model_validate(one if isinstance(one, dict) else {"link": checked_name(one)}) for one in several]
 
 
-def _listed(found: Any) -> Any:
+def _make_list(found: Any) -> Any:
     return [found] if isinstance(found, str | int | float) else found
 
 
@@ -287,10 +290,10 @@ class Positions(Strict):
     from_: Value | None = Field(
         default=None, alias="from", description="place of position 0: an angle, or `working stroke`"
     )
-    at: Annotated[list[Value] | None, BeforeValidator(_listed, json_schema_input_type=list[Value] | Value | None)] = (
-        Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
-    )
-    detail: Annotated[list[int], BeforeValidator(_listed, json_schema_input_type=list[int] | int)] = Field(
+    at: Annotated[
+        list[Value] | None, BeforeValidator(_make_list, json_schema_input_type=list[Value] | Value | None)
+    ] = Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
+    detail: Annotated[list[int], BeforeValidator(_make_list, json_schema_input_type=list[int] | int)] = Field(
         default_factory=list, max_length=24, description="numbers of positions drawn in detail"
     )
     centres: bool = Field(default=False, description="instantaneous centres in the positions in detail")
@@ -316,16 +319,16 @@ class File(FileHead):
     grading: Any = Field(default=None, description="what students are asked, and how it is marked: {answers: [...]}")
     points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
-    links: dict[Name, Link] = Field(min_length=1, max_length=MAX_LINKS)
+    links: dict[Name, LinkKeys] = Field(min_length=1, max_length=MAX_LINKS)
     hinges: dict[Name, CompoundHinge] = Field(
         default_factory=dict, max_length=100, description="compound hinges that are not counted in the usual way"
     )
-    driver: Driver | list[Driver] = Field(description="the input; several as a list, when W > 1")
-    gears: dict[Name, Gear] = Field(default_factory=dict, max_length=100)
-    racks: dict[Name, Rack] = Field(default_factory=dict, max_length=100)
-    cams: dict[Name, Cam] = Field(default_factory=dict, max_length=100)
-    springs: dict[Name, Spring] = Field(default_factory=dict, max_length=100)
-    friction: Friction | None = None
+    driver: DriverKeys | list[DriverKeys] = Field(description="the input; several as a list, when W > 1")
+    gears: dict[Name, GearKeys] = Field(default_factory=dict, max_length=100)
+    racks: dict[Name, RackKeys] = Field(default_factory=dict, max_length=100)
+    cams: dict[Name, CamKeys] = Field(default_factory=dict, max_length=100)
+    springs: dict[Name, SpringKeys] = Field(default_factory=dict, max_length=100)
+    friction: FrictionKeys | None = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
         description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
@@ -336,10 +339,10 @@ class File(FileHead):
         description="how a parallelogram and its like pass the positions in which they could go over into another "
         "assembly: smoothly, or always on the side of the sketch",
     )
-    masses: dict[Name, Mass] = Field(default_factory=dict)
-    loads: dict[Name, Load] = Field(default_factory=dict, max_length=200)
+    masses: dict[Name, MassKeys] = Field(default_factory=dict)
+    loads: dict[Name, LoadKeys] = Field(default_factory=dict, max_length=200)
     gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
-    output: Annotated[Name | Output | list[Name | Output], BeforeValidator(_outputs)] = Field(
+    output: Annotated[Name | OutputKeys | list[Name | OutputKeys], BeforeValidator(_list_outputs)] = Field(
         default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
     )
     cycle: Value | None = Field(
@@ -348,8 +351,8 @@ class File(FileHead):
     intermittent: Wheels = Field(default={}, description="wheels that a link takes along on some strokes only")
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
-    dynamics: Dynamics | None = Field(default=None, description="law of motion: motor, flywheel")
-    balancing: Balancing | None = Field(default=None, description="what shakes the frame, and counterweights")
+    dynamics: DynamicsKeys | None = Field(default=None, description="law of motion: motor, flywheel")
+    balancing: BalancingKeys | None = Field(default=None, description="what shakes the frame, and counterweights")
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
     frame: Name = Field(default="0", description="the number of the frame that is printed: R_65 for R_05 where it is 6")
     note: NoteStyle = Field(default_factory=NoteStyle, description="how the note and its drawings are written")
@@ -358,13 +361,20 @@ class File(FileHead):
 # The JSON Schema of problem files, for editors.
 
 
+class _SchemaGenerator(GenerateJsonSchema):
+    """JSON Schema in which the definition of LinkKeys is called Link."""
+
+    def normalize_name(self, name: str) -> str:
+        return super().normalize_name(name.removesuffix("Keys"))
+
+
 def file_schema(tasks: Iterable[type[BaseModel]], blocks: type[BaseModel]) -> dict[str, Any]:
     """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`; blocks: further
     ones of a file, by their names."""
     definitions: dict[str, Any] = {}
 
     def schema(model: type[BaseModel]) -> dict[str, Any]:
-        inner = model.model_json_schema(by_alias=True)
+        inner = model.model_json_schema(by_alias=True, schema_generator=_SchemaGenerator)
         definitions.update({**inner.pop("$defs", {}), **definitions})
         return inner
 

@@ -10,10 +10,10 @@ from pydantic.fields import FieldInfo
 
 from tmm_cli.language import N_, _
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import Path, ProblemError, Tree, nearest, quote
+from tmm_cli.problem.errors import Path, ProblemError, Tree, nearest_name, quote
 from tmm_cli.problem.reader import decimal_comma_hint
 
-_WORDS: Final = {
+_TRANSLATED_KEYS: Final = {
     "title": "название заголовок naslov naziv",
     "description": "описание opis",
     "units": "единицы jedinice",
@@ -59,14 +59,14 @@ _WORDS: Final = {
     "turns": "вращение smer",
     "task": "задача zadatak",
 }
-FOREIGN: Final = {word: key for key, words in _WORDS.items() for word in words.split()}
+KEYS_IN_OTHER_LANGUAGES: Final = {word: key for key, words in _TRANSLATED_KEYS.items() for word in words.split()}
 
 
 # The first mistake in the shape of a file: pydantic's errors in the file's own terms.
 
 
-KEYS_WANTED = N_("keys with values are wanted")
-WORDS = {  # what is wrong with a value, by pydantic's kind of error
+KEYS_EXPECTED = N_("keys with values are wanted")
+MESSAGES = {  # what is wrong with a value, by pydantic's kind of error
     "int": N_("a whole number is wanted"),
     "greater_than_equal": N_("at least {ge} is wanted"),
     "less_than_equal": N_("at most {le} is wanted"),
@@ -76,9 +76,9 @@ WORDS = {  # what is wrong with a value, by pydantic's kind of error
     "empty": N_("there is nothing here"),
     "string_type": N_("text is wanted"),
     "list_type": N_("a list [..., ...] is wanted"),
-    "dict_type": KEYS_WANTED,
-    "model_type": KEYS_WANTED,
-    "model_attributes_type": KEYS_WANTED,
+    "dict_type": KEYS_EXPECTED,
+    "model_type": KEYS_EXPECTED,
+    "model_attributes_type": KEYS_EXPECTED,
 }
 
 
@@ -86,11 +86,11 @@ def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part
     """The first mistake in the shape of a file, by its place; model: the shape of what stands at the path `part`."""
     meant: list[tuple[str, ProblemError]] = []
     others: list[tuple[str, ProblemError]] = []
-    for kind, loc, context in _flat(error, part):
-        path, value, fits = _into(tree.data, loc, kind)
+    for kind, loc, context in _flatten_errors(error, part):
+        path, value, fits = _find_value(tree.data, loc, kind)
         inside = path[: len(part)] == part and len(path) > len(part)
-        fields = _fields(model, path[len(part) :]) if inside else _fields(schema.File, path)
-        refusal = _refusal(kind, path, value, context, fields, decimal_comma_hint(tree, path))
+        fields = _find_fields(model, path[len(part) :]) if inside else _find_fields(schema.File, path)
+        refusal = _make_error(kind, path, value, context, fields, decimal_comma_hint(tree, path))
         (meant if fits else others).append((kind, refusal))
     refusals = meant or others
     misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
@@ -99,16 +99,16 @@ def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part
     return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
 
 
-def _flat(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dict[str, Any]]]:
+def _flatten_errors(error: ValidationError, prefix: Path) -> Iterable[tuple[str, Path, dict[str, Any]]]:
     for item in error.errors():
         inner = item.get("ctx", {}).get("error")
         if isinstance(inner, ValidationError):
-            yield from _flat(inner, (*prefix, *item["loc"]))
+            yield from _flatten_errors(inner, (*prefix, *item["loc"]))
         else:
             yield item["type"], (*prefix, *item["loc"]), {**item.get("ctx", {}), "msg": item["msg"]}
 
 
-def _into(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
+def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
     """The path into the data, the value there, and whether it is of the kind of the unions' branches on the way."""
     path: list[str | int] = []
     fits = True
@@ -124,7 +124,7 @@ def _into(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bo
     return tuple(path), data, fits
 
 
-def _fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
+def _find_fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
     """The keys that may stand where the path ends, and what its last key is known for; an item counts as its list."""
     while path and isinstance(path[-1], int):
         path = path[:-1]
@@ -134,22 +134,22 @@ def _fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldIn
             named = False
             continue
         field = here.model_fields.get(step)
-        here = None if field is None else _inside([field.annotation])
+        here = None if field is None else _find_model([field.annotation])
         named = field is not None and get_origin(field.annotation) is dict
     known = {field.alias or name: field for name, field in here.model_fields.items()} if here else {}
     return known, known.get(str(path[-1])) if path else None
 
 
-def _inside(parts: Iterable[Any]) -> type[BaseModel] | None:
+def _find_model(parts: Iterable[Any]) -> type[BaseModel] | None:
     """The model among the parts of an annotation."""
     for part in parts:
-        found = part if isinstance(part, type) and issubclass(part, BaseModel) else _inside(get_args(part))
+        found = part if isinstance(part, type) and issubclass(part, BaseModel) else _find_model(get_args(part))
         if found:
             return found
     return None
 
 
-def _refusal(
+def _make_error(
     kind: str,
     path: Path,
     value: Any,
@@ -161,8 +161,8 @@ def _refusal(
     described = _(field.description) if field and field.description else None
     if kind == "extra_forbidden":
         key = str(path[-1])
-        foreign = nearest(key, [word for word, own in FOREIGN.items() if own in known])
-        near = FOREIGN[foreign] if foreign else nearest(key, known)
+        foreign = nearest_name(key, [word for word, own in KEYS_IN_OTHER_LANGUAGES.items() if own in known])
+        near = KEYS_IN_OTHER_LANGUAGES[foreign] if foreign else nearest_name(key, known)
         return ProblemError(
             _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
         )
@@ -177,13 +177,13 @@ def _refusal(
             path=path,
             found=quote(value),
             allowed=described if described and "[" in described else words,  # a list may stand here too
-            near=nearest(str(value), words.split(", ")),
+            near=nearest_name(str(value), words.split(", ")),
         )
-    if kind in ("model_type", "model_attributes_type") and field and (shape := _inside([field.annotation])):
+    if kind in ("model_type", "model_attributes_type") and field and (shape := _find_model([field.annotation])):
         described = ", ".join(inner.alias or name for name, inner in shape.model_fields.items())
     if kind == "too_short" and context["min_length"] == 1:
         kind = "empty"
-    message = _(WORDS.get("int" if kind.startswith("int_") else kind, "{msg}")).format(
+    message = _(MESSAGES.get("int" if kind.startswith("int_") else kind, "{msg}")).format(
         **{**context, "msg": _(context["msg"])}
     )
     return ProblemError(message, path=path, found=quote(value), allowed=hint or described)

@@ -51,7 +51,13 @@ class Strict(BaseModel):
     """Every key is known or refused."""
 
     # built when it first validates: a model that is part of another needs no validator of its own
-    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True, defer_build=True)
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        populate_by_name=True,
+        defer_build=True,
+        model_title_generator=lambda model: model.__name__.removesuffix("Keys"),
+    )
 
 
 class FileHead(Strict):
@@ -76,10 +82,10 @@ class OnLine(Strict):
     side: Value = Field(default=0, description="distance to the left of the line")
 
 
-def _place(found: Any) -> Any:
+def _checked_place(found: Any) -> Any:
     if isinstance(found, str):
         return checked_name(found)
     return OnLine.model_validate(found) if isinstance(found, dict) else checked_vector(found)
 
 
-Place = Annotated[str | list[Any] | OnLine, BeforeValidator(_place)]
+Place = Annotated[str | list[Any] | OnLine, BeforeValidator(_checked_place)]

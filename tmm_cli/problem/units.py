@@ -28,7 +28,7 @@ from tmm_cli.mechanics.quantities import (
     Dimension,
     product_text,
 )
-from tmm_cli.problem.errors import ProblemError, latin, nearest, quote, under, unknown_name
+from tmm_cli.problem.errors import ProblemError, nearest_name, prefix_errors, quote, to_latin, unknown_name_error
 from tmm_cli.problem.scalars import finite_float
 
 
@@ -120,8 +120,8 @@ SYMBOLS: Final[Mapping[str, Unit]] = {
     for name in names.split()
 }
 _PER_MINUTE: Final = SYMBOLS["rpm"]  # a bare "per minute" counts turns in machine theory, a bare "per second" radians
-_LOOKALIKES: Final = {latin(name): unit for name, unit in SYMBOLS.items()}
-_FIRST: Final = {latin(name): names.split()[0] for names, *__ in _ROWS for name in names.split()}
+_LOOKALIKES: Final = {to_latin(name): unit for name, unit in SYMBOLS.items()}
+_FIRST: Final = {to_latin(name): names.split()[0] for names, *__ in _ROWS for name in names.split()}
 
 _SUPERSCRIPT = re.compile("[⁺⁻⁰¹²³⁴-⁹]+")
 _LETTERS = re.compile("[^\\W\\d_⁰¹²³⁴-⁹]+|°")
@@ -139,18 +139,18 @@ def plain_text(text: str) -> str:
     return text.translate(_TYPOGRAPHY).replace("**", "^")
 
 
-def symbol(name: str) -> Unit | None:
+def find_unit(name: str) -> Unit | None:
     """The unit of one symbol, also when Cyrillic letters stand for their Latin look-alikes or the reverse."""
-    return SYMBOLS.get(name) or _LOOKALIKES.get(latin(name))
+    return SYMBOLS.get(name) or _LOOKALIKES.get(to_latin(name))
 
 
-def in_latin(text: str) -> str:
+def to_latin_unit(text: str) -> str:
     """A unit that is known, with the names that are not in ASCII by their first ones: deg for ° and for град."""
-    text = _signed_powers(text)
-    return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(latin(name[0]), name[0]), text)
+    text = _sign_powers(text)
+    return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(to_latin(name[0]), name[0]), text)
 
 
-def _signed_powers(text: str) -> str:
+def _sign_powers(text: str) -> str:
     """A unit with `s^-1` for `s-1`."""
     return _PER_TIME.sub(lambda found: found[0].replace("-", "^-"), text)
 
@@ -160,7 +160,7 @@ def parse_unit(text: str) -> Unit:
 
     Raises UnitError naming the nearest known symbol.
     """
-    source, unit, position, factors = _signed_powers(plain_text(text).strip()), Unit(NUMBER), 0, 0
+    source, unit, position, factors = _sign_powers(plain_text(text).strip()), Unit(NUMBER), 0, 0
     names: list[str] = []
     while position < len(source):
         match = _FACTOR.match(source, position)
@@ -171,32 +171,32 @@ def parse_unit(text: str) -> Unit:
         if abs(exponent) > 4:
             raise UnitError(_("not a unit: the power is too large"), found=quote(text), allowed=_("powers up to 4"))
         if name != "1":
-            found = symbol(name)
+            found = find_unit(name)
             if found is None:
-                raise unknown_unit(name)
+                raise unknown_unit_error(name)
             unit = unit.times(found, exponent)
             names.append(name)
         position, factors = match.end(), factors + 1
     if not factors:
         raise UnitError(_("a unit is missing"), found=quote(text), allowed=_("e.g. mm, deg, rpm, kN"))
-    alone = len(names) == 1 and symbol(names[0]) == SYMBOLS["min"]
+    alone = len(names) == 1 and find_unit(names[0]) == SYMBOLS["min"]
     return _PER_MINUTE if alone and unit.dimension == Dimension(time=-1) else unit
 
 
-def unknown_unit(name: str) -> UnitError:
+def unknown_unit_error(name: str) -> UnitError:
     """The refusal of a symbol, with the nearest known one."""
-    near = nearest(name, SYMBOLS)
+    near = nearest_name(name, SYMBOLS)
     return UnitError(_("unknown unit"), found=quote(name), allowed=_("e.g. mm, deg, rpm, kg, N, N*m"), near=near)
 
 
-def dotted_unit(text: str) -> UnitError:
+def dotted_unit_error(text: str) -> UnitError:
     """The refusal of a unit with dots in it, as in `об.мин`, with the unit that is meant."""
     bare = text.replace("./", "/").rstrip(".")
-    meant = next((way for way in (bare.replace(".", sign) for sign in ("", "/", "*")) if _of_a_kind(way)), None)
+    meant = next((way for way in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(way)), None)
     return UnitError(_("a unit is written without dots"), found=quote(text), allowed=meant)
 
 
-def _of_a_kind(text: str) -> bool:
+def _is_known_kind(text: str) -> bool:
     """Whether this is a unit of something that a file may give."""
     try:
         return parse_unit(text).dimension in {kind.dimension for kind in KINDS.values()}
@@ -218,14 +218,14 @@ class UnitSystem:
             if full not in KINDS or full == "number":
                 short = {long: short for short, long in _LONG.items()}
                 keys = [short.get(kind, kind) for kind in KINDS if kind != "number"]
-                raise unknown_name(key, keys, _("unknown key"), path=(key,), key=True)
+                raise unknown_name_error(key, keys, _("unknown key"), path=(key,), key=True)
             kind = KINDS[full]
-            with under(key):
+            with prefix_errors(key):
                 found = parse_unit(name).dimension
                 if not found.fits(kind.dimension):
                     allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
                     raise UnitError(_("wrong unit"), found=f"{quote(name)}, {found}", allowed=allowed)
-            self._names[kind.dimension] = in_latin(name)
+            self._names[kind.dimension] = to_latin_unit(name)
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
     functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max, "abs": abs}  # what arithmetic computes with
@@ -239,7 +239,7 @@ class UnitSystem:
         if dimension in self._units:
             return self._units[dimension]
         unit = Unit(NUMBER)
-        for base, power in _bases(dimension):
+        for base, power in _base_powers(dimension):
             unit = unit.times(self._units[base], power)
         return unit
 
@@ -260,18 +260,18 @@ class UnitSystem:
         """The file's unit in Latin letters, whatever the letters of the file; empty for a number."""
         if dimension in self._names:
             return self._names[dimension]
-        return product_text({self._names[base]: power for base, power in _bases(dimension)})
+        return product_text({self._names[base]: power for base, power in _base_powers(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
         """The same for people, as their language spells it: N*m, and Н·м in Russian."""
         unit = self.symbol(dimension)
-        return unit if language() == ENGLISH else on_paper(spelt(unit))
+        return unit if language() == ENGLISH else typeset_unit(spelt(unit))
 
-    def told(self, value: float, dimension: Dimension, digits: int = 6) -> str:
+    def format_value(self, value: float, dimension: Dimension, digits: int = 6) -> str:
         """A value in SI and radians as a refusal tells it, `30 deg`."""
         return f"{self.from_si(value, dimension):.{digits}g} {self.spelt(dimension)}"
 
-    def show(self, quantity: PhysicalValue) -> str:
+    def describe(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:
             return _("a bare number ({number})").format(number=f"{quantity.value:.6g}")
@@ -279,13 +279,13 @@ class UnitSystem:
         return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
 
 
-def _bases(dimension: Dimension) -> list[tuple[Dimension, int]]:
+def _base_powers(dimension: Dimension) -> list[tuple[Dimension, int]]:
     powers = (dimension.length, dimension.mass, dimension.time, dimension.angle)
     return [(base, power) for base, power in zip((LENGTH, MASS, TIME, ANGLE), powers, strict=True) if power]
 
 
 @cache
-def on_paper(unit: str) -> str:
+def typeset_unit(unit: str) -> str:
     """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
     return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
 

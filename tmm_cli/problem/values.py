@@ -13,15 +13,15 @@ import numpy as np
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.numerics import NO_COSINE
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension
-from tmm_cli.problem.arithmetic import MOST_ANGLE, evaluate, evaluate_quantity
-from tmm_cli.problem.errors import Path, ProblemError, nearest, quote, under, unknown_name
+from tmm_cli.problem.arithmetic import MAX_ANGLE, evaluate, evaluate_quantity
+from tmm_cli.problem.errors import Path, ProblemError, nearest_name, prefix_errors, quote, unknown_name_error
 from tmm_cli.problem.schema_types import OnLine
 from tmm_cli.problem.units import PhysicalValue, UnitSystem
 
 LARGEST = 1e12  # SI, of any value: no machine has more, and what it is added to keeps its digits
 SMALLEST = 1e-20  # SI, of what has a size: likewise quotients
-MOST_SHARE = 10  # of a way between two points: a bare number beyond it is a length, or per cent
-UNKNOWN = {
+MAX_BARE_FRACTION = 10  # of a way between two points: a bare number beyond it is a length, or per cent
+UNKNOWN_NAMES = {
     "link": N_("there is no link of that name"),
     "moving link": N_("there is no moving link of that name"),
     "point": N_("there is no point of that name"),
@@ -33,7 +33,7 @@ UNKNOWN = {
     "hinge": N_("there is no hinge of that name"),
     "turning or sliding pair": N_("there is no turning or sliding pair of that name"),
 }
-UNFIT = {
+INVALID_NAMES = {
     "link": N_("this cannot be the name of a link"),
     "point": N_("this cannot be the name of a point"),
     "pair": N_("this cannot be the name of a pair"),
@@ -53,9 +53,9 @@ class ValueReader:
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI that a mechanism can have."""
-        with under(*path):
-            number = self.found(value, want, path)
-            limit = self.most(want, path)
+        with prefix_errors(*path):
+            number = self.read_si(value, want, path)
+            limit = self.limit(want, path)
             if not -limit <= number <= limit:
                 most = f"{self.units.from_si(limit, want):.6g} {self.units.symbol(want)}".rstrip()
                 raise ProblemError(
@@ -65,15 +65,15 @@ class ValueReader:
                 )
             return number
 
-    def found(self, value: Any, want: Dimension, path: Path) -> float:
+    def read_si(self, value: Any, want: Dimension, path: Path) -> float:
         """A value in SI, whatever its size."""
         return evaluate(value, self.parameters, self.units, want)
 
-    def most(self, want: Dimension, path: Path) -> float:
+    def limit(self, want: Dimension, path: Path) -> float:
         """The largest size (SI) that is accepted there."""
-        return MOST_ANGLE if want == ANGLE else LARGEST
+        return MAX_ANGLE if want == ANGLE else LARGEST
 
-    def bare(self, value: Any) -> bool:
+    def is_bare(self, value: Any) -> bool:
         """Whether a value has no unit of its own."""
         return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
@@ -114,12 +114,14 @@ class ValueReader:
         """Two coordinates."""
         if not isinstance(value, list | tuple) or len(value) != 2:
             raise ProblemError(_("two coordinates [x, y] are wanted"), path=path, found=quote(value))
-        return planar(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
+        return make_complex(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
 
     def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
         """A place on a link: the name of one of its points, coordinates, or a share of the way between two points."""
         if isinstance(value, str):
-            return points[self.known(value, points, path, f"point of link {link}" if link != "0" else "frame point")]
+            return points[
+                self.known_name(value, points, path, f"point of link {link}" if link != "0" else "frame point")
+            ]
         if isinstance(value, OnLine):
             first, second = self.two_points(value.on, points, (*path, "on"))
             way = points[second] - points[first]
@@ -130,13 +132,13 @@ class ValueReader:
 
     def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
         """A share of the length (m) between two points, which may be written as a distance from the first (110 mm)."""
-        with under(*path):
+        with prefix_errors(*path):
             dimension = evaluate_quantity(value, self.parameters, self.units, pi=None).dimension
         if dimension == LENGTH:
             distance: float = self.number(value, LENGTH, path) / length
             return distance
         share = self.number(value, NUMBER, path)
-        if dimension is None and not -MOST_SHARE <= share <= MOST_SHARE:
+        if dimension is None and not -MAX_BARE_FRACTION <= share <= MAX_BARE_FRACTION:
             number, (first, second) = f"{share:.6g}", points
             raise ProblemError(
                 _("a share of the way from {first} to {second} is wanted here").format(first=first, second=second),
@@ -149,14 +151,14 @@ class ValueReader:
         return share
 
     @staticmethod
-    def known(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
+    def known_name(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
         """The name, if there is one like it."""
         if name in names:
             return name
-        raise unknown_name(name, names, unknown(what), path=path, key=key)
+        raise unknown_name_error(name, names, unknown_name_message(what), path=path, key=key)
 
     @staticmethod
-    def different(links: Sequence[str], path: Path) -> None:
+    def refuse_same(links: Sequence[str], path: Path) -> None:
         """Refuse one link in two places where different ones are wanted."""
         if len(set(links)) < len(links):
             raise ProblemError(_("different links are wanted"), path=path, found=", ".join(links))
@@ -177,7 +179,7 @@ class ValueReader:
             message = _("these two points lie on one another")
         else:
             message = _("two points of one link are wanted")
-            near = nearest(text, [a + b for a in points for b in points if a != b])
+            near = nearest_name(text, [a + b for a in points for b in points if a != b])
         raise ProblemError(
             message,
             path=path,
@@ -188,26 +190,26 @@ class ValueReader:
 
 
 @dataclass(frozen=True)
-class Part:
+class FileSection:
     """A part of the file in its shape (schema): its values by key, each refused at its own place."""
 
-    given: Any
+    keys: Any
     path: Path
     values: ValueReader
 
     def number(self, key: str, want: Dimension) -> float:
-        return self.values.number(getattr(self.given, key), want, self.at(key))
+        return self.values.number(getattr(self.keys, key), want, self.at(key))
 
     def positive(self, key: str, want: Dimension, *, zero: bool = False) -> float:
-        return self.values.positive(getattr(self.given, key), want, self.at(key), zero=zero)
+        return self.values.positive(getattr(self.keys, key), want, self.at(key), zero=zero)
 
     def at(self, key: str) -> Path:
         """The path of a key as the file spells it."""
-        fields = getattr(type(self.given), "model_fields", {})
+        fields = getattr(type(self.keys), "model_fields", {})
         return (*self.path, fields[key].alias or key if key in fields else key)
 
     def place(self, key: str, points: Mapping[str, complex], link: str) -> complex:
-        return self.values.place(getattr(self.given, key), points, (*self.path, key), link)
+        return self.values.place(getattr(self.keys, key), points, (*self.path, key), link)
 
     def columns(
         self, key: str, argument: Dimension, want: Dimension, *, jumps: bool = True
@@ -216,7 +218,7 @@ class Part:
 
         Raises ProblemError.
         """
-        rows, path = getattr(self.given, key), (*self.path, key)
+        rows, path = getattr(self.keys, key), (*self.path, key)
         first = tuple(self.values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows))
         second = tuple(self.values.number(row[1], want, (*path, k, 1)) for k, row in enumerate(rows))
         for k in range(1, len(first)):
@@ -233,20 +235,21 @@ class Part:
             raise ProblemError(message, path=(*path, k, 0), found=str(rows[k][0]), allowed=allowed)
         return first, second
 
-    def known(self, key: str, names: Iterable[str], what: str) -> str:
-        return self.values.known(getattr(self.given, key), names, (*self.path, key), what)
+    def known_name(self, key: str, names: Iterable[str], what: str) -> str:
+        return self.values.known_name(getattr(self.keys, key), names, (*self.path, key), what)
 
     def two_links(self, links: Iterable[str]) -> tuple[str, str]:
         """The two links it is between, which are not the same."""
         i, j = (
-            self.values.known(n, links, (*self.path, "between", k), "link") for k, n in enumerate(self.given.between)
+            self.values.known_name(n, links, (*self.path, "between", k), "link")
+            for k, n in enumerate(self.keys.between)
         )
-        self.values.different((i, j), (*self.path, "between"))
+        self.values.refuse_same((i, j), (*self.path, "between"))
         return i, j
 
     def one_of(self, *keys: str) -> str:
         """The one of these keys that is given."""
-        told = [key for key in keys if getattr(self.given, key) is not None]
+        told = [key for key in keys if getattr(self.keys, key) is not None]
         if len(told) != 1:
             found, allowed = ", ".join(told) or None, ", ".join(keys)
             raise self.refusal("", _("one of these keys is wanted"), found, allowed)
@@ -260,10 +263,10 @@ class Part:
         return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
 
 
-def unknown(what: str) -> str:
+def unknown_name_message(what: str) -> str:
     """That a name is of nothing of this kind, such as "link" or "point of link 3"."""
     kind, __, link = what.partition(" of link ")
-    return translated(UNKNOWN["point of link" if link else kind]).format(link=link)
+    return translated(UNKNOWN_NAMES["point of link" if link else kind]).format(link=link)
 
 
 def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
@@ -271,7 +274,7 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
     pattern = LINK_NAME if what == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
-            translated(UNFIT[what]),
+            translated(INVALID_NAMES[what]),
             path=path,
             found=quote(name),
             allowed=_("letters and figures, at most 16")
@@ -283,19 +286,19 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
         raise ProblemError(_("this name is taken"), path=path, found=quote(name), key=True)
 
 
-def planar(x: float, y: float) -> complex:
+def make_complex(x: float, y: float) -> complex:
     """x + iy in the precision of its parts (a double-double is no float)."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 
-def phase(vector: complex) -> float:
+def vector_angle(vector: complex) -> float:
     """The angle of a vector, in its precision."""
     return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
 
 
-def direction(angle: float) -> complex:
+def unit_vector(angle: float) -> complex:
     """e^(i angle), exact across and along the axes."""
     if not isinstance(angle, float):
-        return planar(np.cos(angle), np.sin(angle))
+        return make_complex(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)
     return complex(*(0.0 if abs(part) < NO_COSINE else part for part in (turned.real, turned.imag)))

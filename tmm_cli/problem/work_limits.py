@@ -6,35 +6,36 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import Linkage, Request
 from tmm_cli.problem.errors import ProblemError
 
-BUDGET = 3_000_000  # parts at positions, each up to 20 us and 160 B: 40 parts at 74 280 took 44 s and 536 MB
-SEARCHED = 720  # positions more: the range, the strokes and the trajectories are found on a grid of their own
-EACH = 8  # positions more for each link: what is searched for in each group computes all links before it
-LINK, POINT, LOAD = 6, 1, 2  # parts that each of them counts for: so are their measured times and tables
-SHEET = 1_250  # positions that a sheet of drawings counts for: 25 ms a part
-SHEETS = 6  # that are drawn beside those in detail
-LAID_OUT = 6  # positions in detail from which laying large sheets out takes longer than drawing: as their square
-PLANS = 0.25  # sheets that the plans of motion of a position count for on large sheets
-CENTRES = 0.1  # positions that a sheet of centres counts for besides, times the square of the number of links
-JUDGED = 0.4  # positions that a part counts for in each that is judged: against all data, so it grows with the square
-FIRST, LONG = 20, 720  # positions more that are judged for what was searched for; the most that are
+# Work is counted in elements (see work_size) times positions; searches and drawings count as further positions.
+WORK_BUDGET = 3_000_000  # each unit takes up to 20 us and 160 B: 40 elements at 74 280 positions took 44 s and 536 MB
+LINK_SIZE, POINT_SIZE, LOAD_SIZE = 6, 1, 2  # elements that a link, a point, a load count for, by measured times
+SEARCH_POSITIONS = 720  # range, strokes and trajectories are found on a grid of their own
+SEARCH_POSITIONS_PER_LINK = 8  # a search in one group computes all links before it
+SHEET_POSITIONS = 1_250  # one sheet of drawings: 25 ms an element
+OTHER_SHEETS = 6  # sheets drawn beside those of the detailed positions
+LARGE_LAYOUT_POSITIONS = 6  # detailed positions above which the layout of large sheets, quadratic in them, dominates
+PLAN_SHEETS = 0.25  # sheets for the motion plans of one position on large sheets
+CENTRE_POSITIONS = 0.1  # further positions for a sheet of centres, times the square of the number of links
+DIGIT_POSITIONS = 0.4  # an element in each position whose digits are estimated: by all data, hence by the square
+MIN_JUDGED, MAX_JUDGED = 20, 720  # further positions estimated for the results of searches; their largest number
 
 
-def parts(linkage: Linkage) -> int:
+def work_size(linkage: Linkage) -> int:
     """The size of a linkage: links with their pairs, points on them, loads and springs."""
-    links, points, loads = _counted(linkage)
-    return LINK * links + POINT * points + LOAD * loads
+    links, points, loads = _count_elements(linkage)
+    return LINK_SIZE * links + POINT_SIZE * points + LOAD_SIZE * loads
 
 
 def refuse_work(linkage: Linkage, request: Request) -> None:
     """Refuse what no stage could do within the budget. Raises ProblemError, not yet located."""
-    size, count = parts(linkage), len(request.places) or request.count
-    most = BUDGET // size - _searched(linkage)
+    size, count = work_size(linkage), len(request.places) or request.count
+    most = WORK_BUDGET // size - _search_positions(linkage)
     if most < 1:
-        whole = BUDGET // (_searched(linkage) + 1)
+        whole = WORK_BUDGET // (_search_positions(linkage) + 1)
         raise ProblemError(
             _("this linkage is too large"),
             path=("links",),
-            found=_told(linkage),
+            found=_describe_linkage(linkage),
             allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole),
             key=True,
         )
@@ -42,7 +43,7 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
         raise ProblemError(
             _("too many positions for so many links, points and loads"),
             path=("positions", "count"),
-            found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
+            found=_("{count} positions; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
             allowed=_("at most {most}").format(most=most),
         )
 
@@ -64,69 +65,71 @@ def refuse_options(
     whose instantaneous centres are found and drawn.
     Raises ProblemError, not yet located.
     """
-    size = parts(linkage)
-    left = BUDGET / size - _searched(linkage) - count
+    size = work_size(linkage)
+    left = WORK_BUDGET / size - _search_positions(linkage) - count
     if digits:
-        each = JUDGED * size
-        left -= each * (FIRST + min(count, LONG))
+        each = DIGIT_POSITIONS * size
+        left -= each * (MIN_JUDGED + min(count, MAX_JUDGED))
         if left < 0:
-            few = (left + count + each * min(count, LONG)) / (1 + each)
-            most = int(few if few < LONG else left + count)
+            few = (left + count + each * min(count, MAX_JUDGED)) / (1 + each)
+            most = int(few if few < MAX_JUDGED else left + count)
             raise ProblemError(
                 _("too many positions and too large a linkage for all digits to be judged"),
                 path=("--digits",),
-                found=_("{count} positions; {linkage}").format(count=count, linkage=_told(linkage)),
+                found=_("{count} positions; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
                 allowed=_("without --digits")
                 if most < 1
                 else _("at most {most} positions, or without --digits").format(most=most),
             )
-    each = SHEET + CENTRES * len(linkage.moving) ** 2
+    each = SHEET_POSITIONS + CENTRE_POSITIONS * len(linkage.moving) ** 2
     if each * centres > left:
         most = int(left // each)
         raise ProblemError(
             _("these are too many instantaneous centres for so many links and positions"),
             path=("--centres",),
-            found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_told(linkage)),
+            found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
             allowed=_("without centres")
             if most < 1
             else _("at most {most} in detail, or without centres").format(most=most),
         )
-    if detail is not None and SHEET * (_sheets(detail, large) + PLANS * plans) > left >= SHEET * _sheets(detail, large):
+    if detail is not None and SHEET_POSITIONS * (
+        _count_sheets(detail, large) + PLAN_SHEETS * plans
+    ) > left >= SHEET_POSITIONS * _count_sheets(detail, large):
         raise ProblemError(
             _("these are too many drawings for so many links, points and positions"),
             path=("--positions",),
-            found=_("{count} positions; {linkage}").format(count=plans, linkage=_told(linkage)),
+            found=_("{count} positions; {linkage}").format(count=plans, linkage=_describe_linkage(linkage)),
             allowed=_("plans of at most {most}, or --positions detail").format(
-                most=int((left / SHEET - _sheets(detail, large)) / PLANS)
+                most=int((left / SHEET_POSITIONS - _count_sheets(detail, large)) / PLAN_SHEETS)
             ),
         )
-    if detail is not None and SHEET * _sheets(detail, large) > left:
-        most = max((few for few in range(detail) if SHEET * _sheets(few, large) <= left), default=-1)
+    if detail is not None and SHEET_POSITIONS * _count_sheets(detail, large) > left:
+        most = max((few for few in range(detail) if SHEET_POSITIONS * _count_sheets(few, large) <= left), default=-1)
         raise ProblemError(
             _("these are too many drawings for so many links, points and positions"),
             path=("positions", "detail"),
-            found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_told(linkage)),
+            found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_describe_linkage(linkage)),
             allowed=_("without drawings")
             if most < 0
             else _("at most {most} in detail, or without drawings").format(most=most),
         )
 
 
-def _sheets(detail: int, large: bool) -> float:
+def _count_sheets(detail: int, large: bool) -> float:
     """Sheets of positions that drawings count for."""
-    return SHEETS + detail * (1 + large * detail / LAID_OUT)
+    return OTHER_SHEETS + detail * (1 + large * detail / LARGE_LAYOUT_POSITIONS)
 
 
-def _searched(linkage: Linkage) -> int:
-    return SEARCHED + EACH * len(linkage.moving)
+def _search_positions(linkage: Linkage) -> int:
+    return SEARCH_POSITIONS + SEARCH_POSITIONS_PER_LINK * len(linkage.moving)
 
 
-def _told(linkage: Linkage) -> str:
-    links, points, loads = _counted(linkage)
+def _describe_linkage(linkage: Linkage) -> str:
+    links, points, loads = _count_elements(linkage)
     return _("{links} links, {points} points, {loads} loads").format(links=links, points=points, loads=loads)
 
 
-def _counted(linkage: Linkage) -> tuple[int, int, int]:
+def _count_elements(linkage: Linkage) -> tuple[int, int, int]:
     """Moving links, points on them, loads and springs."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
     return len(linkage.moving), points, len(linkage.acting)

@@ -25,7 +25,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.problem import Path, Problem, TaskProblem, Tree, UnitSystem, ValueReader, path_text, unused
+from tmm_cli.problem import Path, Problem, TaskProblem, Tree, UnitSystem, ValueReader, format_path, unused_parameters
 from tmm_cli.reports.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
@@ -199,7 +199,7 @@ def doubts(problem: Problem) -> Iterable[str]:
 
 def without_effect(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
     """That parameters which are given other values beside the file change nothing."""
-    for name in unused(tree, names):
+    for name in unused_parameters(tree, names):
         yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
 
 
@@ -242,7 +242,7 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
             present = isinstance(value, list) or (isinstance(value, dict) and key in value)
             value = value[key] if present else None
         scalar = value is not None and not isinstance(value, dict)
-        if not scalar or units.factor(base) == 1 or kind in named or not values.bare(value):
+        if not scalar or units.factor(base) == 1 or kind in named or not values.is_bare(value):
             continue
         speed = float(rounded(values.number(value, dimension, path)))
         if not speed:  # rest is rest in any unit
@@ -257,7 +257,7 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
                 "write `{written} m/s`, or `{written} {unit}/s` if that is meant"
             )
         yield text.format(
-            key=path_text(path),
+            key=format_path(path),
             speed=_short(speed),
             turns=_short(speed * 30 / math.pi),
             unit=units.spelt(base),
@@ -340,7 +340,7 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
                 "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
                 "meant"
             ).format(
-                key=path_text(path),
+                key=format_path(path),
                 pressure=with_unit(problem.units, pressure, PRESSURE),
                 number=numeral(problem.units.from_si(pressure, PRESSURE), ".6g"),
             )

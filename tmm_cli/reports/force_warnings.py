@@ -161,9 +161,9 @@ def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str
         ).format(load=load.name)
     turned = motion.poses[load.link].z[k] if load.follows else 1.0
     angle = round(float(np.angle(-velocity[k] / turned)), 6) + 0.0  # no signed zero
-    written = f"angle: {results.problem.units.told(angle, ANGLE, 4)}"
+    written = f"angle: {results.problem.units.format_value(angle, ANGLE, 4)}"
     if load.table is None:
-        written = f"force: {{size: {results.problem.units.told(abs(load.force), FORCE)}, {written}}}"
+        written = f"force: {{size: {results.problem.units.format_value(abs(load.force), FORCE)}, {written}}}"
     return _(
         "load {load} does no work in the working stroke: its force is perpendicular to the motion of its point. "
         "Write it against the motion: {written}"

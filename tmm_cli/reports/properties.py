@@ -29,15 +29,15 @@ from tmm_cli.problem import (
     Path,
     Problem,
     ProblemError,
-    Shown,
+    ShownKeys,
+    apply_settings,
     build_problem,
-    in_words_of,
-    no_position,
-    path_text,
+    format_path,
+    prefix_errors,
     quote,
-    under,
-    unknown_name,
-    with_settings,
+    translate_errors,
+    unknown_name_error,
+    unknown_position_error,
 )
 
 STEPS = 720  # in a turn, or over the driver's way
@@ -76,7 +76,7 @@ def _of_linkage(results: Results) -> tuple[Property, ...]:
     found = []
     for name, task in problem.shows.items():
         try:
-            with under("shows", name):
+            with prefix_errors("shows", name):
                 one = _property(name, task, results)
         except ProblemError as error:
             raise error.located(problem.file, problem.source) from None
@@ -84,7 +84,7 @@ def _of_linkage(results: Results) -> tuple[Property, ...]:
     return tuple(found)
 
 
-def _of_chain(name: str, task: Shown, results: ChainResults) -> Property:
+def _of_chain(name: str, task: ShownKeys, results: ChainResults) -> Property:
     found, path = results.chain, ("shows", name)
     known = {"W": found.mobility, "Wm": found.local_mobility, "q": found.redundant, "m": found.manoeuvrability}
     value = known.get(task.of)
@@ -97,7 +97,7 @@ def _of_chain(name: str, task: Shown, results: ChainResults) -> Property:
     return Property(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
 
 
-def _property(name: str, task: Shown, results: Results) -> Property | None:
+def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
     """None where a stage that it needs has not run."""
     problem: Problem = results.problem
     values = problem.values
@@ -113,7 +113,7 @@ def _property(name: str, task: Shown, results: Results) -> Property | None:
         **relative_angles(linkage),
     }
     if task.of not in known:
-        raise unknown_name(task.of, known, _("there is no quantity of that name"), path=("of",))
+        raise unknown_name_error(task.of, known, _("there is no quantity of that name"), path=("of",))
     quantity = known[task.of]
     if task.without is not None and quantity.stage != "structure":
         raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
@@ -151,7 +151,7 @@ def _scale(dimension: Dimension, results: Results) -> float:
     return 1.0 if dimension == ANGLE else 0.0
 
 
-def _of_own_numbers(task: Shown, problem: Problem) -> bool:
+def _of_own_numbers(task: ShownKeys, problem: Problem) -> bool:
     """Whether parameters are set on the command line and the expected number holds only for those of the file."""
     source = problem.source
     if source is None or not source.given:
@@ -167,22 +167,22 @@ def _ran(quantity: Quantity, results: Results) -> bool:
     return results.motion is not None and not (forces and results.reactions is None)
 
 
-def _with_settings(task: Shown, results: Results) -> Results:
+def _with_settings(task: ShownKeys, results: Results) -> Results:
     """The same linkage with other values of parameters, as far as the results go."""
     problem: Problem = results.problem
     assert problem.source is not None
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
     stage = stage if results.reactions is None else "forces"
     try:
-        other = build_problem(with_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
+        other = build_problem(apply_settings(problem.source, [f"{name}={value}" for name, value in task.set.items()]))
         inputs = replace(
             results.inputs, linkage=other.linkage, request=other.request, wheels=other.wheels, extended=None
         )
-        with in_words_of(other):
+        with translate_errors(other):
             return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
     except ProblemError as error:  # its place is that of what the parameters spoil
         told = _("with these parameters the file would be refused: {reason}")
-        reason = ": ".join(part for part in (path_text(error.path), error.message) if part)
+        reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
         raise ProblemError(
             told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
         ) from None
@@ -191,12 +191,12 @@ def _with_settings(task: Shown, results: Results) -> Results:
 def _broken(hinge: str, results: Results) -> Results:
     """The structure without a hinge."""
     linkage = results.linkage
-    results.problem.values.known(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
+    results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
     left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
     return replace(results, inputs=replace(results.inputs, linkage=left), structure=analyse(left), motion=None)
 
 
-def _one(quantity: Quantity, task: Shown, results: Results, per: Quantity | None = None) -> float:
+def _one(quantity: Quantity, task: ShownKeys, results: Results, per: Quantity | None = None) -> float:
     """The number that a task asks of a quantity, or of its ratio to another one at every place."""
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
@@ -244,7 +244,7 @@ def _ratio(quantity: Quantity, per: Quantity, results: Results, q: Real) -> Real
 def _place(number: int, path: Path, results: Results) -> float:
     asked = results.asked
     if number >= len(asked):
-        raise no_position(number, len(asked), *path)
+        raise unknown_position_error(number, len(asked), *path)
     return float(asked[number])
 
 

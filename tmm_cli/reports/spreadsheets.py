@@ -14,7 +14,7 @@ from io import BytesIO
 from typing import Any, Final, Literal
 
 from tmm_cli.language import _, half_up, typeset
-from tmm_cli.problem import ProblemError, UnitSystem, on_paper
+from tmm_cli.problem import ProblemError, UnitSystem, typeset_unit
 from tmm_cli.reports.table import Column, Table, csv_cell
 from tmm_cli.reports.terminal import figures
 
@@ -81,7 +81,7 @@ def _rounded(value: float, count: int) -> float | None:
 
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
-    yield "\ufeff" + ";".join(csv_cell(typeset(on_paper(column.heading(units)))) for column in table.columns) + "\n"
+    yield "\ufeff" + ";".join(csv_cell(typeset(typeset_unit(column.heading(units)))) for column in table.columns) + "\n"
     for row in zip(*(spreadsheet_cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_text, row)) + "\n"
 
@@ -114,7 +114,7 @@ def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 
 def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
     """Title, headings, rows, notes."""
-    heads = [typeset(on_paper(column.heading(units))) for column in table.columns]
+    heads = [typeset(typeset_unit(column.heading(units))) for column in table.columns]
     columns = [spreadsheet_cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
         sheet.set_column(k, k, _width(head, column))

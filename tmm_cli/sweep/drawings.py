@@ -44,7 +44,7 @@ from tmm_cli.language import _, numeral, spelt, translated
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.sweep.options import Axis, Shown
 from tmm_cli.sweep.results import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
 
@@ -245,4 +245,4 @@ def _words(one: Shown, units: UnitSystem) -> str:
 
 
 def _axis_words(axis: Axis) -> str:
-    return f"{axis.name}, {on_paper(spelt(axis.unit))}" if axis.unit else axis.name
+    return f"{axis.name}, {typeset_unit(spelt(axis.unit))}" if axis.unit else axis.name

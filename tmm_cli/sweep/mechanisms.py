@@ -17,7 +17,7 @@ from tmm_cli.mechanics.forces import Reactions, reach_of_tables
 from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
-from tmm_cli.problem import Problem, ProblemError, Tree, refusal
+from tmm_cli.problem import Problem, ProblemError, Tree, located_problem_error
 from tmm_cli.sweep.options import PRESSURE, Axis, Shown, read_shown
 from tmm_cli.sweep.results import APART, LIMIT, REFUSED, STOPS, WORKS
 from tmm_cli.sweep.scan import SCAN_APART, SCAN_STOPS, SCAN_WORKS, Looked, Wish, look, strokes_of
@@ -107,7 +107,7 @@ class Mechanisms:
         except (NoTapeError, DependsOnData):
             return None
         except LinkageError as error:
-            raise refusal(error, problem) from None
+            raise located_problem_error(error, problem) from None
 
     @cached_property
     def limits(self) -> dict[str, float]:
@@ -231,7 +231,7 @@ class Mechanisms:
             results = pipeline.solve(inputs_of(problem), "forces" if forces else "kinematics", problem=problem)
         except LinkageError as error:
             state = APART if isinstance(error, AssemblyError) else REFUSED
-            return state, refusal(error, problem).message, *nothing
+            return state, located_problem_error(error, problem).message, *nothing
         if self.goes and not measures.completes_range(results):
             return STOPS, "", *nothing
         over = [f"pressure {one.link}" for one in results.pressure if not one.holds]

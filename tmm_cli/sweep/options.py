@@ -14,7 +14,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity, Solved
 from tmm_cli.mechanics.numerics import Real, greatest
 from tmm_cli.mechanics.quantities import ANGLE, Dimension
-from tmm_cli.problem import ProblemError, quote, unknown_name
+from tmm_cli.problem import ProblemError, quote, unknown_name_error
 
 OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
 COUNT = (41, 21)  # values where none is given: of one parameter, of each of two
@@ -186,7 +186,7 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
         for name in _split(text, names):
             if name not in names:
                 some = _("e.g. {names}").format(names=", ".join(_examples(every)))
-                raise unknown_name(name, names, _("there is no such quantity"), some, file=f"--show {text}")
+                raise unknown_name_error(name, names, _("there is no such quantity"), some, file=f"--show {text}")
             found.append(every[names[name]])
     found = list(dict.fromkeys(found)) or [
         every[name] for name in USUAL if name in every and not (name == "H" and "psi" in every)

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.batch import Way, here
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real, bisect
-from tmm_cli.problem import BUDGET, Problem, ProblemError, parts, refuse_work
+from tmm_cli.problem import WORK_BUDGET, Problem, ProblemError, refuse_work, work_size
 from tmm_cli.sweep.mechanisms import Found, Mechanisms
 from tmm_cli.sweep.options import MOST_VALUES, Axis, grid_points
 from tmm_cli.sweep.results import STATES, Mark, Swept
@@ -59,8 +59,8 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     """
     refuse_work(problem.linkage, problem.request)
     positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
-    each = parts(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
-    most = MOST_VALUES if cores is None else min(MOST_VALUES, int(BUDGET * cores / each))
+    each = work_size(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
+    most = MOST_VALUES if cores is None else min(MOST_VALUES, int(WORK_BUDGET * cores / each))
     if points > most:
         raise ProblemError(
             _("these are too many mechanisms"),
@@ -122,15 +122,15 @@ def _marks(mechanisms: Mechanisms, edges: Sequence[Edge], way: Way) -> tuple[Mar
     size = CHUNK if taped else max(1, FEW // halvings)
     found: list[Mark] = []
     for _round in STATES:
-        parts = [edges[first : first + size] for first in range(0, len(edges), size)]
+        work_size = [edges[first : first + size] for first in range(0, len(edges), size)]
         jobs = []
-        for part in parts:
+        for part in work_size:
             inside, outside = (np.array([edge.points[side] for edge in part]) for side in (0, 1))
             state = np.array([edge.states[0] for edge in part])
             jobs.append(Borders(mechanisms, inside, outside, state, halvings))
         left: list[Edge] = []
         for k, (last, first, state, why) in way(jobs, lambda: False):
-            for n, edge in enumerate(parts[k]):
+            for n, edge in enumerate(work_size[k]):
                 before, after = edge.states
                 goes = after if int(state[n]) == before else int(state[n])  # what only the ordinary stages tell
                 reason = (why[n] or edge.why[1]) if goes > before else edge.why[0]

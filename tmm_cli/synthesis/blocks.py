@@ -151,11 +151,11 @@ class BoundedReader(ValueReader):
         self.others = others or {}
         self.given: dict[Path, tuple[float, Dimension]] = {}
 
-    def found(self, value: Any, want: Dimension, path: Path) -> float:
-        return self.others[path] if path in self.others else super().found(value, want, path)
+    def read_si(self, value: Any, want: Dimension, path: Path) -> float:
+        return self.others[path] if path in self.others else super().read_si(value, want, path)
 
-    def most(self, want: Dimension, path: Path) -> float:
-        limit = super().most(want, path)
+    def limit(self, want: Dimension, path: Path) -> float:
+        limit = super().limit(want, path)
         return limit if _exempt(path) else LARGEST_VALUES.get(want, limit)
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:

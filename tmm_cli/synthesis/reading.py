@@ -26,20 +26,20 @@ from tmm_cli.problem import (
     Tree,
     UnitSystem,
     ValueReader,
+    build_from_shape,
+    build_parameters,
     build_problem as build_linkage,
-    build_shape,
+    build_unit_system,
     check_parameter,
-    checked_shape,
-    parameters,
-    path_text,
-    placed_in,
+    format_path,
+    locate_errors_in,
     plain_text,
+    prefix_errors,
     quote,
     schema,
-    under,
-    unit_system,
-    unknown_name,
-    validated,
+    unknown_name_error,
+    validate_planar,
+    validate_shape,
 )
 from tmm_cli.synthesis.blocks import BoundedReader, SynthesisFile, TriedFileError, check_block
 from tmm_cli.synthesis.record import Infeasible, SynthesisOutcome, refuse_nonfinite
@@ -92,7 +92,7 @@ def describe_nearest(
 
 def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
     value = f"{number:.15g} {units.symbol(want)}".rstrip()
-    return _("the nearest is {name}: {value}").format(name=path_text(path), value=value)
+    return _("the nearest is {name}: {value}").format(name=format_path(path), value=value)
 
 
 def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
@@ -142,7 +142,7 @@ def read(tree: Tree) -> TaskProblem:
             key=True,
         ).located(tree.file, tree)
     file = TaskFile(tree)
-    with placed_in(tree):
+    with locate_errors_in(tree):
         if not file.searches:
             file.task  # noqa: B018  refuses what is wrong in it
     shape, name = file.shape, tree.name
@@ -164,14 +164,14 @@ def build_synthesised(tree: Tree) -> Problem:
 def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
     """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
     file, name = TaskFile(tree), tree.name
-    with placed_in(tree):
+    with locate_errors_in(tree):
         return name, file.shape.title or name, file.synthesised(), file.units
 
 
 def read_task(tree: Tree) -> Any:
     """What the task of a file asks, in SI, without its answer. Raises ProblemError."""
     file = TaskFile(tree)
-    with placed_in(tree):
+    with locate_errors_in(tree):
         return file.task
 
 
@@ -183,17 +183,17 @@ class TaskFile:
 
     def __init__(self, tree: Tree, *, extended: bool = False) -> None:
         self.tree = tree
-        self.shape = checked_shape(tree) if "links" in tree.data else validated(SynthesisFile, tree)
+        self.shape = validate_planar(tree) if "links" in tree.data else validate_shape(SynthesisFile, tree)
         self.block = check_block(tree)
         self.searches: bool = getattr(block_module(self.block.task), "SEARCH", False)
-        with placed_in(tree):
-            self.units = unit_system(self.shape.units, extended=extended)
+        with locate_errors_in(tree):
+            self.units = build_unit_system(self.shape.units, extended=extended)
             self.kinds = self._kinds()
             self.names = self._names()
             raw, found = self.shape.parameters, self.stand_ins()
             resting = self._resting(set(found))
             self.late = {name: raw[name] for name in raw if name in resting}
-            self.early = parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
+            self.early = build_parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
             self._not_on_what_is_found()
 
     def _kinds(self) -> dict[str, str]:
@@ -209,7 +209,7 @@ class TaskFile:
             if name not in self.kinds:
                 nothing = _("the synthesis {task} finds nothing of that name").format(task=task)
                 none = None if self.kinds else _("it finds no parameters")
-                raise unknown_name(name, self.kinds, nothing, none, path=path, key=True)
+                raise unknown_name_error(name, self.kinds, nothing, none, path=path, key=True)
             check_parameter(other, path, key=False)
         names = {name: own.get(name, name) for name in self.kinds}
         for name, other in names.items():
@@ -272,7 +272,7 @@ class TaskFile:
         """What is asked, in the record of the task."""
         read = block_module(self.block.task).read
         try:
-            with under("synthesis"):
+            with prefix_errors("synthesis"):
                 if not self.searches:
                     return read(self.block, BoundedReader(self.early, self.units))
                 if "links" not in self.tree.data:
@@ -296,14 +296,14 @@ class TaskFile:
         """The linkage with these values of what is to be found."""
         assert isinstance(self.shape, schema.File)
         known = self.early | found
-        everything = known | parameters(self.late, units, known)
-        return build_shape(self.shape, self.tree, ValueReader(everything, units))
+        everything = known | build_parameters(self.late, units, known)
+        return build_from_shape(self.shape, self.tree, ValueReader(everything, units))
 
     def synthesised(self) -> Synthesised:
         """What the task finds. Raises ProblemError."""
         task = self.task
         try:
-            with under("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
+            with prefix_errors("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
                 outcome = refuse_nonfinite(solver_module(self.block.task).solve(task))
         except Infeasible as error:
             searched = error.nearest is None and error.search and not self.searches
@@ -346,7 +346,7 @@ class TaskFile:
 
 def _solved_problem(file: TaskFile) -> Problem:
     """The problem with what its task finds."""
-    with placed_in(file.tree):
+    with locate_errors_in(file.tree):
         return _with_solution(file, file.synthesised())
 
 
@@ -364,7 +364,7 @@ def _with_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
 def _extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
     """The same with the decimals of the file as double-doubles; what the task found stays as it is."""
     file = TaskFile(tree, extended=True)
-    with placed_in(tree):
+    with locate_errors_in(tree):
         return _with_solution(file, synthesised)
 
 

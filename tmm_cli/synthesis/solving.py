@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING, Literal
 from tmm_cli.mechanics.analysis import Inputs, Results, pipeline, redriven
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.structure import ChainResults, examine
-from tmm_cli.problem import ChainProblem, Problem, TaskProblem, in_words_of, problem_of, read_file, refuse_law
+from tmm_cli.problem import (
+    ChainProblem,
+    Problem,
+    TaskProblem,
+    build_any_problem,
+    read_file,
+    refuse_variable_speed,
+    translate_errors,
+)
 
 if TYPE_CHECKING:
     from tmm_cli.batch import Batch
@@ -24,7 +32,7 @@ def load(path: str) -> Problem | TaskProblem:
 
     A task of synthesis is solved when something needs the lengths that it finds: `solve`, `prepare`, `linkage`.
     """
-    return problem_of(read_file(path))
+    return build_any_problem(read_file(path))
 
 
 def solve(
@@ -38,7 +46,7 @@ def solve(
     of: points, links, centres of mass (E, 5, S3) that alone are asked for; only groups on the way to them are solved.
     """
     whole = problem.whole
-    with in_words_of(whole):
+    with translate_errors(whole):
         results = pipeline.solve(inputs_of(whole), stage, positions, of, whole)
     if not whole.request.centres or results.motion is None or of:
         return results
@@ -98,7 +106,7 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     What hangs on the driver of the file is left out: its law of motion, balancing, wheels, loads by its angle.
     """
     whole = problem.whole
-    with in_words_of(whole):
+    with translate_errors(whole):
         linkage = redriven(whole.linkage, link)
     loads = tuple(
         own for own in linkage.loads if own.window is None and (own.table is None or own.table.against == "stroke")
@@ -118,7 +126,7 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
     for one in several:
-        refuse_law(one.linkage.driver.law is not None, one.dynamics is not None)
-    with in_words_of(several[0]):
+        refuse_variable_speed(one.linkage.driver.law is not None, one.dynamics is not None)
+    with translate_errors(several[0]):
         strokes = pipeline.solve(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
         return every_variant([problem.linkage for problem in several], strokes=strokes)

@@ -17,7 +17,7 @@ from tmm_cli.mechanics.kinematics import Strokes, Travel, output_run
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
 from tmm_cli.mechanics.structure import ChainResults
-from tmm_cli.problem import Tree, UnitSystem, build_chain, is_chain, problem_of, read_file
+from tmm_cli.problem import Tree, UnitSystem, build_any_problem, build_chain, is_chain, read_file
 from tmm_cli.reports import MET, properties_shown, with_unit
 from tmm_cli.synthesis import count, solve
 
@@ -127,7 +127,7 @@ def card(file: str) -> Card:
     tree = read_file(file)
     if is_chain(tree):
         return _of_chain(file, tree, count(build_chain(tree)))
-    problem = problem_of(tree).whole
+    problem = build_any_problem(tree).whole
     results = solve(problem, "forces" if problem.shows else "kinematics")
     structure = results.structure
     groups = dict.fromkeys(f"{group.roman} {group.type}" for group in structure.groups)

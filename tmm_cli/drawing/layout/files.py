@@ -11,14 +11,14 @@ from tmm_cli.drawing.layout.contents import choose_positions
 from tmm_cli.drawing.layout.large import large_sheets
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.problem import ProblemError, chosen_names
+from tmm_cli.problem import ProblemError, parse_names
 
 MOST_PLANS = 24  # positions of which plans are drawn
 
 
 def parse_formats(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
-    wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of drawings"))
+    wanted = parse_names(text, FORMATS, "--as", _("there is no such format of drawings"))
     if "dxf" in wanted and find_spec("ezdxf") is None:
         raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
     return wanted

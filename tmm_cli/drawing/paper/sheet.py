@@ -41,7 +41,7 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import unit
 from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, extent, ground_of
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 
 THIN_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR, GREY_COLOUR = (
     "#8a8a8a",
@@ -352,7 +352,7 @@ def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """A title of an axis."""
-    return ", ".join(part for part in (words, on_paper(units.spelt(dimension))) if part)
+    return ", ".join(part for part in (words, typeset_unit(units.spelt(dimension))) if part)
 
 
 def file_safe_name(name: str) -> str:

@@ -41,7 +41,7 @@ from tmm_cli.mechanics.forces import table_jumps
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
 from tmm_cli.mechanics.structure import DENSE
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 
 MOST_POINTS = 1440  # of a curve over a cycle
 MOST_DOTS = 90  # computed positions that are marked on a curve; more of them would hide it
@@ -213,7 +213,7 @@ def _driver_axis(results: Results, ends: tuple[float, float], start: float, most
 
 def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> PlotContent:
     """A panel of quantities over places xs, which may jump after those of the numbers `borders`; marks: of points."""
-    factor, unit = units.factor(found.dimension), on_paper(units.spelt(found.dimension))
+    factor, unit = units.factor(found.dimension), typeset_unit(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):
         values, points = (np.asarray(v) / factor for v in (course.values, course.points))

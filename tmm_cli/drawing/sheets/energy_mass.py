@@ -38,7 +38,7 @@ from tmm_cli.mechanics.forces import Lettered, Symbol
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import INERTIA as MOMENT_OF_INERTIA
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.dynamics import Running, Steady, Tangent
@@ -79,7 +79,7 @@ def energy_mass_sheet(results: Results, running: Running, way: Real) -> Drawing:
     """Work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
-    factor, unit = units.factor(MOMENT_OF_INERTIA), on_paper(units.spelt(MOMENT_OF_INERTIA))
+    factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
     title = _("Energy-mass diagram with tangents of the largest and the least speed; dots: computed positions")
     sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
     told = sheet.ground.low + 0.5 * TEXT_ROW * 1j
@@ -179,5 +179,5 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
         least,
         ")",
         f" − {numeral(begins, '.4g')}" if begins else "",
-        f" = {numeral(found, '.4g')} {on_paper(units.spelt(MOMENT_OF_INERTIA))}",
+        f" = {numeral(found, '.4g')} {typeset_unit(units.spelt(MOMENT_OF_INERTIA))}",
     )

@@ -15,7 +15,7 @@ from tmm_cli.batch import Asked, Task
 from tmm_cli.grading.record import Mark, StudentMarks, factor
 from tmm_cli.grading.untrusted_tables import sentence, shown
 from tmm_cli.language import N_, _, numeral, spelt
-from tmm_cli.problem import on_paper
+from tmm_cli.problem import typeset_unit
 from tmm_cli.reports import folder_name
 
 STATES = {
@@ -41,7 +41,7 @@ class Answer:
         size: that of a vector without its direction.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
-        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {on_paper(spelt(unit or self.unit))}".rstrip()
+        number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {typeset_unit(spelt(unit or self.unit))}".rstrip()
         if not self.asked.quantity.vector or size:
             return number
         return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))

@@ -23,7 +23,7 @@ from tmm_cli.grading.submissions.numbers import (
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem import ProblemError, nearest, parse_unit, quote
+from tmm_cli.problem import ProblemError, nearest_name, parse_unit, quote
 
 MOST_TOLD = 20  # problems of one submission
 MOST_CELLS = 10_000  # of one submission
@@ -135,7 +135,7 @@ class Answers:
 
     def _line(self, error: ProblemError) -> str:
         if isinstance(error, UnknownQuantityError):
-            near = nearest(error.name, self.names)
+            near = nearest_name(error.name, self.names)
             error = ProblemError(error.message, found=error.found, near=near)
         return one_line(error)
 
@@ -143,7 +143,7 @@ class Answers:
         """Of a quantity that is not asked with what is perhaps meant: R_12 is never taken for R_21."""
         names = []
         for place in places[:MOST_TOLD]:
-            near = None if place.quantity in self.names else nearest(place.quantity, self.names)
+            near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
             names.append(_called(place) + (_(" ({near} is asked)").format(near=near) if near else ""))
         more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
         return _("not asked, so not counted: {names}").format(names=", ".join([*names, *more]))

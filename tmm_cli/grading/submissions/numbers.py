@@ -15,7 +15,16 @@ from typing import Literal, cast, get_args
 from tmm_cli.grading.record import Given
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.problem import ProblemError, clean, dotted_unit, finite_float, latin, parse_unit, plain_text, quote
+from tmm_cli.problem import (
+    ProblemError,
+    clean,
+    dotted_unit_error,
+    finite_float,
+    parse_unit,
+    plain_text,
+    quote,
+    to_latin,
+)
 
 LONGEST = 200
 CLASSES = {name: float(n) for n, name in enumerate(("I", "II", "III", "IV", "V", "VI"), start=1)}
@@ -53,7 +62,7 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
     if not source.strip("- "):
         return None
     told = clean(source, 80)
-    if roman := CLASSES.get(latin(source).upper()):
+    if roman := CLASSES.get(to_latin(source).upper()):
         return Given(roman, unit=unit, text=told)
     parts, of_both, polar = _parts(source)
     if parts == [source]:
@@ -122,7 +131,7 @@ def checked_unit(text: str) -> str:
     name = text.strip().removesuffix(".")
     if name:
         if "." in name:
-            raise dotted_unit(name)
+            raise dotted_unit_error(name)
         parse_unit(name)
     return name
 
@@ -191,19 +200,19 @@ class Headings:
     """Reads headings by the names of quantities. A name may have Cyrillic letters that look like its Latin ones."""
 
     def __init__(self, names: Iterable[str]) -> None:
-        self.names = {latin(name): name for name in sorted(names, key=len, reverse=True)}
+        self.names = {to_latin(name): name for name in sorted(names, key=len, reverse=True)}
 
     def read(self, text: str) -> Heading:
         """Raises ProblemError."""
         source = " ".join(plainly(text).split())
-        alike = latin(source)
+        alike = to_latin(source)
         for known, name in self.names.items():
             if not alike.startswith(known):
                 continue
             if rest := _REST.fullmatch(source, len(known)):
                 return _heading(name, *rest.groups(default=""))
         called = re.split(r" at |, | ?\[", source)[0]
-        if latin(called) in self.names:
+        if to_latin(called) in self.names:
             raise ProblemError(_("this heading is not understood"), found=quote(source), allowed=_("v of E at 7, m/s"))
         raise UnknownQuantityError(called)
 

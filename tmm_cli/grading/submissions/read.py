@@ -17,7 +17,7 @@ from tmm_cli.grading.submissions.numbers import PARTS, Part, checked_unit
 from tmm_cli.grading.untrusted_tables import bytes_of, decoded, rows_of
 from tmm_cli.grading.variant_tables import WHO
 from tmm_cli.language import N_, _
-from tmm_cli.problem import Composer, ProblemError, clean, latin, quote, read_text
+from tmm_cli.problem import Composer, ProblemError, clean, quote, read_text, to_latin
 
 Row = Sequence[str]
 
@@ -276,4 +276,4 @@ def _unread(student: str, why: str) -> Submission:
 
 def _folded(name: str) -> str:
     """Names that look the same are the same: in their accents, capitals, spaces, Latin and Cyrillic letters."""
-    return latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()
+    return to_latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()

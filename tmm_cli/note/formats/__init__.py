@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from tmm_cli.language import _
 from tmm_cli.note.blocks import Note
 from tmm_cli.note.formats.html import html
-from tmm_cli.problem import ProblemError, chosen_names
+from tmm_cli.problem import ProblemError, parse_names
 
 
 def _docx(note: Note) -> bytes:
@@ -22,7 +22,7 @@ FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 def formats_of(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
-    wanted = chosen_names(text, FORMATS, "--as", _("there is no such format of notes"))
+    wanted = parse_names(text, FORMATS, "--as", _("there is no such format of notes"))
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(
             _("DOCX is written by python-docx, which is not installed"),

@@ -24,61 +24,61 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.mechanics.structure import MOST
 from tmm_cli.problem import schema
-from tmm_cli.problem.blocks.links import Members
-from tmm_cli.problem.errors import Path, ProblemError, no_position, quote
-from tmm_cli.problem.values import Part, ValueReader
+from tmm_cli.problem.blocks.links import LinksAndPairs
+from tmm_cli.problem.errors import Path, ProblemError, quote, unknown_position_error
+from tmm_cli.problem.values import FileSection, ValueReader
 
-NO_SPEED = 1e-12  # of the square of the largest: less is rounding of a rest
+ROUNDING_OF_REST = 1e-12  # relative to the square of the largest speed: less is a rounding error of zero
 
 
-def build_speeds(part: Part, turns: int) -> SpeedTable:
+def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     """Squares of speeds by the crank's angle, and accelerations if they are given; turns: of the crank in a cycle."""
-    given: schema.Driver = part.given
-    angles, speeds = _columns(part, "speed", ANGULAR_SPEED)
-    path = (*part.path, "speed", "table")
+    keys: schema.DriverKeys = section.keys
+    angles, speeds = _columns(section, "speed", ANGULAR_SPEED)
+    path = (*section.path, "speed", "table")
     for k, speed in enumerate(speeds):
         if speed < 0:
             raise ProblemError(
                 _("a speed is counted in the driver's sense, which is one alone"),
                 path=(*path, k, 1),
-                found=quote(given.speed.table[k][1]),
+                found=quote(keys.speed.table[k][1]),
                 allowed=_("zero or more; turns: cw for the other sense"),
             )
     if not any(speeds):
         raise ProblemError(_("the driver stands still in all rows"), path=path, key=True)
-    closed = _closes(part, "speed", angles, speeds, turns)
-    squares = Table(angles, tuple(speed * speed for speed in speeds), given.speed.between, closed)
-    row, least = _least(squares)
-    if least < -NO_SPEED * float(rounded(max(speeds))) ** 2:
+    closed = _is_closed(section, "speed", angles, speeds, turns)
+    squares = Table(angles, tuple(speed * speed for speed in speeds), keys.speed.between, closed)
+    row, least = _find_least(squares)
+    if least < -ROUNDING_OF_REST * float(rounded(max(speeds))) ** 2:
         below = _("between this row and the next the smooth curve of squares of speeds goes below zero")
-        found, allowed = quote(given.speed.table[row][0]), _("between: linear, or more rows there")
+        found, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows there")
         raise ProblemError(below, path=(*path, row, 0), found=found, allowed=allowed)
-    if not isinstance(given.acceleration, schema.Speeds):
+    if not isinstance(keys.acceleration, schema.Speeds):
         return SpeedTable(squares)
-    angles, gains = _columns(part, "acceleration", ANGULAR_ACCELERATION)
-    closed_too = _closes(part, "acceleration", angles, gains, turns)
+    angles, gains = _columns(section, "acceleration", ANGULAR_ACCELERATION)
+    closed_too = _is_closed(section, "acceleration", angles, gains, turns)
     if closed_too != closed or angles[0] > squares.arguments[0] or angles[-1] < squares.arguments[-1]:
-        raise part.refusal("acceleration", _("accelerations are given over the same angles as speeds"), at_key=True)
-    return SpeedTable(squares, Table(angles, gains, given.acceleration.between, closed_too))
+        raise section.refusal("acceleration", _("accelerations are given over the same angles as speeds"), at_key=True)
+    return SpeedTable(squares, Table(angles, gains, keys.acceleration.between, closed_too))
 
 
-def mean(part: Part) -> float:
+def _mean_speed(section: FileSection) -> float:
     """Of the speeds of all rows, rad/s."""
-    speeds = _columns(part, "speed", ANGULAR_SPEED)[1]
+    speeds = _columns(section, "speed", ANGULAR_SPEED)[1]
     whole: float = sum(speeds) / len(speeds)
     return whole
 
 
-def _columns(part: Part, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    own = Part(getattr(part.given, key), (*part.path, key), part.values)
+def _columns(section: FileSection, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    own = FileSection(getattr(section.keys, key), (*section.path, key), section.values)
     return own.columns("table", ANGLE, want, jumps=key == "acceleration")
 
 
-def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
+def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
     """Whether a table goes all round the cycle; then it ends as it begins."""
-    table, path, units = getattr(part.given, key).table, (*part.path, key, "table"), part.values.units
+    table, path, units = getattr(section.keys, key).table, (*section.path, key, "table"), section.values.units
     cycle = math.tau * turns
-    end = units.told(float(angles[0]) + cycle, ANGLE)
+    end = units.format_value(float(angles[0]) + cycle, ANGLE)
     beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_PLACE)
     if (row := next(iter(beyond), None)) is not None:
         longer = _("at most {end}; a longer cycle is told by cycle: {turns} turns").format(end=end, turns=turns + 1)
@@ -96,7 +96,7 @@ def _closes(part: Part, key: str, angles: tuple[Any, ...], values: tuple[Any, ..
     return True
 
 
-def _least(table: Table) -> tuple[int, float]:
+def _find_least(table: Table) -> tuple[int, float]:
     """After which row a table is least between rows, and how little it is there."""
     rows = np.array([float(rounded(row)) for row in table.arguments])
     found = rounded(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
@@ -107,86 +107,90 @@ def _least(table: Table) -> tuple[int, float]:
 # Drivers of a problem file, where they stand in the sketch, and the positions that it asks for.
 
 
-FASTER = 100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
-UNTOLD_SKETCH = cmath.pi / 3  # where assemblies are compared when a file says nothing of them
+MAX_SPEED_RATIO = (
+    100  # a further driver may turn so many times as fast as the first; a slider counts by the size of the linkage
+)
+DEFAULT_SKETCH_ANGLE = cmath.pi / 3  # crank angle at which assemblies are compared if the file has no sketch
 
 
-def build_drivers(shape: schema.File, members: Members, values: ValueReader) -> tuple[Driver, ...]:
+def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReader) -> tuple[Driver, ...]:
     """All drivers in the order of the file."""
-    if isinstance(shape.driver, schema.Driver):
-        part = Part(shape.driver, ("driver",), values)
-        driver = _driver(part, members, True)
+    if isinstance(shape.driver, schema.DriverKeys):
+        section = FileSection(shape.driver, ("driver",), values)
+        driver = _build_driver(section, members, True)
         if isinstance(shape.driver.speed, schema.Speeds):
-            driver = replace(driver, law=build_speeds(part, build_cycle(shape, driver, values)))
+            driver = replace(driver, law=_build_speed_table(section, build_cycle(shape, driver, values)))
         return (driver,)
     if not shape.driver:
         raise ProblemError(_("there is no driver"), path=("driver",), found="[]", allowed=_("{link: 1, speed: 60 rpm}"))
-    parts = [Part(given, ("driver", number), values) for number, given in enumerate(shape.driver)]
+    sections = [FileSection(keys, ("driver", number), values) for number, keys in enumerate(shape.driver)]
     found: list[Driver] = []
-    for part in parts:
-        driver = _driver(part, members, part is parts[0])
+    for section in sections:
+        driver = _build_driver(section, members, section is sections[0])
         if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in found):
-            raise part.refusal("link", _("this link is driven already"), quote(driver.link))
+            raise section.refusal("link", _("this link is driven already"), quote(driver.link))
         found.append(driver)
-    lead, size = found[0], _size(members.links)
-    for part, driver in zip(parts[1:], found[1:], strict=True):
+    lead, size = found[0], _linkage_size(members.links)
+    for section, driver in zip(sections[1:], found[1:], strict=True):
         first, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (lead, driver))
-        if first > 0 and own > FASTER * first:
+        if first > 0 and own > MAX_SPEED_RATIO * first:
             faster = _("a driver is far faster than the first one")
-            raise part.refusal("speed", faster, str(part.given.speed), _("the fastest driver first"))
+            raise section.refusal("speed", faster, str(section.keys.speed), _("the fastest driver first"))
     if len(found) > 1 and lead.rate == 0:
         still = _("the first of several drivers counts the positions: it must move")
-        raise parts[0].refusal("speed", still, str(parts[0].given.speed))
+        raise sections[0].refusal("speed", still, str(sections[0].keys.speed))
     return tuple(found)
 
 
-def _size(links: dict[str, Link]) -> float:
+def _linkage_size(links: dict[str, Link]) -> float:
     """The largest distance of two points of one link (m)."""
     spans = (abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values())
     return max(spans, default=0.0) or 1.0
 
 
-def _driver(part: Part, members: Members, first: bool) -> Driver:
-    given: schema.Driver = part.given
-    link = part.known("link", [name for name in members.links if name != FRAME], "link")
-    base = part.known("on", members.links, "link")
-    part.values.different((link, base), (*part.path, "on"))
+def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> Driver:
+    keys: schema.DriverKeys = section.keys
+    link = section.known_name("link", [name for name in members.links if name != FRAME], "link")
+    base = section.known_name("on", members.links, "link")
+    section.values.refuse_same((link, base), (*section.path, "on"))
     pivot, slide = members.hinge(link, base), members.slide(link, base)
     if pivot is None and slide is None:
-        raise members.unjoined(link, base, (*part.path, "link"))
+        raise members.unjoined(link, base, (*section.path, "link"))
     turns = pivot is not None
     want = ANGLE if turns else LENGTH
-    by_angle = isinstance(given.speed, schema.Speeds)
-    if by_angle and (not turns or not first or part.path != ("driver",)):
-        raise part.refusal("speed", _("a table of speeds is for one crank alone"), at_key=True)
-    if by_angle != isinstance(given.acceleration, schema.Speeds) and given.acceleration != 0:
+    by_angle = isinstance(keys.speed, schema.Speeds)
+    if by_angle and (not turns or not first or section.path != ("driver",)):
+        raise section.refusal("speed", _("a table of speeds is for one crank alone"), at_key=True)
+    if by_angle != isinstance(keys.acceleration, schema.Speeds) and keys.acceleration != 0:
         apart = _("an acceleration goes with a speed at position 0, a table of them with a table of speeds")
-        raise part.refusal("acceleration", apart, at_key=True)
-    speed = mean(part) if by_angle else part.number("speed", ANGULAR_SPEED if turns else SPEED)
+        raise section.refusal("acceleration", apart, at_key=True)
+    speed = _mean_speed(section) if by_angle else section.number("speed", ANGULAR_SPEED if turns else SPEED)
     acceleration = 0.0
     if not by_angle:
-        acceleration = part.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
-    if speed < 0 and "turns" in given.model_fields_set:
+        acceleration = section.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
+    if speed < 0 and "turns" in keys.model_fields_set:
         twice = _("a negative speed and a sense of rotation say the sense twice")
-        raise part.refusal("speed", twice, str(given.speed), _("a positive speed with turns: ccw or cw"))
-    if given.end is not None:
-        part.known("end", members.links[link].points, f"point of link {link}")
-        if given.end == pivot:
+        raise section.refusal("speed", twice, str(keys.speed), _("a positive speed with turns: ccw or cw"))
+    if keys.end is not None:
+        section.known_name("end", members.links[link].points, f"point of link {link}")
+        if keys.end == pivot:
             has_no_arm = _("a balancing force in the pivot {point} has no arm").format(point=pivot)
-            raise part.refusal("end", has_no_arm, quote(given.end), _("another point of the link"))
-    if first == (given.at is not None):
-        raise part.refusal(
+            raise section.refusal("end", has_no_arm, quote(keys.end), _("another point of the link"))
+    if first == (keys.at is not None):
+        raise section.refusal(
             "at",
             _("the place of the first driver stands in the sketch, that of each other one here"),
             at_key=True,
             allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"),
         )
-    at = 0.0 if given.at is None else part.number("at", want)
+    at = 0.0 if keys.at is None else section.number("at", want)
     stroke = None
-    if given.stroke is not None:
-        low, high = (part.values.number(value, want, (*part.path, "stroke", k)) for k, value in enumerate(given.stroke))
+    if keys.stroke is not None:
+        low, high = (
+            section.values.number(value, want, (*section.path, "stroke", k)) for k, value in enumerate(keys.stroke)
+        )
         if not low < high:
-            raise part.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(given.stroke))
+            raise section.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(keys.stroke))
         stroke = (low, high)
     return Driver(
         link,
@@ -194,9 +198,9 @@ def _driver(part: Part, members: Members, first: bool) -> Driver:
         pivot or (slide.name if slide else ""),
         abs(speed),
         acceleration if speed >= 0 else -acceleration,
-        -1 if given.turns == "cw" or speed < 0 else 1,
-        given.balance,
-        given.end or "",
+        -1 if keys.turns == "cw" or speed < 0 else 1,
+        keys.balance,
+        keys.end or "",
         base,
         at,
         stroke,
@@ -225,30 +229,30 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
     """The sketch of the file, or of one that says nothing of it any place of the driver."""
-    given = dict(shape.sketch)
+    keys = dict(shape.sketch)
     wanted = ANGLE if driver.kind == "turn" else LENGTH
-    if not given:
-        return Sketch(UNTOLD_SKETCH if driver.kind == "turn" else 0.0)
-    if "at" not in given:
+    if not keys:
+        return Sketch(DEFAULT_SKETCH_ANGLE if driver.kind == "turn" else 0.0)
+    if "at" not in keys:
         raise ProblemError(
             _("the driver's place in the sketch is missing"),
             path=("sketch", "at"),
             allowed=_("at: {wanted}").format(wanted=wanted),
         )
-    at = values.number(given.pop("at"), wanted, ("sketch", "at"))
+    at = values.number(keys.pop("at"), wanted, ("sketch", "at"))
     if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
         beyond = _("the sketch shows the driver beyond its stroke")
         raise ProblemError(beyond, path=("sketch", "at"), found=str(shape.sketch["at"]))
     owners = {p: n for n, link in links.items() for p in link.points}
     points, angles = {}, {}
-    for name, value in given.items():
+    for name, value in keys.items():
         path: Path = ("sketch", name)
         if name in owners and isinstance(value, list):
             points[name] = values.vector(value, LENGTH, path)
         elif name in links and name != FRAME and not isinstance(value, list):
             angles[name] = values.number(value, ANGLE, path)
         else:
-            values.known(name, {**owners, **links}, path, "point or link", key=True)
+            values.known_name(name, {**owners, **links}, path, "point or link", key=True)
             raise ProblemError(
                 _("a point has coordinates and a link has an angle"),
                 path=path,
@@ -260,25 +264,25 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
 
 def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Request:
     """Which positions the file asks for."""
-    given = shape.positions
-    part = Part(given, ("positions",), values)
+    keys = shape.positions
+    section = FileSection(keys, ("positions",), values)
     wanted = ANGLE if driver.kind == "turn" else LENGTH
-    places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(given.at or ()))
-    count = len(places) or given.count
-    for k, number in enumerate(given.detail):
+    places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(keys.at or ()))
+    count = len(places) or keys.count
+    for k, number in enumerate(keys.detail):
         if not 0 <= number < count:
-            raise no_position(number, count, "positions", "detail", k)
-    if given.from_ is not None and driver.kind == "slide" and not places:
-        raise part.refusal(
+            raise unknown_position_error(number, count, "positions", "detail", k)
+    if keys.from_ is not None and driver.kind == "slide" and not places:
+        raise section.refusal(
             "from",
             _("positions of a driven slider go from one end of its way to the other"),
-            str(given.from_),
+            str(keys.from_),
             _("driver: {stroke: [first, last]}, or positions: {at: [...]}"),
             at_key=True,
         )
     start: float | Literal["working stroke"] = 0.0
-    if given.from_ == "working stroke":
+    if keys.from_ == "working stroke":
         start = "working stroke"
-    elif given.from_ is not None:
-        start = values.number(given.from_, wanted, ("positions", "from"))
-    return Request(count, start, places, tuple(given.detail), given.centres)
+    elif keys.from_ is not None:
+        start = values.number(keys.from_, wanted, ("positions", "from"))
+    return Request(count, start, places, tuple(keys.detail), keys.centres)

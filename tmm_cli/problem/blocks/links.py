@@ -12,14 +12,14 @@ from tmm_cli.mechanics.linkage import FRAME, Hinge, Link, Linkage, Slide, hinged
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.mechanics.structure import analyse
 from tmm_cli.problem import schema
-from tmm_cli.problem.errors import Path, ProblemError, latin, nearest, quote, unknown_name
-from tmm_cli.problem.values import Part, ValueReader, check_name, direction, phase, planar
+from tmm_cli.problem.errors import Path, ProblemError, nearest_name, quote, to_latin, unknown_name_error
+from tmm_cli.problem.values import FileSection, ValueReader, check_name, make_complex, unit_vector, vector_angle
 
-LONGEST_PAIR = 80  # letters of the names of two points
+MAX_PAIR_LENGTH = 80  # letters of the names of two points
 
 
 @dataclass(frozen=True)
-class Members:
+class LinksAndPairs:
     """Links and their lower pairs: what drivers, higher pairs and loads of the file are put on."""
 
     links: dict[str, Link]
@@ -51,28 +51,28 @@ class Members:
         )
 
 
-def build_links(shape: schema.File, values: ValueReader) -> Members:
+def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
     """Links in the order of the file, hinges where they share points, and slides."""
-    reader = _Reader(shape, values)
+    reader = _LinkReader(shape, values)
     slides = reader.slides()
     owners: dict[str, list[str]] = {}
     for name, link in reader.links.items():
         for point in link.points:
             owners.setdefault(point, []).append(name)
     hinges = tuple(Hinge(point, tuple(names)) for point, names in owners.items() if len(names) > 1)
-    return Members(reader.links, _attach_links(hinges, shape, values), slides)
+    return LinksAndPairs(reader.links, _attach_links(hinges, shape, values), slides)
 
 
 def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
     """The hinges, compound ones with the link to which the file attaches the others."""
     links_at = {hinge.point: hinge.links for hinge in hinges}
     for point, hinge in shape.hinges.items():
-        part = Part(hinge, ("hinges", point), values)
-        values.known(point, links_at, part.path, "hinge", key=True)
+        section = FileSection(hinge, ("hinges", point), values)
+        values.known_name(point, links_at, section.path, "hinge", key=True)
         if len(links_at[point]) == 2:
-            raise part.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
+            raise section.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
         if hinge.attached_to not in links_at[point]:
-            raise part.refusal(
+            raise section.refusal(
                 "attached_to",
                 _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
                 found=quote(hinge.attached_to),
@@ -87,7 +87,7 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
     for hinge in linkage.hinges:
         if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
             allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
-            raise Part(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
+            raise FileSection(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
                 "attached_to",
                 _("with the links attached to {link} the mechanism does not fall into the same groups").format(
                     link=hinge.attached_to
@@ -108,7 +108,7 @@ def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
     return groups[0] == groups[1] and all(link in ends for ends in driven)
 
 
-class _Reader:
+class _LinkReader:
     """Reads links, then slides, which need all links."""
 
     def __init__(self, shape: schema.File, values: ValueReader) -> None:
@@ -117,7 +117,7 @@ class _Reader:
         for name, place in shape.points.items():
             check_name(name, ("points", name), "point")
             frame[name] = values.vector(place, LENGTH, ("points", name))
-        _refuse_twins(shape)
+        _refuse_lookalikes(shape)
         self.links = {FRAME: Link(FRAME, frame)}
         for name, link in shape.links.items():
             check_name(name, ("links", name), "link")
@@ -125,43 +125,43 @@ class _Reader:
                 raise ProblemError(_("0 is the frame; see points"), path=("links", name), key=True)
             self.links[name] = Link(name, self.points(link, name), label=link.name or "")
 
-    def points(self, link: schema.Link, name: str) -> dict[str, complex]:
-        part, given = Part(link, ("links", name), self.values), link.points
-        where: Path = (*part.path, "points")
-        if isinstance(given, dict):
+    def points(self, link: schema.LinkKeys, name: str) -> dict[str, complex]:
+        section, named = FileSection(link, ("links", name), self.values), link.points
+        where: Path = (*section.path, "points")
+        if isinstance(named, dict):
             if link.length is not None:
-                raise part.refusal("length", _("coordinates say the length already"))
-            points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in given.items()}
+                raise section.refusal("length", _("coordinates say the length already"))
+            points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in named.items()}
         else:
-            points = self.listed(given, part)
+            points = self.listed(named, section)
         if not points:
-            raise part.refusal("points", _("a link has at least one point"), allowed="[A, B]")
+            raise section.refusal("points", _("a link has at least one point"), allowed="[A, B]")
         for number, point in enumerate(points):
-            check_name(point, (*where, point if isinstance(given, dict) else number), "point")
+            check_name(point, (*where, point if isinstance(named, dict) else number), "point")
         for point, place in link.also.items():
-            check_name(point, (*part.path, "also", point), "point", points)
-            points[point] = self.values.place(place, points, (*part.path, "also", point), name)
+            check_name(point, (*section.path, "also", point), "point", points)
+            points[point] = self.values.place(place, points, (*section.path, "also", point), name)
         return points
 
-    def listed(self, given: list[str], part: Part) -> dict[str, complex]:
+    def listed(self, names: list[str], section: FileSection) -> dict[str, complex]:
         """Points that stand in a list: at most two, whose distance is the length."""
-        if len(set(given)) < len(given):
-            raise part.refusal("points", _("a point is named twice"), str(given))
-        if len(given) > 2:
-            raise part.refusal(
+        if len(set(names)) < len(names):
+            raise section.refusal("points", _("a point is named twice"), str(names))
+        if len(names) > 2:
+            raise section.refusal(
                 "points",
                 _("three points and more need coordinates in the link's own axes"),
-                ", ".join(given),
-                f"{{{given[0]}: [0, 0], {given[1]}: [x, 0], {given[2]}: [x, y]}}",
+                ", ".join(names),
+                f"{{{names[0]}: [0, 0], {names[1]}: [x, 0], {names[2]}: [x, y]}}",
             )
-        if len(given) < 2:
-            if part.given.length is not None:
-                raise part.refusal("length", _("a length belongs to two points"))
-            return dict.fromkeys(given, 0j)
-        if part.given.length is None:
-            wanted = _("length: the distance from {first} to {second}").format(first=given[0], second=given[1])
-            raise part.refusal("length", _("the length of this link is missing"), allowed=wanted)
-        return {given[0]: 0j, given[1]: planar(part.positive("length", LENGTH), 0.0)}
+        if len(names) < 2:
+            if section.keys.length is not None:
+                raise section.refusal("length", _("a length belongs to two points"))
+            return dict.fromkeys(names, 0j)
+        if section.keys.length is None:
+            wanted = _("length: the distance from {first} to {second}").format(first=names[0], second=names[1])
+            raise section.refusal("length", _("the length of this link is missing"), allowed=wanted)
+        return {names[0]: 0j, names[1]: make_complex(section.positive("length", LENGTH), 0.0)}
 
     def slides(self) -> tuple[Slide, ...]:
         for name in self.shape.guides:
@@ -171,67 +171,69 @@ class _Reader:
             many = isinstance(link.slides, list)
             for number, slide in enumerate(link.sliding):
                 path: Path = ("links", name, "slides", number) if many else ("links", name, "slides")
-                found.append(self.slide(Part(slide, path, self.values), name, {s.name for s in found}))
+                found.append(self.slide(FileSection(slide, path, self.values), name, {s.name for s in found}))
         return tuple(found)
 
-    def slide(self, part: Part, runner: str, taken: set[str]) -> Slide:
-        given: schema.Slide = part.given
+    def slide(self, section: FileSection, runner: str, taken: set[str]) -> Slide:
+        keys: schema.SlideKeys = section.keys
         points, guides = self.links[runner].points, self.shape.guides
-        point = given.point or next(iter(points))
-        self.values.known(point, points, (*part.path, "point"), f"point of link {runner}")
-        if given.on in guides:
-            if any(told is not None for told in (given.along, given.through, given.angle)):
-                raise ProblemError(_("guide {on} says where it runs already").format(on=given.on), path=part.path)
-            name, line = given.on, Part(guides[given.on], ("guides", given.on), self.values)
-            carrier = line.known("on", self.links, "link")
-        elif given.on in self.links:
-            carrier, name, line = given.on, f"{point}'", part
+        point = keys.point or next(iter(points))
+        self.values.known_name(point, points, (*section.path, "point"), f"point of link {runner}")
+        if keys.on in guides:
+            if any(told is not None for told in (keys.along, keys.through, keys.angle)):
+                raise ProblemError(_("guide {on} says where it runs already").format(on=keys.on), path=section.path)
+            name, line = keys.on, FileSection(guides[keys.on], ("guides", keys.on), self.values)
+            carrier = line.known_name("on", self.links, "link")
+        elif keys.on in self.links:
+            carrier, name, line = keys.on, f"{point}'", section
         else:
             among = _("guides: {guides}; links: {links}").format(
                 guides=", ".join(guides) or _("none"), links=", ".join(self.links)
             )
             known = [*guides, *(n for n in self.links if n != runner)]
-            raise unknown_name(given.on, known, _("there is no such guide or link"), among, path=(*part.path, "on"))
-        self.values.different((runner, carrier), (*part.path, "on"))
+            raise unknown_name_error(
+                keys.on, known, _("there is no such guide or link"), among, path=(*section.path, "on")
+            )
+        self.values.refuse_same((runner, carrier), (*section.path, "on"))
         through, angle, ends = self.guide(line, carrier)
-        bounded = carrier != FRAME and not (given.unbounded or line.given.unbounded)
-        turned = part.number("turned", ANGLE)
+        bounded = carrier != FRAME and not (keys.unbounded or line.keys.unbounded)
+        turned = section.number("turned", ANGLE)
         name = name if name not in taken else f"{name}.{runner}"
         return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
 
-    def guide(self, part: Part, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
+    def guide(self, section: FileSection, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
         """A point on a guide, its direction, in the axes of the link that carries it, and the points it is along."""
-        given: schema.Guide | schema.Slide = part.given
+        keys: schema.Guide | schema.SlideKeys = section.keys
         points = self.links[carrier].points
-        along, placed = given.along, given.through is not None or given.angle is not None
+        along, placed = keys.along, keys.through is not None or keys.angle is not None
         if along is None and not placed and carrier != FRAME and len(points) == 2:
             along = "-".join(points)
         if along is not None and placed:
-            raise part.refusal("along", _("along says through and angle already"))
+            raise section.refusal("along", _("along says through and angle already"))
         ends = None
         if along is not None:
-            first, second = ends = self.values.two_points(along, points, (*part.path, "along"))
-            through, angle = points[first], phase(points[second] - points[first])
-        elif given.through is not None:
-            through = part.place("through", points, carrier)
-            angle = 0.0 if given.angle is None else part.number("angle", ANGLE)
+            first, second = ends = self.values.two_points(along, points, (*section.path, "along"))
+            through, angle = points[first], vector_angle(points[second] - points[first])
+        elif keys.through is not None:
+            through = section.place("through", points, carrier)
+            angle = 0.0 if keys.angle is None else section.number("angle", ANGLE)
         else:
             allowed = _("along: CD, or through: [x, y] and angle")
-            raise part.refusal("through", _("where does this guide run?"), allowed=allowed)
-        return through + 1j * part.number("offset", LENGTH) * direction(angle), angle, ends
+            raise section.refusal("through", _("where does this guide run?"), allowed=allowed)
+        return through + 1j * section.number("offset", LENGTH) * unit_vector(angle), angle, ends
 
 
-def _refuse_twins(shape: schema.File) -> None:
+def _refuse_lookalikes(shape: schema.File) -> None:
     """Refuse points whose names look alike and are not: a Cyrillic letter in one of them is never meant."""
     named: dict[str, Path] = {name: ("points", name) for name in shape.points}
-    for link, given in shape.links.items():
+    for link, keys in shape.links.items():
         path: Path = ("links", link, "points")
-        listed = isinstance(given.points, list)
-        named |= {name: (*path, number if listed else name) for number, name in enumerate(given.points)}
-        named |= {name: ("links", link, "also", name) for name in given.also}
+        listed = isinstance(keys.points, list)
+        named |= {name: (*path, number if listed else name) for number, name in enumerate(keys.points)}
+        named |= {name: ("links", link, "also", name) for name in keys.also}
     alike: dict[str, str] = {}
     for name in sorted(named, key=str.isascii, reverse=True):  # then the one with Cyrillic letters is at fault
-        other = alike.setdefault(latin(name), name)
+        other = alike.setdefault(to_latin(name), name)
         if other != name:
             raise ProblemError(
                 _("this name looks like another one, but its letters differ"),
@@ -242,7 +244,7 @@ def _refuse_twins(shape: schema.File) -> None:
             )
 
 
-def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) -> None:
+def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPairs) -> None:
     """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
     links = members.links
     joined = {name for h in members.hinges for name in h.links} | {
@@ -264,15 +266,15 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
     shared = {h.point for h in members.hinges}
     alone = []
     for name, link in links.items():
-        given = list(link.points) if name == FRAME else shape.links[name].points
+        listed = list(link.points) if name == FRAME else shape.links[name].points
         running = {s.at for s in members.slides if s.runner == name}
-        for number, point in enumerate(given if isinstance(given, list) else ()):
+        for number, point in enumerate(listed if isinstance(listed, list) else ()):
             if point not in shared and link.points[point] not in running:
                 alone.append((name, number, point))
     if not alone:
         return
     everything = list(dict.fromkeys(p for link in links.values() for p in link.points))
-    elsewhere = _points_named(shape, data, links, everything)
+    elsewhere = _points_used_elsewhere(shape, data, links, everything)
     for name, number, point in alone:
         if point not in elsewhere:
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
@@ -281,18 +283,20 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: Members) ->
                 path=path,
                 found=quote(point),
                 allowed=_("a point of another link or the frame; one that is only watched has coordinates (see also:)"),
-                near=nearest(point, [p for p in everything if p != point and p not in links[name].points]),
+                near=nearest_name(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,
             )
 
 
-def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]) -> set[str]:
+def _points_used_elsewhere(
+    shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]
+) -> set[str]:
     """Points that are named beside the links' own lists of points, alone or two together (CD, C-D)."""
     known, found = set(everything), set[str]()
-    for word in _words({**data, "parameters": {}, "title": "", "description": ""}):
+    for word in _find_texts({**data, "parameters": {}, "title": "", "description": ""}):
         found.add(word)
         two = re.sub(r"[-–, ]", "", word)
-        for k in range(1, len(two) if len(two) <= LONGEST_PAIR else 0):
+        for k in range(1, len(two) if len(two) <= MAX_PAIR_LENGTH else 0):
             found |= {two[:k], two[k:]} if known >= {two[:k], two[k:]} else set()
     for slide in (s for link in shape.links.values() for s in link.sliding):
         if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
@@ -300,13 +304,13 @@ def _points_named(shape: schema.File, data: dict[str, Any], links: dict[str, Lin
     return found
 
 
-def _words(part: Any) -> Iterator[str]:
+def _find_texts(section: Any) -> Iterator[str]:
     """Every text of a file that may name a point, the links' own lists of points left out."""
-    if isinstance(part, dict):
-        yield from part
-        part = [value for key, value in part.items() if key != "points"]
-    if isinstance(part, list):
-        for value in part:
-            yield from _words(value)
-    elif isinstance(part, str):
-        yield part
+    if isinstance(section, dict):
+        yield from section
+        section = [value for key, value in section.items() if key != "points"]
+    if isinstance(section, list):
+        for value in section:
+            yield from _find_texts(value)
+    elif isinstance(section, str):
+        yield section

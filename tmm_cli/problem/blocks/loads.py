@@ -31,27 +31,27 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.mechanics.structure import analyse, output_link
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value, checked_vector
-from tmm_cli.problem.values import Part, ValueReader, check_name, direction, planar
+from tmm_cli.problem.values import FileSection, ValueReader, check_name, make_complex, unit_vector
 
 if TYPE_CHECKING:
     from tmm_cli.problem import schema
 
 
-class PointMass(Strict):
+class PointMassKeys(Strict):
     """A mass in one point of a link."""
 
     mass: Value
     at: Place = Field(description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
 
 
-class Mass(Strict):
+class MassKeys(Strict):
     """Mass properties of a link."""
 
     mass: Value | None = None
     weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
     inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
     centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
-    points: list[PointMass] = Field(
+    points: list[PointMassKeys] = Field(
         default_factory=list, max_length=50, description="masses in points of it, beside the others or alone"
     )
 
@@ -62,7 +62,7 @@ AGAINST = ("stroke", "share of stroke", "crank angle", "crank turn")
 WHEN = ("always", "working stroke")
 
 
-def _word(found: Any, words: tuple[str, ...], pattern: str) -> str:
+def _checked_word(found: Any, words: tuple[str, ...], pattern: str) -> str:
     """One of these words, or a text of this pattern."""
     if isinstance(found, str) and (found in words or re.fullmatch(pattern, found)):
         return found
@@ -70,21 +70,21 @@ def _word(found: Any, words: tuple[str, ...], pattern: str) -> str:
     raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
 
 
-def _against(found: Any) -> str:
-    return _word(found, AGAINST, STROKE_OF)
+def _checked_against(found: Any) -> str:
+    return _checked_word(found, AGAINST, STROKE_OF)
 
 
 Against = Annotated[
     str,
     BeforeValidator(
-        _against,
+        _checked_against,
         json_schema_input_type=Literal["stroke", "share of stroke", "crank angle", "crank turn"]
         | Annotated[str, Field(pattern=f"^{STROKE_OF}$")],
     ),
 ]
 
 
-class Tabulated(Strict):
+class TabulatedKeys(Strict):
     """A force, pressure or moment by table, or by size and angle."""
 
     size: Value | None = None
@@ -110,22 +110,22 @@ class Tabulated(Strict):
     )
 
 
-def _force(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_vector(found)
+def _checked_force(found: Any) -> Any:
+    return TabulatedKeys.model_validate(found) if isinstance(found, dict) else checked_vector(found)
 
 
-def _moment(found: Any) -> Any:
-    return Tabulated.model_validate(found) if isinstance(found, dict) else checked_value(found)
+def _checked_moment(found: Any) -> Any:
+    return TabulatedKeys.model_validate(found) if isinstance(found, dict) else checked_value(found)
 
 
-def _when(found: Any) -> Any:
-    return checked_vector(found) if isinstance(found, list) else _word(found, WHEN, WORKING_STROKE_OF)
+def _checked_when(found: Any) -> Any:
+    return checked_vector(found) if isinstance(found, list) else _checked_word(found, WHEN, WORKING_STROKE_OF)
 
 
 When = Annotated[
     str | list[Any],
     BeforeValidator(
-        _when,
+        _checked_when,
         json_schema_input_type=Literal["always", "working stroke"]
         | Annotated[str, Field(pattern=f"^{WORKING_STROKE_OF}$")]
         | Vector,
@@ -133,19 +133,19 @@ When = Annotated[
 ]
 
 
-class Load(Strict):
+class LoadKeys(Strict):
     """A force, a moment, or both, on a link."""
 
     on: Name = Field(description="the link")
     from_: Name = Field(default="0", alias="from", description="the link that has the opposite of it; the frame")
     at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
-    force: Annotated[list[Any] | Tabulated | None, BeforeValidator(_force)] = Field(
+    force: Annotated[list[Any] | TabulatedKeys | None, BeforeValidator(_checked_force)] = Field(
         default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
     )
-    moment: Annotated[Value | Tabulated | None, BeforeValidator(_moment)] = Field(
+    moment: Annotated[Value | TabulatedKeys | None, BeforeValidator(_checked_moment)] = Field(
         default=None, description="positive counterclockwise; a value, or {against, table}"
     )
-    pressure: Tabulated | None = Field(
+    pressure: TabulatedKeys | None = Field(
         default=None, description="instead of force: {size, angle} or {angle, against, table}, on an area or a bore"
     )
     area: Value | None = Field(default=None, description="that the pressure acts on")
@@ -164,45 +164,47 @@ class Load(Strict):
 STANDARD_GRAVITY = 9.81
 
 
-def with_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
+def add_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
     """The linkage with masses, inertias, centres of mass and gravity."""
-    gravity = _gravity(shape.gravity, values)
+    gravity = _build_gravity(shape.gravity, values)
     links = dict(linkage.links)
-    for name, given in shape.masses.items():
-        part = Part(given, ("masses", name), values)
-        values.known(name, linkage.moving, part.path, "link", key=True)
-        links[name] = _with_points(_with_mass(links[name], part, gravity), part)
-        _check_centre(links, name, part)
+    for name, keys in shape.masses.items():
+        section = FileSection(keys, ("masses", name), values)
+        values.known_name(name, linkage.moving, section.path, "link", key=True)
+        links[name] = _add_point_masses(_add_mass(links[name], section, gravity), section)
+        _refuse_ambiguous_centre(links, name, section)
     return replace(linkage, links=links, gravity=gravity)
 
 
-def _with_mass(link: Link, part: Part, gravity: complex) -> Link:
+def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
     """The link as a body; without a mass of its own it has point masses alone."""
-    given: Mass = part.given
-    if given.points and given.mass is None and given.weight is None:
+    keys: MassKeys = section.keys
+    if keys.points and keys.mass is None and keys.weight is None:
         return replace(
-            link, inertia=part.positive("inertia", INERTIA, zero=True), centre=next(iter(link.points.values()))
+            link, inertia=section.positive("inertia", INERTIA, zero=True), centre=next(iter(link.points.values()))
         )
-    if part.one_of("mass", "weight") == "mass":
-        mass = part.positive("mass", MASS, zero=True)
+    if section.one_of("mass", "weight") == "mass":
+        mass = section.positive("mass", MASS, zero=True)
     else:
-        mass = part.positive("weight", FORCE, zero=True) / (abs(gravity) or STANDARD_GRAVITY)
-    inertia = part.positive("inertia", INERTIA, zero=True)
-    if given.centre is None and len(link.points) > 1 and mass > 0:
+        mass = section.positive("weight", FORCE, zero=True) / (abs(gravity) or STANDARD_GRAVITY)
+    inertia = section.positive("inertia", INERTIA, zero=True)
+    if keys.centre is None and len(link.points) > 1 and mass > 0:
         a, b = list(link.points)[:2]
         allowed = _("centre: {a}, centre: [x, y], or centre: {{on: {a}{b}, at: 0.5}}").format(a=a, b=b)
-        raise part.refusal("centre", _("where is the centre of mass of this link?"), allowed=allowed)
-    centre = next(iter(link.points.values())) if given.centre is None else part.place("centre", link.points, link.name)
+        raise section.refusal("centre", _("where is the centre of mass of this link?"), allowed=allowed)
+    centre = (
+        next(iter(link.points.values())) if keys.centre is None else section.place("centre", link.points, link.name)
+    )
     return replace(link, mass=mass, inertia=inertia, centre=centre)
 
 
-def _with_points(link: Link, part: Part) -> Link:
+def _add_point_masses(link: Link, section: FileSection) -> Link:
     """The same with its point masses: one mass, in one centre, with the inertia about it (Steiner)."""
     bodies = [(link.mass, link.centre)] if link.mass > 0 else []
-    for k, given in enumerate(part.given.points):
-        own = Part(given, (*part.path, "points", k), part.values)
+    for k, keys in enumerate(section.keys.points):
+        own = FileSection(keys, (*section.path, "points", k), section.values)
         bodies.append((own.positive("mass", MASS), own.place("at", link.points, link.name)))
-    if not part.given.points:
+    if not section.keys.points:
         return link
     if len(bodies) == 1:  # exactly there, and with nothing about its centre, in every precision
         return replace(link, mass=bodies[0][0], centre=bodies[0][1])
@@ -213,61 +215,69 @@ def _with_points(link: Link, part: Part) -> Link:
     )
 
 
-def _check_centre(links: Mapping[str, Link], name: str, part: Part) -> None:
+def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: FileSection) -> None:
     """S3 is the centre of mass of link 3 in tables, plans and formulas; a point of this name is there too."""
     point, own = f"S{name}", links[name]
     of = [link for link in links if point in links[link].points]
     if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_PLACE):
-        raise part.refusal(
+        raise section.refusal(
             "centre",
             _("this centre of mass is called {point}, and so is another point").format(point=point),
             allowed=_("centre: {point}, or another name of the point").format(point=point),
         )
 
 
-def _gravity(given: Any, values: ValueReader) -> complex:
+def _build_gravity(keys: Any, values: ValueReader) -> complex:
     path: Path = ("gravity",)
-    if given is None:
+    if keys is None:
         return complex(0.0, -STANDARD_GRAVITY)
-    if isinstance(given, list):
-        return values.vector(given, ACCELERATION, path)
-    return planar(0.0, -values.positive(given, ACCELERATION, path, zero=True))
+    if isinstance(keys, list):
+        return values.vector(keys, ACCELERATION, path)
+    return make_complex(0.0, -values.positive(keys, ACCELERATION, path, zero=True))
 
 
 def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[LoadRecord, ...]:
     """The loads of the task, in the order of the file."""
-    return tuple(_load(name, Part(given, ("loads", name), values), linkage) for name, given in shape.loads.items())
+    return tuple(
+        _build_load(name, FileSection(keys, ("loads", name), values), linkage) for name, keys in shape.loads.items()
+    )
 
 
-def _load(name: str, part: Part, linkage: Linkage) -> LoadRecord:
-    given: Load = part.given
-    check_name(name, part.path, "load")
-    link = part.known("on", linkage.moving, "link")
-    base = part.values.known(given.from_, linkage.links, (*part.path, "from"), "link")
-    part.values.different((link, base), (*part.path, "from"))
+def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord:
+    keys: LoadKeys = section.keys
+    check_name(name, section.path, "load")
+    link = section.known_name("on", linkage.moving, "link")
+    base = section.values.known_name(keys.from_, linkage.links, (*section.path, "from"), "link")
+    section.values.refuse_same((link, base), (*section.path, "from"))
     points = linkage.links[link].points
-    at = next(iter(points.values())) if given.at is None else part.place("at", points, link)
-    if given.force is None and given.moment is None and given.pressure is None:
-        raise part.refusal("", _("a load has a force or a moment"), "neither")
-    pushes = _pressing(part, linkage) if given.pressure is not None else _component("force", FORCE, linkage, part)
-    turns = _component("moment", MOMENT, linkage, part)
+    at = next(iter(points.values())) if keys.at is None else section.place("at", points, link)
+    if keys.force is None and keys.moment is None and keys.pressure is None:
+        raise section.refusal("", _("a load has a force or a moment"), "neither")
+    pushes = (
+        _build_pressure(section, linkage)
+        if keys.pressure is not None
+        else _build_component("force", FORCE, linkage, section)
+    )
+    turns = _build_component("moment", MOMENT, linkage, section)
     both = bool(pushes.size) and bool(turns.size)
     if (pushes.table is not None and turns.table is not None) or ((pushes.table or turns.table) and both):
-        raise part.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
+        raise section.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
     if both and pushes.resists != turns.resists:
-        raise part.refusal("", _("one part of this load resists a motion, the other does not"), "both", _("two loads"))
-    window = None if isinstance(given.when, str) else _window(part, linkage)
+        raise section.refusal(
+            "", _("one part of this load resists a motion, the other does not"), "both", _("two loads")
+        )
+    window = None if isinstance(keys.when, str) else _crank_window(section, linkage)
     when, stroke_link = "always", ""
-    if window is None and given.when != "always":
-        when, stroke_link = "working stroke", _stroke_link(part, "when", linkage, link)
-    point = given.at if isinstance(given.at, str) else ""
+    if window is None and keys.when != "always":
+        when, stroke_link = "working stroke", _stroke_link(section, "when", linkage, link)
+    point = keys.at if isinstance(keys.at, str) else ""
     return LoadRecord(
         name,
         link,
         at,
         pushes.size,
         turns.size,
-        given.axes == "link",
+        keys.axes == "link",
         when,
         pushes.table or turns.table,
         point,
@@ -278,15 +288,15 @@ def _load(name: str, part: Part, linkage: Linkage) -> LoadRecord:
     )
 
 
-def _stroke_link(part: Part, key: str, linkage: Linkage, loaded: str) -> str:
+def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) -> str:
     """The link on whose stroke a load depends by this key; empty if it is the main output. Raises ProblemError.
 
     The one that the file names, else the load's own link if that slides on the frame, else the main output.
     """
-    named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(part.given, key))
+    named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(section.keys, key))
     link = loaded if linkage.slides_on_frame(loaded) else ""
     if named:
-        link = part.values.known(named[2] or named[3], linkage.moving, part.at(key), "moving link")
+        link = section.values.known_name(named[2] or named[3], linkage.moving, section.at(key), "moving link")
     if not link:
         return ""
     output = output_link(linkage, analyse(linkage).groups)
@@ -294,7 +304,7 @@ def _stroke_link(part: Part, key: str, linkage: Linkage, loaded: str) -> str:
     return "" if is_output else link
 
 
-class _Component(NamedTuple):
+class _LoadComponent(NamedTuple):
     """A force (complex) or a moment in SI; of a table the direction, or one, and the table."""
 
     size: Any
@@ -302,106 +312,117 @@ class _Component(NamedTuple):
     resists: bool = False
 
 
-def _component(key: str, want: Dimension, linkage: Linkage, load: Part) -> _Component:
-    given, force = getattr(load.given, key), want == FORCE
-    part = Part(given, (*load.path, key), load.values)
-    if given is None:
-        return _Component(0j if force else 0.0)
-    if not isinstance(given, Tabulated):
-        return _Component(load.values.vector(given, want, part.path) if force else load.number(key, want))
-    if given.resists is not None:
-        part.one_of("size", "table", "angle", "resists")
-        size = part.positive("resists", want)
-        return _Component(size + 0j if force else size, resists=True)
-    return _sized(part, want, linkage, load.given.on, angled=force)
+def _build_component(key: str, want: Dimension, linkage: Linkage, load: FileSection) -> _LoadComponent:
+    keys, force = getattr(load.keys, key), want == FORCE
+    section = FileSection(keys, (*load.path, key), load.values)
+    if keys is None:
+        return _LoadComponent(0j if force else 0.0)
+    if not isinstance(keys, TabulatedKeys):
+        return _LoadComponent(load.values.vector(keys, want, section.path) if force else load.number(key, want))
+    if keys.resists is not None:
+        section.one_of("size", "table", "angle", "resists")
+        size = section.positive("resists", want)
+        return _LoadComponent(size + 0j if force else size, resists=True)
+    return _build_sized(section, want, linkage, load.keys.on, angled=force)
 
 
-def _pressing(load: Part, linkage: Linkage) -> _Component:
+def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
     """The force of a pressure on an area, or on a piston of a bore."""
-    if load.given.force is not None:
+    if load.keys.force is not None:
         raise load.refusal("pressure", _("a load has a force or a pressure"), "both", _("two loads"), at_key=True)
     if load.one_of("area", "bore") == "area":
         area = load.positive("area", AREA)
     else:
         bore = load.positive("bore", LENGTH)
         area = pi(bore) * bore * bore / 4
-    part = Part(load.given.pressure, (*load.path, "pressure"), load.values)
-    if part.given.resists is not None:
-        raise part.refusal("resists", _("a pressure has a direction"), allowed=_("angle: 180 deg"), at_key=True)
-    found = _sized(part, PRESSURE, linkage, load.given.on, angled=True)
+    section = FileSection(load.keys.pressure, (*load.path, "pressure"), load.values)
+    if section.keys.resists is not None:
+        raise section.refusal("resists", _("a pressure has a direction"), allowed=_("angle: 180 deg"), at_key=True)
+    found = _build_sized(section, PRESSURE, linkage, load.keys.on, angled=True)
     if found.table is None:
-        return _Component(found.size * area)
-    return _Component(found.size, replace(found.table, values=tuple(value * area for value in found.table.values)))
+        return _LoadComponent(found.size * area)
+    return _LoadComponent(found.size, replace(found.table, values=tuple(value * area for value in found.table.values)))
 
 
-def _sized(part: Part, want: Dimension, linkage: Linkage, loaded: str, *, angled: bool) -> _Component:
+def _build_sized(
+    section: FileSection, want: Dimension, linkage: Linkage, loaded: str, *, angled: bool
+) -> _LoadComponent:
     """By one size or by a table, at an angle or about the axis of the drawing."""
-    given: Tabulated = part.given
-    if angled == (given.angle is None):
+    keys: TabulatedKeys = section.keys
+    if angled == (keys.angle is None):
         wanted = _("a force by its size has an angle, a moment has none")
-        raise part.refusal("angle", wanted, allowed=_("angle: 180 deg"))
-    if (given.against is None) != (given.table is None):
-        raise part.refusal(
+        raise section.refusal("angle", wanted, allowed=_("angle: 180 deg"))
+    if (keys.against is None) != (keys.table is None):
+        raise section.refusal(
             "against",
             _("a table has two columns: what it is against, and the size"),
             allowed=_(
                 "against: stroke, share of stroke, crank angle or crank turn, and table: [[argument, size], ...]"
             ),
         )
-    along = direction(part.number("angle", ANGLE)) if angled else 1.0
-    if part.one_of("size", "table", "resists") == "size":
-        return _Component(along * part.number("size", want))
-    return _Component(along, _table(part, want, linkage, loaded))
+    along = unit_vector(section.number("angle", ANGLE)) if angled else 1.0
+    if section.one_of("size", "table", "resists") == "size":
+        return _LoadComponent(along * section.number("size", want))
+    return _LoadComponent(along, _build_table(section, want, linkage, loaded))
 
 
-def _window(part: Part, linkage: Linkage) -> tuple[float, float]:
+def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]:
     """Between which angles of the crank the load acts."""
     if linkage.driver.kind == "slide":
-        raise part.refusal("when", _("a load between two angles of the crank: this driver slides"))
+        raise section.refusal("when", _("a load between two angles of the crank: this driver slides"))
     cycle = 2 * np.pi * linkage.turns
-    low, high = (part.values.number(value, ANGLE, (*part.path, "when", k)) for k, value in enumerate(part.given.when))
-    end = part.values.units.told(cycle, ANGLE)
+    low, high = (
+        section.values.number(value, ANGLE, (*section.path, "when", k)) for k, value in enumerate(section.keys.when)
+    )
+    end = section.values.units.format_value(cycle, ANGLE)
     for k, place in enumerate((low, high)):
         if not -SAME_PLACE <= place + cycle <= 2 * cycle + SAME_PLACE:
             raise ProblemError(
                 _("the crank does not come to this angle in its cycle"),
-                path=(*part.path, "when", k),
-                found=quote(part.given.when[k]),
+                path=(*section.path, "when", k),
+                found=quote(section.keys.when[k]),
                 allowed=_("at most {end}; a longer cycle of loads is told by cycle: {turns} turns").format(
                     end=end, turns=max(2, math.ceil(place / math.tau))
                 ),
             )
     length = (high - low) % cycle
     if length < SAME_PLACE or cycle - length < SAME_PLACE:
-        raise part.refusal(
+        raise section.refusal(
             "when",
             _("between these two angles there is nothing, or all"),
-            str(part.given.when),
+            str(section.keys.when),
             _("two angles less than {end} apart, or when: always").format(end=end),
         )
     return low, high
 
 
-def _table(part: Part, want: Dimension, linkage: Linkage, loaded: str) -> LoadTable:
-    given: Tabulated = part.given
-    argument, against, stroke_link = ANGLE, given.against or "", ""
+def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded: str) -> LoadTable:
+    keys: TabulatedKeys = section.keys
+    argument, against, stroke_link = ANGLE, keys.against or "", ""
     if linkage.driver.kind == "slide":
-        raise part.refusal(
+        raise section.refusal(
             "against",
             _("a table is against a crank, or the strokes that it gives: this driver slides"),
-            str(given.against),
+            str(keys.against),
             _("size: one value"),
         )
     shares = against.startswith("share")
     if shares or against.startswith("stroke"):
-        against, stroke_link = "stroke", _stroke_link(part, "against", linkage, loaded)
+        against, stroke_link = "stroke", _stroke_link(section, "against", linkage, loaded)
         argument = NUMBER if shares else stroke_dimension(linkage, stroke_link)
-    arguments, sizes = part.columns("table", argument, want, jumps=given.between != "step")
+    arguments, sizes = section.columns("table", argument, want, jumps=keys.between != "step")
     if shares:
-        _refuse_beyond_stroke(part, arguments)
-    round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _whole_turns(arguments[-1] - arguments[0])
+        _refuse_beyond_stroke(section, arguments)
+    round_and_round = against != "stroke" and sizes[0] == sizes[-1] and _is_whole_turns(arguments[-1] - arguments[0])
     return LoadTable(
-        arguments, sizes, given.between, round_and_round, cast("Any", against), shares, stroke_link, str(part.path[-1])
+        arguments,
+        sizes,
+        keys.between,
+        round_and_round,
+        cast("Any", against),
+        shares,
+        stroke_link,
+        str(section.path[-1]),
     )
 
 
@@ -411,19 +432,19 @@ def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
     return ANGLE if link is None or linkage.output_swings(link) else LENGTH
 
 
-def _refuse_beyond_stroke(part: Part, shares: Sequence[Any]) -> None:
+def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
     """Refuse a row of a table that is no share of a stroke. Raises ProblemError."""
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(
                 _("this is no share of the stroke"),
-                path=(*part.path, "table", row, 0),
-                found=quote(part.given.table[row][0]),
+                path=(*section.path, "table", row, 0),
+                found=quote(section.keys.table[row][0]),
                 allowed=_("0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke"),
             )
 
 
-def _whole_turns(way: float) -> bool:
+def _is_whole_turns(way: float) -> bool:
     """Whether a table by the crank ends where it begins."""
     turns = float(way) / (2 * np.pi)
     return abs(turns - round(turns)) * 2 * np.pi < SAME_PLACE

@@ -17,14 +17,14 @@ from tmm_cli.mechanics.numerics import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH, cro
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.schema_types import Name, Strict, Value
-from tmm_cli.problem.values import Part, ValueReader, check_name
+from tmm_cli.problem.values import FileSection, ValueReader, check_name
 
 if TYPE_CHECKING:
     from tmm_cli.problem import schema
-    from tmm_cli.problem.blocks.links import Members
+    from tmm_cli.problem.blocks.links import LinksAndPairs
 
 
-class Gear(Strict):
+class GearKeys(Strict):
     """Two toothed wheels in mesh, hinged to a common carrier."""
 
     between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
@@ -42,7 +42,7 @@ class Gear(Strict):
     pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
 
 
-class Rack(Strict):
+class RackKeys(Strict):
     """A wheel that rolls on a rack."""
 
     wheel: Name
@@ -56,7 +56,7 @@ class Rack(Strict):
     pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
 
 
-class CamPiece(Strict):
+class CamPieceKeys(Strict):
     """A part of a cam's turn."""
 
     over: Value = Field(description="angle of the cam")
@@ -64,7 +64,7 @@ class CamPiece(Strict):
     law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
 
 
-class Cam(Strict):
+class CamKeys(Strict):
     """A cam and its follower on a common carrier, by the follower's law of motion."""
 
     cam: Name = Field(description="it is hinged to the carrier; the frame may be one (a fixed cam)")
@@ -72,7 +72,7 @@ class Cam(Strict):
     carrier: Name = Field(
         default="0", description="the link that carries both; a moving one: its cam changes a length of it"
     )
-    law: list[CamPiece] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
+    law: list[CamPieceKeys] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
     start: Value = Field(default=0, description="angle of the cam from the carrier where the first piece starts")
     offset: Value = Field(default=0, description="run (or angle) of the follower there")
     roller: Name | None = Field(
@@ -84,20 +84,20 @@ class Cam(Strict):
 # Toothed wheels, racks and cams of a problem file.
 
 
-MANY_TEETH = 100_000
+MAX_GEAR_RATIO = 100_000
 
 
-def build_meshes(shape: schema.File, members: Members, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
+def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
     """All higher pairs: gears, racks, cams; sense: of the driver."""
     taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
     found: list[Mesh] = []
-    for block, build in (("gears", _gear), ("racks", _rack), ("cams", partial(_cam, sense))):
-        for name, given in getattr(shape, block).items():
+    for block, build in (("gears", _build_gear), ("racks", _build_rack), ("cams", partial(_build_cam, sense))):
+        for name, keys in getattr(shape, block).items():
             check_name(name, (block, name), "pair", taken)
             taken.add(name)
-            found.append(build(name, Part(given, (block, name), values), members))
+            found.append(build(name, FileSection(keys, (block, name), values), members))
         if block == "gears":
-            _no_contradiction(found)
+            _refuse_locked_trains(found)
     _refuse_shared_rollers(found)
     return tuple(found)
 
@@ -115,7 +115,7 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
             )
 
 
-def _no_contradiction(gears: list[Mesh]) -> None:
+def _refuse_locked_trains(gears: list[Mesh]) -> None:
     """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn, or out of phase."""
     # by carrier and wheel: the train, in which the angle of each wheel is a slope times that of one of them and a phase
     trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}
@@ -137,14 +137,14 @@ def _no_contradiction(gears: list[Mesh]) -> None:
             )
 
 
-def _different(names: Sequence[str], part: Part, path: Path, members: Members) -> None:
+def _check_different_links(names: Sequence[str], section: FileSection, path: Path, members: LinksAndPairs) -> None:
     """Refuse names of no links, and one link in two places."""
     for name in names:
-        part.values.known(name, members.links, path, "link")
-    part.values.different(names, path)
+        section.values.known_name(name, members.links, path, "link")
+    section.values.refuse_same(names, path)
 
 
-def _axis(link: str, carrier: str, members: Members, path: Path) -> complex:
+def _axis_on_carrier(link: str, carrier: str, members: LinksAndPairs, path: Path) -> complex:
     """Where a link is hinged to the carrier, in the carrier's axes (m)."""
     point = members.hinge(link, carrier)
     if point is None:
@@ -152,72 +152,72 @@ def _axis(link: str, carrier: str, members: Members, path: Path) -> complex:
     return members.links[carrier].points[point]
 
 
-def _pressure(part: Part) -> float:
-    angle = part.number("pressure", ANGLE)
+def _pressure_angle(section: FileSection) -> float:
+    angle = section.number("pressure", ANGLE)
     if not 0 <= angle < math.pi / 2:
         beyond = _("a pressure angle of teeth lies between 0 and 90 deg")
-        raise part.refusal("pressure", beyond, str(part.given.pressure))
+        raise section.refusal("pressure", beyond, str(section.keys.pressure))
     return angle
 
 
-def _gear(name: str, part: Part, members: Members) -> Mesh:
-    given: Gear = part.given
-    between: Path = (*part.path, "between")
-    (i, j), carrier = given.between, given.carrier
-    _different((i, j, carrier), part, between, members)
-    first, second = (_axis(n, carrier, members, (*between, k)) for k, n in enumerate((i, j)))
+def _build_gear(name: str, section: FileSection, members: LinksAndPairs) -> Mesh:
+    keys: GearKeys = section.keys
+    between: Path = (*section.path, "between")
+    (i, j), carrier = keys.between, keys.carrier
+    _check_different_links((i, j, carrier), section, between, members)
+    first, second = (_axis_on_carrier(n, carrier, members, (*between, k)) for k, n in enumerate((i, j)))
     distance = abs(second - first)
     if distance == 0:
-        raise part.refusal("between", _("wheels {i} and {j} turn about one axis").format(i=i, j=j), f"{i}, {j}")
-    ratio = _ratio(part, given, distance)
-    return Mesh(name, "gear", i, j, carrier, ratio, part.number("offset", ANGLE), pressure=_pressure(part))
+        raise section.refusal("between", _("wheels {i} and {j} turn about one axis").format(i=i, j=j), f"{i}, {j}")
+    ratio = _radius_ratio(section, keys, distance)
+    return Mesh(name, "gear", i, j, carrier, ratio, section.number("offset", ANGLE), pressure=_pressure_angle(section))
 
 
-def _ratio(part: Part, given: Gear, distance: float) -> float:
+def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> float:
     """First radius over second, negative for an outer mesh; all that is given must agree."""
-    values, path = part.values, part.path
+    values, path = section.values, section.path
     teeth, radii = None, None
     found: dict[str, float] = {}
-    if given.teeth is not None:
-        teeth = [_teeth(values, v, (*path, "teeth", k)) for k, v in enumerate(given.teeth)]
+    if keys.teeth is not None:
+        teeth = [_count_teeth(values, v, (*path, "teeth", k)) for k, v in enumerate(keys.teeth)]
         found["teeth"] = teeth[0] / teeth[1]
-    if given.radii is not None:
-        radii = [values.positive(v, LENGTH, (*path, "radii", k)) for k, v in enumerate(given.radii)]
+    if keys.radii is not None:
+        radii = [values.positive(v, LENGTH, (*path, "radii", k)) for k, v in enumerate(keys.radii)]
         found["radii"] = radii[0] / radii[1]
-    if given.ratio is not None:
-        found["ratio"] = part.positive("ratio", NUMBER)
-    if not found or (given.module is not None and teeth is None):
+    if keys.ratio is not None:
+        found["ratio"] = section.positive("ratio", NUMBER)
+    if not found or (keys.module is not None and teeth is None):
         wanted = _("teeth, radii or ratio is wanted, with a module teeth")
-        raise part.refusal("", wanted, allowed=_("teeth: [20, 40]"))
+        raise section.refusal("", wanted, allowed=_("teeth: [20, 40]"))
     size = next(iter(found.values()))
-    i, j = given.between
+    i, j = keys.between
     if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
-        raise part.refusal(
+        raise section.refusal(
             "",
             _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
             ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
         )
-    if not 1 / MANY_TEETH <= size <= MANY_TEETH or (given.inner and size == 1):
-        raise part.refusal("", _("no pair of wheels has this ratio"), f"{size:.6g}")
-    if given.module is not None and teeth is not None and radii is None:
-        module = part.positive("module", LENGTH)
+    if not 1 / MAX_GEAR_RATIO <= size <= MAX_GEAR_RATIO or (keys.inner and size == 1):
+        raise section.refusal("", _("no pair of wheels has this ratio"), f"{size:.6g}")
+    if keys.module is not None and teeth is not None and radii is None:
+        module = section.positive("module", LENGTH)
         radii = [module * number / 2 for number in teeth]
     if radii is not None:
-        wanted_distance = abs(radii[0] - radii[1]) if given.inner else radii[0] + radii[1]
+        wanted_distance = abs(radii[0] - radii[1]) if keys.inner else radii[0] + radii[1]
         if abs(wanted_distance - distance) > PITCHES_TOUCH * max(wanted_distance, distance):
             apart, needed = (
                 f"{values.units.from_si(v, LENGTH):.6g} {values.units.symbol(LENGTH)}"
                 for v in (distance, wanted_distance)
             )
-            raise part.refusal(
+            raise section.refusal(
                 "",
                 _("wheels {i} and {j} do not mesh: their axes are {distance} apart").format(i=i, j=j, distance=apart),
                 allowed=_("a distance of {wanted}").format(wanted=needed),
             )
-    return size if given.inner else -size
+    return size if keys.inner else -size
 
 
-def _teeth(values: ValueReader, value: object, path: Path) -> float:
+def _count_teeth(values: ValueReader, value: object, path: Path) -> float:
     """A number of teeth, which is whole, whatever decimals arithmetic has left behind."""
     teeth = values.positive(value, NUMBER, path)
     whole: float = np.floor(teeth + 0.5)
@@ -226,22 +226,22 @@ def _teeth(values: ValueReader, value: object, path: Path) -> float:
     return whole
 
 
-def _rack(name: str, part: Part, members: Members) -> Mesh:
-    given: Rack = part.given
-    wheel, rack, carrier = given.wheel, given.rack, given.carrier
-    _different((wheel, rack, carrier), part, part.path, members)
-    axis = _axis(wheel, carrier, members, (*part.path, "wheel"))
+def _build_rack(name: str, section: FileSection, members: LinksAndPairs) -> Mesh:
+    keys: RackKeys = section.keys
+    wheel, rack, carrier = keys.wheel, keys.rack, keys.carrier
+    _check_different_links((wheel, rack, carrier), section, section.path, members)
+    axis = _axis_on_carrier(wheel, carrier, members, (*section.path, "wheel"))
     slide = members.slide(rack, carrier)
     if slide is None:
-        raise members.unjoined(rack, carrier, (*part.path, "rack"), "P")
-    radius = part.positive("radius", LENGTH)
+        raise members.unjoined(rack, carrier, (*section.path, "rack"), "P")
+    radius = section.positive("radius", LENGTH)
     # the line of the guide and the forward direction of the rack, both on the carrier where it carries the guide
     on_guide = slide.carrier == carrier
     high = float(cross(unit(slide.direction), axis - slide.through)) if on_guide else 0.0
-    side = {"left": 1.0, "right": -1.0}[given.side] if given.side else math.copysign(1.0, high)
-    if given.side is None and abs(high) < 1e-9 * radius:
+    side = {"left": 1.0, "right": -1.0}[keys.side] if keys.side else math.copysign(1.0, high)
+    if keys.side is None and abs(high) < 1e-9 * radius:
         allowed = _("side: left or right, looking along the guide")
-        raise part.refusal("side", _("on which side of the rack is the wheel?"), allowed=allowed)
+        raise section.refusal("side", _("on which side of the rack is the wheel?"), allowed=allowed)
     forward = 1.0 if slide.runner == rack else -1.0
     return Mesh(
         name,
@@ -250,40 +250,40 @@ def _rack(name: str, part: Part, members: Members) -> Mesh:
         rack,
         carrier,
         side * forward * radius,
-        part.number("offset", LENGTH),
+        section.number("offset", LENGTH),
         slide.name,
-        pressure=_pressure(part),
+        pressure=_pressure_angle(section),
     )
 
 
-def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
-    given: Cam = part.given
-    cam, follower, carrier = given.cam, given.follower, given.carrier
-    _different((cam, follower, carrier), part, part.path, members)
-    _axis(cam, carrier, members, (*part.path, "cam"))
+def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPairs) -> Mesh:
+    keys: CamKeys = section.keys
+    cam, follower, carrier = keys.cam, keys.follower, keys.carrier
+    _check_different_links((cam, follower, carrier), section, section.path, members)
+    _axis_on_carrier(cam, carrier, members, (*section.path, "cam"))
     slide = members.slide(follower, carrier)
     if slide is None and carrier != FRAME:
         text = _("on a moving carrier a follower slides: link {follower} has no guide on link {carrier}")
         allowed = _("slides: {{on: {carrier}, along: ...}} of link {follower}")
         names = {"follower": follower, "carrier": carrier}
-        raise part.refusal("follower", text.format(**names), allowed=allowed.format(**names))
-    if given.roller is not None and given.roller in (FRAME, *members.links):
+        raise section.refusal("follower", text.format(**names), allowed=allowed.format(**names))
+    if keys.roller is not None and keys.roller in (FRAME, *members.links):
         wanted = _("a number of no link, such as {number}").format(number=len(members.links))
-        raise part.refusal("roller", _("a link has this number already"), given.roller, wanted)
+        raise section.refusal("roller", _("a link has this number already"), keys.roller, wanted)
     if slide is None:
-        _axis(follower, FRAME, members, (*part.path, "follower"))
+        _axis_on_carrier(follower, FRAME, members, (*section.path, "follower"))
     want = ANGLE if slide is None else LENGTH
-    parts = [Part(piece, (*part.path, "law", k), part.values) for k, piece in enumerate(given.law)]
-    pieces = tuple(Piece(p.positive("over", ANGLE), p.number("rise", want), p.given.law) for p in parts)
+    sections = [FileSection(piece, (*section.path, "law", k), section.values) for k, piece in enumerate(keys.law)]
+    pieces = tuple(Piece(p.positive("over", ANGLE), p.number("rise", want), p.keys.law) for p in sections)
     turn, rise = sum(p.over for p in pieces), sum(p.rise for p in pieces)
     if abs(turn - 2 * math.pi) > 1e-9:
         found = f"{math.degrees(turn):.6g} deg"
-        raise part.refusal("law", _("the pieces of the law do not make a full turn"), found, "360 deg")
+        raise section.refusal("law", _("the pieces of the law do not make a full turn"), found, "360 deg")
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
         allowed = _("rises that add up to 0")
-        raise part.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
-    law = CamLaw(pieces, part.number("start", ANGLE), -sense if cam == FRAME else sense)
-    offset = part.number("offset", want)
+        raise section.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
+    law = CamLaw(pieces, section.number("start", ANGLE), -sense if cam == FRAME else sense)
+    offset = section.number("offset", want)
     return Mesh(
         name,
         "cam",
@@ -293,5 +293,5 @@ def _cam(sense: int, name: str, part: Part, members: Members) -> Mesh:
         offset=offset,
         slide=slide.name if slide else "",
         law=law,
-        roller=given.roller or "",
+        roller=keys.roller or "",
     )

@@ -23,13 +23,13 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.mechanics.structure import analyse
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value
-from tmm_cli.problem.values import Part, ValueReader, check_name
+from tmm_cli.problem.values import FileSection, ValueReader, check_name
 
 if TYPE_CHECKING:
     from tmm_cli.problem import schema
 
 
-class Spring(Strict):
+class SpringKeys(Strict):
     """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
 
     between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
@@ -45,100 +45,100 @@ class Spring(Strict):
     damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
 
 
-class PairFriction(Strict):
+class PairFrictionKeys(Strict):
     """Friction in one pair."""
 
     coefficient: Value | None = None
     radius: Value | None = Field(default=None, description="of the journal of a hinge")
 
 
-class Friction(Strict):
+class FrictionKeys(Strict):
     """Coulomb friction in pairs. Without this block nothing of it is computed."""
 
     coefficient: Value = Field(default=0, description="in every pair that is not named")
     radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
-    pairs: dict[Name, PairFriction] = Field(default_factory=dict, max_length=300)
+    pairs: dict[Name, PairFrictionKeys] = Field(default_factory=dict, max_length=300)
 
 
 # Springs and friction of a problem file.
 
 
-def with_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
+def add_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
     """The linkage with its springs and friction."""
-    springs, friction = _springs(linkage, shape, values), _friction(linkage, shape, values)
+    springs, friction = _build_springs(linkage, shape, values), _build_friction(linkage, shape, values)
     return replace(linkage, springs=springs, friction=friction)
 
 
-def _springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[SpringRecord, ...]:
+def _build_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[SpringRecord, ...]:
     """In the order of the file."""
     found = []
-    for name, given in shape.springs.items():
+    for name, keys in shape.springs.items():
         check_name(name, ("springs", name), "load", shape.loads)
-        found.append(_spring(name, given, linkage, Part(given, ("springs", name), values)))
+        found.append(_build_spring(name, keys, linkage, FileSection(keys, ("springs", name), values)))
     return tuple(found)
 
 
-def _spring(name: str, given: Spring, linkage: Linkage, part: Part) -> SpringRecord:
-    i, j = part.two_links(linkage.links)
-    twists = part.one_of("rate", "torsion") == "torsion"
-    if twists and given.at is not None:
-        raise part.refusal("at", _("a torsion spring has no ends"), at_key=True)
+def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSection) -> SpringRecord:
+    i, j = section.two_links(linkage.links)
+    twists = section.one_of("rate", "torsion") == "torsion"
+    if twists and keys.at is not None:
+        raise section.refusal("at", _("a torsion spring has no ends"), at_key=True)
     ends = [next(iter(linkage.links[n].points.values()), 0j) for n in (i, j)]
-    if given.at is not None:
+    if keys.at is not None:
         ends = [
-            part.values.place(place, linkage.links[n].points, (*part.path, "at", k), n)
-            for k, (n, place) in enumerate(zip((i, j), given.at, strict=True))
+            section.values.place(place, linkage.links[n].points, (*section.path, "at", k), n)
+            for k, (n, place) in enumerate(zip((i, j), keys.at, strict=True))
         ]
-        if any({i, j} <= set(h.links) and given.at[0] == given.at[1] == h.point for h in linkage.hinges):
-            raise part.refusal(
+        if any({i, j} <= set(h.links) and keys.at[0] == keys.at[1] == h.point for h in linkage.hinges):
+            raise section.refusal(
                 "at",
                 _("both ends of spring {name} are in hinge {point}: it has no length").format(
-                    name=name, point=given.at[0]
+                    name=name, point=keys.at[0]
                 ),
             )
     elif not twists and any(len(linkage.links[n].points) > 1 for n in (i, j)):
         allowed = _("at: [point of one, point of the other]")
-        raise part.refusal("at", _("where are the ends of the spring?"), allowed=allowed)
-    rate = part.positive("torsion", TORSION, zero=True) if twists else part.positive("rate", STIFFNESS, zero=True)
+        raise section.refusal("at", _("where are the ends of the spring?"), allowed=allowed)
+    rate = section.positive("torsion", TORSION, zero=True) if twists else section.positive("rate", STIFFNESS, zero=True)
     free = 0.0
-    if given.free is None and rate > 0:
+    if keys.free is None and rate > 0:
         allowed = str(ANGLE if twists else LENGTH)
-        raise part.refusal("free", _("the free length or angle of the spring is missing"), allowed=allowed)
-    if given.free is not None:
-        free = part.number("free", ANGLE) if twists else part.positive("free", LENGTH, zero=True)
+        raise section.refusal("free", _("the free length or angle of the spring is missing"), allowed=allowed)
+    if keys.free is not None:
+        free = section.number("free", ANGLE) if twists else section.positive("free", LENGTH, zero=True)
     if twists and abs(free) > math.pi:
-        raise part.refusal(
+        raise section.refusal(
             "free",
             _("a free angle lies within half a turn; what a spring is wound up beyond that is its preload"),
-            found=str(given.free),
+            found=str(keys.free),
         )
-    preload = part.number("preload", MOMENT if twists else FORCE)
-    damping = part.positive("damping", TORSION_DAMPING if twists else DAMPING, zero=True)
+    preload = section.number("preload", MOMENT if twists else FORCE)
+    damping = section.positive("damping", TORSION_DAMPING if twists else DAMPING, zero=True)
     return SpringRecord(name, i, j, ends[0], ends[1], twists, rate, free, preload, damping)
 
 
-def _friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[FrictionRecord, ...]:
+def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[FrictionRecord, ...]:
     """Pair by pair; none without its block."""
-    given = shape.friction
-    if given is None:
+    keys = shape.friction
+    if keys is None:
         return ()
-    common = Part(given, ("friction",), values)
+    common = FileSection(keys, ("friction",), values)
     coefficient, radius = (
         common.positive("coefficient", NUMBER, zero=True),
         common.positive("radius", LENGTH, zero=True),
     )
     pairs = {p.name: p for p in analyse(linkage).pairs if p.lower}
-    own = {name: Part(one, ("friction", "pairs", name), values) for name, one in given.pairs.items()}
-    for name, part in own.items():
-        values.known(name, pairs, part.path, "turning or sliding pair", key=True)
-        if pairs[name].kind == "P" and part.given.radius is not None:
-            raise part.refusal("radius", _("a sliding pair has no journal"), at_key=True)
+    own = {name: FileSection(one, ("friction", "pairs", name), values) for name, one in keys.pairs.items()}
+    for name, section in own.items():
+        values.known_name(name, pairs, section.path, "turning or sliding pair", key=True)
+        if pairs[name].kind == "P" and section.keys.radius is not None:
+            raise section.refusal("radius", _("a sliding pair has no journal"), at_key=True)
     found = []
     for name, pair in pairs.items():
         rubs, journal = coefficient, radius
-        if name in own and own[name].given.coefficient is not None:
+        if name in own and own[name].keys.coefficient is not None:
             rubs = own[name].positive("coefficient", NUMBER, zero=True)
-        if name in own and own[name].given.radius is not None:
+        if name in own and own[name].keys.radius is not None:
             journal = own[name].positive("radius", LENGTH, zero=True)
         if rubs and (pair.kind == "P" or journal):
             found.append(FrictionRecord(name, rubs, journal if pair.kind == "R" else 0.0))

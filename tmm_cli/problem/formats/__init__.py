@@ -7,24 +7,24 @@ from typing import Final, Protocol
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
 from tmm_cli.problem.formats import linkage_v2, pmks_link, pylinkage
-from tmm_cli.problem.formats.imported_mechanism import Foreign
+from tmm_cli.problem.formats.imported_mechanism import ImportedMechanism
 
 
-class Format(Protocol):
+class FileFormat(Protocol):
     """A module."""
 
     def recognised(self, text: str) -> bool: ...
-    def read(self, text: str, file: str) -> Foreign: ...
+    def read(self, text: str, file: str) -> ImportedMechanism: ...
 
 
-FORMATS: Final[dict[str, Format]] = {
+FORMATS: Final[dict[str, FileFormat]] = {
     "pylinkage": pylinkage,
     "PMKS+, a saved link": pmks_link,
     "linkage/v2": linkage_v2,
 }
 
 
-def foreign_of(text: str, file: str) -> Foreign:
+def read_mechanism(text: str, file: str) -> ImportedMechanism:
     """The mechanism of a file in the format that it is of. Raises ProblemError."""
     for one in FORMATS.values():
         if one.recognised(text):

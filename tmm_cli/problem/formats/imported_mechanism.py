@@ -13,16 +13,16 @@ from string import ascii_uppercase
 from typing import Any, Literal
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import Path, ProblemError, Tree, clean, nearest, quote
+from tmm_cli.problem.errors import Path, ProblemError, Tree, clean, nearest_name, quote
 from tmm_cli.problem.scalars import plain_value
 from tmm_cli.problem.values import LARGEST
 
 FRAME = "\0"  # no link of any file is called so
-Length = Literal["mm", "cm", "m", "in"]
+LengthUnit = Literal["mm", "cm", "m", "in"]
 
 
 @dataclass(frozen=True)
-class Body:
+class ImportedBody:
     """A moving link. points: names; one that is on several bodies, or on the frame, is a hinge. centre: its place."""
 
     name: str
@@ -34,7 +34,7 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Slide:
+class ImportedSlide:
     """A point of the runner on a straight guide of the carrier, which goes through a place at an angle (rad)."""
 
     runner: str
@@ -45,7 +45,7 @@ class Slide:
 
 
 @dataclass(frozen=True)
-class Drive:
+class ImportedDrive:
     """What rotates a body on the frame, counterclockwise, or moves it along its guide on another body.
 
     speed: in its unit, `length/s` for units of length of the file per second; acceleration: rad/s^2; on: the body with
@@ -61,7 +61,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Push:
+class ImportedLoad:
     """A force (N) at a place of a body, or a moment (N*m) on it. turns: the force turns with the body."""
 
     name: str
@@ -73,7 +73,7 @@ class Push:
 
 
 @dataclass(frozen=True)
-class Foreign:
+class ImportedMechanism:
     """places: of all points, in the unit of lengths; frame: names of its points. gravity: m/s^2, None: ours.
 
     one_place: the file is about the place in which it is saved, and no other. notes: what had to be interpreted;
@@ -82,13 +82,13 @@ class Foreign:
 
     program: str
     title: str
-    length: Length
+    length: LengthUnit
     places: dict[str, complex]
     frame: tuple[str, ...]
-    bodies: tuple[Body, ...]
-    drive: Drive
-    slides: tuple[Slide, ...] = ()
-    pushes: tuple[Push, ...] = ()
+    bodies: tuple[ImportedBody, ...]
+    drive: ImportedDrive
+    slides: tuple[ImportedSlide, ...] = ()
+    pushes: tuple[ImportedLoad, ...] = ()
     gravity: complex | None = None
     output: str = ""
     one_place: bool = False
@@ -99,11 +99,11 @@ class Foreign:
 # Values of a foreign file with their places in it, so that a mistake is said where it stands.
 
 
-MOST = 500  # items of a list, keys of a mapping
+MAX_ITEMS = 500  # items of a list, keys of a mapping
 
 
 @dataclass(frozen=True)
-class Node:
+class FileNode:
     """A value of a file that has been read. All methods raise ProblemError where something else is wanted."""
 
     tree: Tree
@@ -116,12 +116,12 @@ class Node:
         error = ProblemError(message, path=self.path, found=found, allowed=allowed, near=near)
         return error.located(self.tree.file, self.tree)
 
-    def get(self, key: str) -> Node | None:
+    def get(self, key: str) -> FileNode | None:
         """The value of a key, None where there is none."""
         found = self.mapping().get(key)
-        return None if found is None else Node(self.tree, found, (*self.path, key))
+        return None if found is None else FileNode(self.tree, found, (*self.path, key))
 
-    def __getitem__(self, key: str) -> Node:
+    def __getitem__(self, key: str) -> FileNode:
         found = self.get(key)
         if found is None:
             error = ProblemError(_("key '{key}' is missing").format(key=key), path=self.path, key=True)
@@ -136,20 +136,20 @@ class Node:
         return self.data
 
     def _bounded(self, length: int) -> None:
-        if length > MOST:
-            raise self.refused(_("this is too long: at most {max_length}").format(max_length=MOST))
+        if length > MAX_ITEMS:
+            raise self.refused(_("this is too long: at most {max_length}").format(max_length=MAX_ITEMS))
 
-    def pairs(self) -> Iterator[tuple[str, Node]]:
+    def pairs(self) -> Iterator[tuple[str, FileNode]]:
         """Its keys and their values."""
         for key, value in self.mapping().items():
-            yield key, Node(self.tree, value, (*self.path, key))
+            yield key, FileNode(self.tree, value, (*self.path, key))
 
-    def items(self) -> list[Node]:
+    def items(self) -> list[FileNode]:
         """Of a list."""
         if not isinstance(self.data, list):
             raise self.refused(_("a list [..., ...] is wanted"))
         self._bounded(len(self.data))
-        return [Node(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
+        return [FileNode(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
         """A name."""
@@ -161,7 +161,7 @@ class Node:
         """One of the names that are known."""
         known, found = list(names), self.text()
         if found not in known:
-            raise self.refused(_("this word is not known here"), ", ".join(known), nearest(found, known))
+            raise self.refused(_("this word is not known here"), ", ".join(known), nearest_name(found, known))
         return found
 
     def number(self) -> float:
@@ -183,36 +183,36 @@ class Node:
 # A mechanism of another program as the text of a problem file.
 
 
-PLAIN = re.compile(r"(?!at$|g\d+$)[^\W\d_]\w{0,11}|[1-9]\d?")  # `at` and g1 mean something else beside them
+PLAIN_NAME = re.compile(r"(?!at$|g\d+$)[^\W\d_]\w{0,11}|[1-9]\d?")  # `at` and g1 mean something else beside them
 SAME = 1e-9  # of the size: points so near are in one place
 ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
 
 
-def written(foreign: Foreign, source: str) -> str:
+def problem_file_text(foreign: ImportedMechanism, source: str) -> str:
     """The text; source: the name of the file that was read."""
-    return "\n".join(_Writing.of(foreign).lines(source)) + "\n"
+    return "\n".join(_ProblemFileWriter.of(foreign).lines(source)) + "\n"
 
 
 @dataclass(frozen=True)
-class _Writing:
+class _ProblemFileWriter:
     """names: of points, and links: of bodies, as the problem file calls them; axes: of bodies, origin and angle."""
 
-    foreign: Foreign
+    foreign: ImportedMechanism
     names: dict[str, str]
     links: dict[str, str]
     axes: dict[str, tuple[complex, float]]
     size: float
 
     @classmethod
-    def of(cls, foreign: Foreign) -> _Writing:
-        links = _plain([body.name for body in foreign.bodies], map(str, count(1)), digits=True)
+    def of(cls, foreign: ImportedMechanism) -> _ProblemFileWriter:
+        links = _choose_plain_names([body.name for body in foreign.bodies], map(str, count(1)), digits=True)
         axes: dict[str, tuple[complex, float]] = {FRAME: (0j, 0.0)}
         for body in foreign.bodies:
             axes[body.name] = _axes(foreign, body)
         for slide in foreign.slides:  # a stone has the directions of what it slides on
-            if not _spread(foreign, slide.runner):
+            if not _has_extent(foreign, slide.runner):
                 axes[slide.runner] = (axes[slide.runner][0], axes[slide.carrier][1])
-        return cls(foreign, _plain(foreign.places, _letters()), links, axes, _size(foreign))
+        return cls(foreign, _choose_plain_names(foreign.places, _letter_names()), links, axes, _mechanism_size(foreign))
 
     def lines(self, source: str) -> Iterator[str]:
         it = self.foreign
@@ -226,14 +226,14 @@ class _Writing:
             yield "# " + _("Not taken over:")
             yield from (f"# - {clean(line, 300)}" for line in it.left)
         yield "tmm: 1"
-        yield f"title: {_text(it.title or source)}"
+        yield f"title: {_quote_text(it.title or source)}"
         yield f"units: {{length: {it.length}, angle: deg}}"
         if it.frame:
-            yield "points: " + _flow((self.names[p], self._vector(it.places[p])) for p in it.frame)
+            yield "points: " + _flow_mapping((self.names[p], self._vector(it.places[p])) for p in it.frame)
         fixed = [slide for slide in it.slides if slide.carrier == FRAME]
         if fixed:
             guides = [(f"g{k}", self._guide(slide)) for k, slide in enumerate(fixed, 1)]
-            yield "guides: " + _flow(guides)
+            yield "guides: " + _flow_mapping(guides)
         yield "links:"
         for body in it.bodies:
             yield f"  {self._key(body.name)}: {self._link(body, fixed)}"
@@ -248,40 +248,41 @@ class _Writing:
         return (place - origin) * cmath.rect(1, -angle)
 
     def _vector(self, z: complex) -> str:
-        return f"[{', '.join(_number(part if abs(part) > ROUNDING * self.size else 0.0) for part in (z.real, z.imag))}]"
+        coordinates = (x if abs(x) > ROUNDING * self.size else 0.0 for x in (z.real, z.imag))
+        return f"[{', '.join(map(_format_number, coordinates))}]"
 
-    def _guide(self, slide: Slide) -> str:
+    def _guide(self, slide: ImportedSlide) -> str:
         through = self._local(slide.carrier, slide.through)
         angle = math.degrees(slide.angle - self.axes[slide.carrier][1])
-        return f"{{through: {self._vector(through)}, angle: {_number(math.remainder(angle, 360))}}}"
+        return f"{{through: {self._vector(through)}, angle: {_format_number(math.remainder(angle, 360))}}}"
 
-    def _link(self, body: Body, fixed: list[Slide]) -> str:
+    def _link(self, body: ImportedBody, fixed: list[ImportedSlide]) -> str:
         places = {self.names[point]: self._local(body.name, self.foreign.places[point]) for point in body.points}
-        parts = [("name", _text(body.label))] if body.label else []
-        if len(places) == 2 and _spread(self.foreign, body.name):
-            parts += [("points", f"[{', '.join(places)}]"), ("length", _number(abs(list(places.values())[1])))]
+        parts = [("name", _quote_text(body.label))] if body.label else []
+        if len(places) == 2 and _has_extent(self.foreign, body.name):
+            parts += [("points", f"[{', '.join(places)}]"), ("length", _format_number(abs(list(places.values())[1])))]
         elif len(places) == 1:
             parts.append(("points", f"[{next(iter(places))}]"))
         else:
-            parts.append(("points", _flow((name, self._vector(z)) for name, z in places.items())))
+            parts.append(("points", _flow_mapping((name, self._vector(z)) for name, z in places.items())))
         slides = [self._slide(slide, fixed) for slide in self.foreign.slides if slide.runner == body.name]
         if slides:
             parts.append(("slides", slides[0] if len(slides) == 1 else f"[{', '.join(slides)}]"))
-        return _flow(parts)
+        return _flow_mapping(parts)
 
-    def _slide(self, slide: Slide, fixed: list[Slide]) -> str:
+    def _slide(self, slide: ImportedSlide, fixed: list[ImportedSlide]) -> str:
         turned = math.degrees(self.axes[slide.runner][1] - self.axes[slide.carrier][1])
         parts = [("point", self.names[slide.point])]
         if abs(math.remainder(turned, 360)) > SAME:
-            parts.append(("turned", _number(math.remainder(turned, 360))))
+            parts.append(("turned", _format_number(math.remainder(turned, 360))))
         if slide.carrier == FRAME:
-            return _flow([("on", f"g{fixed.index(slide) + 1}"), *parts])
+            return _flow_mapping([("on", f"g{fixed.index(slide) + 1}"), *parts])
         return (
-            _flow([("on", self._key(slide.carrier))]).rstrip("}")
+            _flow_mapping([("on", self._key(slide.carrier))]).rstrip("}")
             + ", "
             + self._guide(slide)[1:-1]
             + ", "
-            + _flow(parts)[1:]
+            + _flow_mapping(parts)[1:]
         )
 
     def _motion(self) -> Iterator[str]:
@@ -290,25 +291,25 @@ class _Writing:
         if drive.on != FRAME:
             given.append(("on", self._key(drive.on)))
         if drive.at is None:
-            speed = f"{_number(abs(drive.speed))} {drive.unit}"
+            speed = f"{_format_number(abs(drive.speed))} {drive.unit}"
             given += [("speed", speed), ("turns", "cw" if drive.speed < 0 else "ccw")]
         else:
-            given.append(("speed", f"{_number(drive.speed)} {drive.unit.replace('length', it.length)}"))
+            given.append(("speed", f"{_format_number(drive.speed)} {drive.unit.replace('length', it.length)}"))
         if drive.acceleration:
             gain = drive.acceleration * (-1 if drive.speed < 0 else 1)
-            given.append(("acceleration", f"{_number(gain)} rad/s^2"))
-        yield "driver: " + _flow(given)
+            given.append(("acceleration", f"{_format_number(gain)} rad/s^2"))
+        yield "driver: " + _flow_mapping(given)
         angle = math.remainder(math.degrees(self.axes[drive.body][1]), 360)
-        at = _number(angle if drive.at is None else drive.at)
+        at = _format_number(angle if drive.at is None else drive.at)
         moving = [(self.names[p], self._vector(z)) for p, z in it.places.items() if p not in it.frame]
         turned = [
-            (self._key(body.name), _number(math.degrees(self.axes[body.name][1])))
+            (self._key(body.name), _format_number(math.degrees(self.axes[body.name][1])))
             for body in it.bodies
             if (body.name != drive.body or drive.at is not None)
-            and not _spread(it, body.name)
+            and not _has_extent(it, body.name)
             and self._key(body.name) not in it.places
         ]
-        yield "sketch: " + _flow([("at", at), *moving, *turned])
+        yield "sketch: " + _flow_mapping([("at", at), *moving, *turned])
         if it.output:
             yield f"output: {self._key(it.output)}"
         yield f"positions: {{at: [{at}], detail: [0]}}" if it.one_place else "positions: {count: 12}"
@@ -321,60 +322,60 @@ class _Writing:
             yield from (f"  {name}: {mass}" for name, mass in masses)
         if it.pushes:
             yield "loads:"
-            names = _plain([push.name for push in it.pushes], (f"F{k}" for k in count(1)))
+            names = _choose_plain_names([push.name for push in it.pushes], (f"F{k}" for k in count(1)))
             yield from (f"  {names[push.name]}: {self._push(push)}" for push in it.pushes)
         if it.gravity is not None:
             yield f"gravity: {self._vector(it.gravity)}"
 
-    def _mass(self, body: Body) -> str:
-        parts = [("mass", f"{_number(body.mass)} kg"), ("inertia", f"{_number(body.inertia)} kg*m^2")]
+    def _mass(self, body: ImportedBody) -> str:
+        parts = [("mass", f"{_format_number(body.mass)} kg"), ("inertia", f"{_format_number(body.inertia)} kg*m^2")]
         if body.centre is not None:
             parts.append(("centre", self._vector(self._local(body.name, body.centre))))
-        return _flow(parts)
+        return _flow_mapping(parts)
 
-    def _push(self, push: Push) -> str:
+    def _push(self, push: ImportedLoad) -> str:
         parts = [("on", self._key(push.body))]
         if push.force:
             parts.append(("at", self._vector(self._local(push.body, push.at))))
             own = push.force * cmath.rect(1, -self.axes[push.body][1]) if push.turns else push.force
-            size = ", ".join(f"{_number(part)} N" for part in (own.real, own.imag))
+            size = ", ".join(f"{_format_number(part)} N" for part in (own.real, own.imag))
             parts.append(("force", f"[{size}]"))
             if push.turns:
                 parts.append(("axes", "link"))
         if push.moment:
-            parts.append(("moment", f"{_number(push.moment)} N*m"))
-        return _flow(parts)
+            parts.append(("moment", f"{_format_number(push.moment)} N*m"))
+        return _flow_mapping(parts)
 
 
-def _axes(foreign: Foreign, body: Body) -> tuple[complex, float]:
+def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, float]:
     """Origin in the first point, x axis towards the next one that is elsewhere."""
     places = [foreign.places[point] for point in body.points]
     origin = places[0] if places else body.centre or 0j
-    away = next((z for z in places if abs(z - origin) > SAME * _size(foreign)), None)
+    away = next((z for z in places if abs(z - origin) > SAME * _mechanism_size(foreign)), None)
     return origin, 0.0 if away is None else cmath.phase(away - origin)
 
 
-def _spread(foreign: Foreign, name: str) -> bool:
+def _has_extent(foreign: ImportedMechanism, name: str) -> bool:
     """Whether two points of a body are in two places."""
     body = next(body for body in foreign.bodies if body.name == name)
     places = [foreign.places[point] for point in body.points]
-    return any(abs(z - places[0]) > SAME * _size(foreign) for z in places)
+    return any(abs(z - places[0]) > SAME * _mechanism_size(foreign) for z in places)
 
 
-def _size(foreign: Foreign) -> float:
+def _mechanism_size(foreign: ImportedMechanism) -> float:
     return max((abs(z) for z in foreign.places.values()), default=1.0)
 
 
-def _plain(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
+def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
     """A plain name for each: its own, or else the first of the others that is free. digits: may be a name."""
     own = list(dict.fromkeys(names))
     free = (other for other in others if other not in own)
-    return {name: name if _is_plain(name, digits) else next(free) for name in own}
+    return {name: name if _is_plain_name(name, digits) else next(free) for name in own}
 
 
-def _is_plain(name: str, digits: bool) -> bool:
+def _is_plain_name(name: str, digits: bool) -> bool:
     """Whether YAML reads it as a name: no null, no true, no nan."""
-    if not PLAIN.fullmatch(name):
+    if not PLAIN_NAME.fullmatch(name):
         return False
     try:
         read = plain_value(name)
@@ -383,19 +384,19 @@ def _is_plain(name: str, digits: bool) -> bool:
     return isinstance(read, str) or (digits and type(read) is int)
 
 
-def _letters() -> Iterator[str]:
+def _letter_names() -> Iterator[str]:
     """A, B, ..., Z, A1, B1, ...."""
     for k in count():
         yield from (letter + (str(k) if k else "") for letter in ascii_uppercase)
 
 
-def _number(value: float) -> str:
+def _format_number(value: float) -> str:
     return f"{value + 0.0:.15g}"
 
 
-def _text(text: str) -> str:
+def _quote_text(text: str) -> str:
     return json.dumps(clean(text, 200), ensure_ascii=False)
 
 
-def _flow(parts: Iterable[tuple[str, str]]) -> str:
+def _flow_mapping(parts: Iterable[tuple[str, str]]) -> str:
     return "{" + ", ".join(f"{key}: {value}" for key, value in parts) + "}"

@@ -10,14 +10,22 @@ from dataclasses import dataclass
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Node, Push, Slide
+from tmm_cli.problem.formats.imported_mechanism import (
+    FRAME,
+    FileNode,
+    ImportedBody,
+    ImportedDrive,
+    ImportedLoad,
+    ImportedMechanism,
+    ImportedSlide,
+)
 from tmm_cli.problem.reader import read_text
 
 
-class Construction:
+class PointConstruction:
     """Points of the file in its one place of the driver. Raises ProblemError."""
 
-    def __init__(self, top: Node) -> None:
+    def __init__(self, top: FileNode) -> None:
         self.parameters = dict(top["parameters"].pairs()) if top.get("parameters") else {}
         self.known: dict[str, complex] = {}
         geometry = top["geometry"]
@@ -32,7 +40,7 @@ class Construction:
         """Of a point that is known."""
         return self.known[name]
 
-    def number(self, node: Node) -> float:
+    def number(self, node: FileNode) -> float:
         """A number, or that of a parameter."""
         for __ in range(10):  # a parameter may stand for another
             if not isinstance(node.data, str):
@@ -40,50 +48,50 @@ class Construction:
             node = self.parameters[node.one_of(self.parameters)]
         raise node.refused(_("parameters stand for one another in a circle"))
 
-    def of(self, step: Node, key: str) -> complex:
+    def of(self, step: FileNode, key: str) -> complex:
         """The place that a key names."""
         return self.place(step[key].one_of(self.known))
 
 
-def _angle(points: Construction, step: Node) -> complex:
+def _direction_of_step(points: PointConstruction, step: FileNode) -> complex:
     return cmath.rect(1, math.radians(points.number(step["angle_deg"])))
 
 
-def _on_ray(points: Construction, step: Node) -> complex:
-    return points.of(step, "from") + points.number(step["length"]) * _angle(points, step)
+def _on_ray(points: PointConstruction, step: FileNode) -> complex:
+    return points.of(step, "from") + points.number(step["length"]) * _direction_of_step(points, step)
 
 
-def _circles(points: Construction, step: Node) -> complex:
+def _circle_circle(points: PointConstruction, step: FileNode) -> complex:
     a, b = points.of(step, "center1"), points.of(step, "center2")
     r, s, apart = points.number(step["radius1"]), points.number(step["radius2"]), abs(b - a)
     if not apart:
         raise step.refused(_("the circles have one centre"))
     along = (r * r - s * s + apart * apart) / (2 * apart)
-    ends = _both(a + along * (b - a) / apart, (b - a) / apart * 1j, r * r - along * along, step)
-    return _branch(step, ends, b - a)
+    ends = _two_points(a + along * (b - a) / apart, (b - a) / apart * 1j, r * r - along * along, step)
+    return _choose_branch(step, ends, b - a)
 
 
-def _circle_line(across: complex) -> Callable[[Construction, Node], complex]:
+def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], complex]:
     """Of a circle with a line x = ... or y = ...."""
 
-    def found(points: Construction, step: Node) -> complex:
+    def found(points: PointConstruction, step: FileNode) -> complex:
         centre, radius = points.of(step, "center"), points.number(step["radius"])
         key, own = ("y", centre.imag) if across == 1j else ("x", centre.real)
         off = points.number(step[key]) - own
-        ends = _both(centre + off * across, across * -1j, radius * radius - off * off, step)
-        return _branch(step, ends, 1 + 0j)
+        ends = _two_points(centre + off * across, across * -1j, radius * radius - off * off, step)
+        return _choose_branch(step, ends, 1 + 0j)
 
     return found
 
 
-def _circle_ray(points: Construction, step: Node) -> complex:
+def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
     """Of a circle with a ray at an angle, or through a second point and turned by one."""
     centre, radius, start = points.of(step, "center"), points.number(step["radius"]), points.of(step, "from")
     if step.get("through"):
         turn = cmath.rect(1, math.radians(points.number(step["rotate_deg"]))) if step.get("rotate_deg") else 1
-        along = _unit(points.of(step, "through") - start, step) * turn
+        along = _unit_vector(points.of(step, "through") - start, step) * turn
     else:
-        along = _angle(points, step)
+        along = _direction_of_step(points, step)
     foot = (centre - start) / along
     square = radius * radius - foot.imag * foot.imag
     if square < 0:
@@ -94,7 +102,7 @@ def _circle_ray(points: Construction, step: Node) -> complex:
     return start + wanted[step["branch"].one_of(wanted)] * along
 
 
-def _both(foot: complex, along: complex, square: float, step: Node) -> tuple[complex, complex]:
+def _two_points(foot: complex, along: complex, square: float, step: FileNode) -> tuple[complex, complex]:
     if square < 0:
         raise step.refused(_("they do not meet"))
     half = math.sqrt(square) * along
@@ -109,7 +117,7 @@ SIDES: Final[dict[str, Callable[[complex], float]]] = {
 }
 
 
-def _branch(step: Node, ends: tuple[complex, complex], along: complex) -> complex:
+def _choose_branch(step: FileNode, ends: tuple[complex, complex], along: complex) -> complex:
     """That of two places which the step names; ccw: to the left of the line of centres."""
     branch = step["branch"].one_of((*SIDES, "ccw", "cw"))
     if branch in SIDES:
@@ -118,44 +126,44 @@ def _branch(step: Node, ends: tuple[complex, complex], along: complex) -> comple
     return max(ends, key=lambda z: sense * ((z - ends[0] - ends[1]) / along).imag)
 
 
-def _at_angle(points: Construction, step: Node) -> complex:
+def _at_angle(points: PointConstruction, step: FileNode) -> complex:
     vertex, start = points.of(step, "vertex"), points.of(step, "from")
     turn = math.radians(points.number(step["angle_deg"]))
     sense = -1 if step["side"].one_of(("clockwise", "counterclockwise", "cw", "ccw")).startswith(("clock", "cw")) else 1
     return vertex + points.number(step["length"]) * cmath.rect(1, cmath.phase(start - vertex) + sense * turn)
 
 
-def _on_line(points: Construction, step: Node) -> complex:
+def _on_line(points: PointConstruction, step: FileNode) -> complex:
     a, b = points.of(step, "from"), points.of(step, "to")
     if fraction := step.get("fraction"):
         return a + points.number(fraction) * (b - a)
-    return a + points.number(step["distance"]) * _unit(b - a, step)
+    return a + points.number(step["distance"]) * _unit_vector(b - a, step)
 
 
-def _towards(points: Construction, step: Node) -> complex:
+def _towards(points: PointConstruction, step: FileNode) -> complex:
     a, b = points.of(step, "from"), points.of(step, "to")
-    return a + points.number(step["length"]) * _unit(b - a, step)
+    return a + points.number(step["length"]) * _unit_vector(b - a, step)
 
 
-def _offset(points: Construction, step: Node) -> complex:
+def _offset(points: PointConstruction, step: FileNode) -> complex:
     start, length = points.of(step, "from"), points.number(step["length"])
     if step.get("angle_deg"):
-        return start + length * _angle(points, step)
+        return start + length * _direction_of_step(points, step)
     given = step["vector"] if step.get("vector") else step["direction"]
-    return start + length * _unit(given.vector(), step)
+    return start + length * _unit_vector(given.vector(), step)
 
 
-def _unit(along: complex, step: Node) -> complex:
+def _unit_vector(along: complex, step: FileNode) -> complex:
     if not along:
         raise step.refused(_("both points are in one place"))
     return along / abs(along)
 
 
-STEPS: Final[dict[str, Callable[[Construction, Node], complex]]] = {
+STEPS: Final[dict[str, Callable[[PointConstruction, FileNode], complex]]] = {
     "point_on_ray": _on_ray,
     "circle_line_y": _circle_line(1j),
     "circle_line_x": _circle_line(1 + 0j),
-    "circle_circle": _circles,
+    "circle_circle": _circle_circle,
     "circle_ray": _circle_ray,
     "point_at_angle": _at_angle,
     "point_on_line": _on_line,
@@ -190,23 +198,23 @@ def recognised(text: str) -> bool:
     return re.search(r"^[ \t]*schema:[ \t]*[\"']?linkage/v2", text, re.MULTILINE) is not None
 
 
-def read(text: str, file: str) -> Foreign:
+def read(text: str, file: str) -> ImportedMechanism:
     """The mechanism of a file. Raises ProblemError."""
-    top = Node(tree := read_text(text, file), tree.data)
-    return _Reading(top, Construction(top)).foreign()
+    top = FileNode(tree := read_text(text, file), tree.data)
+    return _LinkageV2Reader(top, PointConstruction(top)).foreign()
 
 
 @dataclass(frozen=True)
-class _Reading:
-    top: Node
-    points: Construction
+class _LinkageV2Reader:
+    top: FileNode
+    points: PointConstruction
 
-    def foreign(self) -> Foreign:
+    def foreign(self) -> ImportedMechanism:
         """All of it."""
         hinges, slides = self._hinges(), self._slides()
-        names = _names(hinges, [(slide.runner, slide.point) for slide in slides])
+        names = _name_points(hinges, [(slide.runner, slide.point) for slide in slides])
         bodies = tuple(
-            Body(
+            ImportedBody(
                 name,
                 tuple(dict.fromkeys(found for (body, __), found in names.items() if body == name)),
                 mass=self._value(body, "mass"),
@@ -229,7 +237,7 @@ class _Reading:
             )
         output = said.one_of(self.top["bodies"].mapping()) if (said := self.top.get("output_body")) else ""
         gravity = given.vector() if (given := self.top.get("gravity")) else None
-        return Foreign(
+        return ImportedMechanism(
             "linkage/v2",
             "",
             "m",
@@ -237,7 +245,7 @@ class _Reading:
             tuple(found for (body, __), found in names.items() if body == FRAME),
             tuple(massed),
             self._drive(),
-            tuple(Slide(s.runner, names[s.runner, s.point], s.carrier, s.through, s.angle) for s in slides),
+            tuple(ImportedSlide(s.runner, names[s.runner, s.point], s.carrier, s.through, s.angle) for s in slides),
             tuple(self._pushes()),
             gravity,
             output,
@@ -246,11 +254,11 @@ class _Reading:
             tuple(left),
         )
 
-    def _value(self, node: Node, key: str) -> float:
+    def _value(self, node: FileNode, key: str) -> float:
         found = node.get(key)
         return 0.0 if found is None else self.points.number(found)
 
-    def _body(self, node: Node) -> str:
+    def _body(self, node: FileNode) -> str:
         name = node.text()
         return FRAME if name == "ground" else node.one_of(self.top["bodies"].mapping())
 
@@ -265,7 +273,7 @@ class _Reading:
                 found.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
         return found
 
-    def _slides(self) -> list[Slide]:
+    def _slides(self) -> list[ImportedSlide]:
         found = []
         for joint in self.top["joints"].items():
             if joint["type"].data == GUIDE:
@@ -275,7 +283,7 @@ class _Reading:
                 angle = math.radians(self.points.number(axis["angle_deg"]))
                 through = self._through(axis["origin"], origin, turn)
                 runner, point = self._body(slider["body"]), slider["point"].one_of(self.points.known)
-                found.append(Slide(runner, point, carrier, through, angle + turn))
+                found.append(ImportedSlide(runner, point, carrier, through, angle + turn))
         return found
 
     def _frame(self, body: str) -> tuple[complex, float]:
@@ -289,13 +297,13 @@ class _Reading:
             return origin, cmath.phase(through - origin)
         return origin, math.radians(self._value(frame, "angle_deg"))
 
-    def _through(self, node: Node, origin: complex, turn: float) -> complex:
+    def _through(self, node: FileNode, origin: complex, turn: float) -> complex:
         """A place of a guide: a point, or coordinates in the axes of its body."""
         if isinstance(node.data, str):
             return self.points.place(node.one_of(self.points.known))
         return origin + node.vector() * cmath.rect(1, turn)
 
-    def _centre(self, body: Node) -> complex | None:
+    def _centre(self, body: FileNode) -> complex | None:
         com = body.get("com")
         if com is None:
             return None
@@ -307,7 +315,7 @@ class _Reading:
             return sum(self.points.place(end.one_of(self.points.known)) for end in ends) / 2
         return self.points.place(com.one_of(self.points.known))
 
-    def _with_points(self, body: Body) -> Body:
+    def _with_points(self, body: ImportedBody) -> ImportedBody:
         """With the masses that are attached to its points."""
         mass, inertia, centre = body.mass, body.inertia, body.centre or 0j
         for own in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
@@ -316,32 +324,36 @@ class _Reading:
                 if more and mass + more:
                     inertia += mass * more / (mass + more) * abs(at - centre) ** 2
                     centre, mass = (mass * centre + more * at) / (mass + more), mass + more
-        return Body(body.name, body.points, body.label, mass, inertia, centre if mass else None)
+        return ImportedBody(body.name, body.points, body.label, mass, inertia, centre if mass else None)
 
-    def _driven(self) -> Node:
+    def _driven(self) -> FileNode:
         drives = [self.top["drive"]] if self.top.get("drive") else self.top["drives"].items()
         if len(drives) != 1:
             raise self.top.refused(_("one driving link is wanted"))
         return drives[0]
 
-    def _drive(self) -> Drive:
+    def _drive(self) -> ImportedDrive:
         drive = self._driven()
-        return Drive(self._body(drive["body"]), self._value(drive, "omega"), acceleration=self._value(drive, "alpha"))
+        return ImportedDrive(
+            self._body(drive["body"]), self._value(drive, "omega"), acceleration=self._value(drive, "alpha")
+        )
 
-    def _pushes(self) -> list[Push]:
+    def _pushes(self) -> list[ImportedLoad]:
         found = []
         for k, load in enumerate(self.top["loads"].items() if self.top.get("loads") else (), 1):
             name = called.text() if (called := load.get("id")) else f"F{k}"
             body = self._body(load["body"])
             if moment := load.get("moment"):
-                found.append(Push(name, body, moment=self.points.number(moment)))
+                found.append(ImportedLoad(name, body, moment=self.points.number(moment)))
                 continue
             force = self._force(load)
             if force:
-                found.append(Push(name, body, self.points.place(load["point"].one_of(self.points.known)), force))
+                found.append(
+                    ImportedLoad(name, body, self.points.place(load["point"].one_of(self.points.known)), force)
+                )
         return found
 
-    def _force(self, load: Node) -> complex:
+    def _force(self, load: FileNode) -> complex:
         if vector := load.get("vector"):
             return vector.vector()
         given = load["direction_points"] if load.get("direction_points") else load["direction"]
@@ -356,7 +368,7 @@ class _Reading:
         return self.points.number(load["magnitude"]) * along / abs(along)
 
 
-def _names(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
+def _name_points(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
     """A name for each point of each body; those of a hinge have the same, and no others."""
     joined: list[set[tuple[str, str]]] = []
     for ends in [*hinges, *([one] for one in runners)]:

@@ -12,20 +12,28 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import ProblemError, nearest, quote
-from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Length, Push, Slide
+from tmm_cli.problem.errors import ProblemError, nearest_name, quote
+from tmm_cli.problem.formats.imported_mechanism import (
+    FRAME,
+    ImportedBody,
+    ImportedDrive,
+    ImportedLoad,
+    ImportedMechanism,
+    ImportedSlide,
+    LengthUnit,
+)
 
-MOST = 500  # joints, links
-METRE: Final[dict[Length, float]] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+MAX_RECORDS = 500  # joints, links
+METRES: Final[dict[LengthUnit, float]] = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 POUND, POUND_FORCE = 0.45359237, 4.4482216152605
 # kg, kg*m^2 and N in the stored unit: cm goes with g and kg*cm^2, in with lbm, lbm*in^2 and lbf, m with kg and kg*m^2
-MASS: Final[dict[Length, float]] = {"cm": 1e-3, "m": 1.0, "in": POUND}
-INERTIA: Final[dict[Length, float]] = {"cm": 1e-4, "m": 1.0, "in": POUND * 0.0254**2}
-UNITS: Final[dict[Length, str]] = {"cm": "g, kg*cm^2, N", "m": "kg, kg*m^2, N", "in": "lbm, lbm*in^2, lbf"}
+KILOGRAMS: Final[dict[LengthUnit, float]] = {"cm": 1e-3, "m": 1.0, "in": POUND}
+INERTIA_UNITS: Final[dict[LengthUnit, float]] = {"cm": 1e-4, "m": 1.0, "in": POUND * 0.0254**2}
+UNIT_NAMES: Final[dict[LengthUnit, str]] = {"cm": "g, kg*cm^2, N", "m": "kg, kg*m^2, N", "in": "lbm, lbm*in^2, lbf"}
 
 
 @dataclass(frozen=True)
-class Joint:
+class PmksJoint:
     """A joint. The attributes below `input` describe a joint that slides, except `speed`.
 
     angle: of a guide on the frame, rad; carrier, slot: the link with the slot and two of its joints on the slot;
@@ -47,7 +55,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Link:
+class PmksLink:
     """A link. piston: a block of an older file, with its sliding joint and its pin; parts: links welded into it."""
 
     id: str
@@ -61,7 +69,7 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Force:
+class PmksForce:
     """From a place to another one; outward: it points so, else the other way. size in N, or in lbf."""
 
     id: str
@@ -74,32 +82,32 @@ class Force:
 
 
 @dataclass(frozen=True)
-class Saved:
+class PmksFile:
     """A file of PMKS+. rpm: positive counterclockwise; linear: speed of driven sliders, units of length per second."""
 
-    joints: tuple[Joint, ...]
-    links: tuple[Link, ...]
-    forces: tuple[Force, ...]
+    joints: tuple[PmksJoint, ...]
+    links: tuple[PmksLink, ...]
+    forces: tuple[PmksForce, ...]
     rpm: float
     gravity: bool
-    length: Length
+    length: LengthUnit
     linear: float = 5.0
     notes: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
     title: str = ""
 
 
-def foreign(saved: Saved, file: str) -> Foreign:
+def import_pmks(saved: PmksFile, file: str) -> ImportedMechanism:
     """The mechanism. Raises ProblemError."""
-    _check(saved, file)
-    return _Mechanism.of(_folded(saved, file), file).foreign()
+    _refuse_wrong_names(saved, file)
+    return _PmksMechanism.of(_fold_blocks(saved, file), file).foreign()
 
 
-def _check(saved: Saved, file: str) -> None:
+def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
     """Refuse names that are repeated or that no record has."""
     for records in (saved.joints, saved.links):
-        if len(records) > MOST:
-            raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MOST), file=file)
+        if len(records) > MAX_RECORDS:
+            raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MAX_RECORDS), file=file)
     joints, links = [joint.id for joint in saved.joints], [link.id for link in saved.links]
     known = {*links, *(name for link in saved.links for name in link.parts)}
     for names in (joints, links):
@@ -111,7 +119,11 @@ def _check(saved: Saved, file: str) -> None:
     for path, name in wanted:
         if name not in known:
             raise ProblemError(
-                _("there is no link of that name"), path=path, found=quote(name), near=nearest(name, known), file=file
+                _("there is no link of that name"),
+                path=path,
+                found=quote(name),
+                near=nearest_name(name, known),
+                file=file,
             )
     on = [(("links", link.id), joint) for link in saved.links for joint in link.joints]
     on += [(("joints", joint.id), end) for joint in saved.joints if joint.carrier for end in joint.slot]
@@ -120,7 +132,7 @@ def _check(saved: Saved, file: str) -> None:
             raise ProblemError(_("a joint that is not there"), path=path, found=name, file=file)
 
 
-def _folded(saved: Saved, file: str) -> Saved:
+def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
     """The same file with each block of an older file, its sliding joint and its pin written as one joint."""
     joints = {joint.id: joint for joint in saved.joints}
     links, renamed = [link for link in saved.links if not link.piston], dict[str, str]()
@@ -157,18 +169,18 @@ def _folded(saved: Saved, file: str) -> Saved:
 
 
 @dataclass(frozen=True)
-class _Mechanism:
+class _PmksMechanism:
     """Bodies of a file. frame: links that are pinned to the frame twice; owner: of each link, the one it is part of."""
 
-    saved: Saved
+    saved: PmksFile
     file: str
-    joints: dict[str, Joint]
+    joints: dict[str, PmksJoint]
     owner: dict[str, str]
     frame: frozenset[str]
     left: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, saved: Saved, file: str) -> _Mechanism:
+    def of(cls, saved: PmksFile, file: str) -> _PmksMechanism:
         joints = {joint.id: joint for joint in saved.joints}
         owner = {name: link.id for link in saved.links for name in (link.id, *link.parts)}
         frame = set[str]()
@@ -186,11 +198,11 @@ class _Mechanism:
                 for name in link.joints if link.id in more else ():
                     joints[name] = joints[name] if joints[name].slides else replace(joints[name], ground=True)
 
-    def foreign(self) -> Foreign:
+    def foreign(self) -> ImportedMechanism:
         """All of it."""
         slides = list(self._slides())
         blocks = [
-            Body(name, (joint.id,), mass=joint.mass * MASS[self.saved.length])
+            ImportedBody(name, (joint.id,), mass=joint.mass * KILOGRAMS[self.saved.length])
             for name, joint in ((self._block(joint), joint) for joint in self.joints.values())
             if name
         ]
@@ -207,14 +219,14 @@ class _Mechanism:
         notes = [
             *self.saved.notes,
             _("Masses, moments of inertia about the centre of mass and forces are read in {units}.").format(
-                units=UNITS[self.saved.length]
+                units=UNIT_NAMES[self.saved.length]
             ),
         ]
         notes += [
             _("Link {name} is pinned to the frame twice: it is part of the frame.").format(name=name)
             for name in sorted(self.frame)
         ]
-        return Foreign(
+        return ImportedMechanism(
             "PMKS+",
             self.saved.title,
             self.saved.length,
@@ -229,7 +241,7 @@ class _Mechanism:
             left=(*self.saved.left, *self.left),
         )
 
-    def _riders(self, joint: Joint) -> list[str]:
+    def _riders(self, joint: PmksJoint) -> list[str]:
         """Moving links on a joint; of one that slides without the link that has the slot."""
         carrier = self._carrier(joint) if joint.slides else ""
         return [
@@ -238,15 +250,15 @@ class _Mechanism:
             if joint.id in link.joints and link.id not in self.frame and link.id != carrier
         ]
 
-    def _carrier(self, joint: Joint) -> str:
+    def _carrier(self, joint: PmksJoint) -> str:
         owner = self.owner[joint.carrier] if joint.carrier else FRAME
         return FRAME if owner in self.frame else owner
 
-    def _block(self, joint: Joint) -> str:
+    def _block(self, joint: PmksJoint) -> str:
         """Name of the sliding block of a joint, if its links rotate relative to the guide."""
         return f"block_{joint.id}" if joint.slides and not joint.welded else ""
 
-    def _slides(self) -> Iterator[Slide]:
+    def _slides(self) -> Iterator[ImportedSlide]:
         for joint in self.joints.values():
             riders = self._riders(joint)
             if not joint.slides:
@@ -260,9 +272,9 @@ class _Mechanism:
             if joint.welded and len(riders) > 1:
                 raise self._refused(joint, _("links that slide together and are not one link"), ", ".join(riders))
             if riders:
-                yield Slide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
+                yield ImportedSlide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
 
-    def _slot(self, joint: Joint) -> tuple[complex, float]:
+    def _slot(self, joint: PmksJoint) -> tuple[complex, float]:
         """A point of the slot and its angle."""
         carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
         if joint.ground:
@@ -278,18 +290,18 @@ class _Mechanism:
             raise self._refused(joint, _("the slot has no direction: its joints coincide"), ", ".join(joint.slot))
         return a, cmath.phase(b - a)
 
-    def _body(self, link: Link) -> Body:
-        mass, inertia = link.mass * MASS[self.saved.length], link.inertia * INERTIA[self.saved.length]
+    def _body(self, link: PmksLink) -> ImportedBody:
+        mass, inertia = link.mass * KILOGRAMS[self.saved.length], link.inertia * INERTIA_UNITS[self.saved.length]
         centre = link.centre
         for joint in (self.joints[name] for name in link.joints):
             if joint.slides and joint.welded and joint.mass and self._carrier(joint) != link.id:
-                block, apart = joint.mass * MASS[self.saved.length], abs(joint.place - centre)
-                inertia += mass * block / (mass + block) * (apart * METRE[self.saved.length]) ** 2
+                block, apart = joint.mass * KILOGRAMS[self.saved.length], abs(joint.place - centre)
+                inertia += mass * block / (mass + block) * (apart * METRES[self.saved.length]) ** 2
                 mass, centre = mass + block, (mass * centre + block * joint.place) / (mass + block)
         label = link.name if link.name != link.id else ""
-        return Body(link.id, link.joints, label, mass, inertia, centre if mass else None)
+        return ImportedBody(link.id, link.joints, label, mass, inertia, centre if mass else None)
 
-    def _drive(self, slides: list[Slide]) -> Drive:
+    def _drive(self, slides: list[ImportedSlide]) -> ImportedDrive:
         driven = [joint for joint in self.joints.values() if joint.input]
         if len(driven) != 1:
             raise ProblemError(
@@ -301,7 +313,7 @@ class _Mechanism:
             if slide is None:
                 raise self._refused(joint, _("one driving link is wanted"), "0")
             at = ((joint.place - slide.through) * cmath.rect(1, -slide.angle)).real
-            return Drive(slide.runner, joint.speed or self.saved.linear, "length/s", on=slide.carrier, at=at)
+            return ImportedDrive(slide.runner, joint.speed or self.saved.linear, "length/s", on=slide.carrier, at=at)
         cranks = self._riders(joint)
         if not joint.ground:
             raise self._refused(
@@ -312,9 +324,9 @@ class _Mechanism:
             )
         if len(cranks) != 1:
             raise self._refused(joint, _("one driving link is wanted"), ", ".join(cranks) or "0")
-        return Drive(cranks[0], joint.speed or self.saved.rpm, "rpm")
+        return ImportedDrive(cranks[0], joint.speed or self.saved.rpm, "rpm")
 
-    def _pushes(self) -> Iterator[Push]:
+    def _pushes(self) -> Iterator[ImportedLoad]:
         newton = POUND_FORCE if self.saved.length == "in" else 1.0
         for force in self.saved.forces:
             along = (force.end - force.start) * (1 if force.outward else -1)
@@ -322,9 +334,11 @@ class _Mechanism:
             if body in self.frame:
                 self.left.append(_("Force {name} acts on the frame.").format(name=force.id))
             elif along and force.size:
-                yield Push(force.id, body, force.start, newton * force.size * along / abs(along), turns=force.turns)
+                yield ImportedLoad(
+                    force.id, body, force.start, newton * force.size * along / abs(along), turns=force.turns
+                )
             elif force.size:
                 self.left.append(_("Force {name} has no direction.").format(name=force.id))
 
-    def _refused(self, joint: Joint, message: str, found: str = "", allowed: str = "") -> ProblemError:
+    def _refused(self, joint: PmksJoint, message: str, found: str = "", allowed: str = "") -> ProblemError:
         return ProblemError(message, path=("joints", joint.id), found=found, allowed=allowed or None, file=self.file)

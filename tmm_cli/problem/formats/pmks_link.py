@@ -23,47 +23,47 @@ from urllib.parse import unquote
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError, quote
-from tmm_cli.problem.formats.imported_mechanism import Foreign, Length
-from tmm_cli.problem.formats.pmks import Force, Joint, Link, Saved, foreign
+from tmm_cli.problem.formats.imported_mechanism import ImportedMechanism, LengthUnit
+from tmm_cli.problem.formats.pmks import PmksFile, PmksForce, PmksJoint, PmksLink, import_pmks
 from tmm_cli.problem.values import LARGEST
 
 DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-"
 CHECKS = DIGITS[:62]
 ADDRESS = r"(?:https?://[^\s?]*\?)?"
-FORM = re.compile(ADDRESS + r"([\w-]+\.[\w,-]*\.[\w,-]*\.[\w-]*\.[^\r\n#]*)(?:#\S*)?")
-NATIVE = re.compile(ADDRESS + r"pmks2:[^\r\n]*")
-LENGTHS: Final[tuple[Length, ...]] = ("in", "cm", "m")
-MOST = 100_000
-LONGEST = 10  # characters of a number: as many as a mechanism can have
+LINK_TEXT = re.compile(ADDRESS + r"([\w-]+\.[\w,-]*\.[\w,-]*\.[\w-]*\.[^\r\n#]*)(?:#\S*)?")
+NEW_DOCUMENT = re.compile(ADDRESS + r"pmks2:[^\r\n]*")
+LENGTHS: Final[tuple[LengthUnit, ...]] = ("in", "cm", "m")
+MAX_TEXT_LENGTH = 100_000
+MAX_NUMBER_LENGTH = 10  # characters of a number: as many as a mechanism can have
 CLOCKWISE, GRAVITY_OFF = 1, 256  # flags of the file; 2 was gravity once and is dead
 SLIDES, INPUT, GROUND, WELDED = 1, 2, 4, 8  # flags of a joint; 16: its path is drawn, 32: drawn as a cylinder
 LOCAL, OUTWARD = 1, 2  # flags of a force
-ROOTS, PARTS = "YAMG0123", "Namg4567"  # first character of a link: of its own, or welded into another one
+ROOT_LINKS, WELDED_LINKS = "YAMG0123", "Namg4567"  # first character of a link: of its own, or welded into another one
 AUTOMATIC = {"A": "both", "1": "both", "M": "inertia", "2": "inertia", "G": "centre", "3": "centre"}
-SILENT = "JLFCHK"  # tags of locks, anchors of centres of mass, held lengths, colours: they change no mechanism
+IGNORED_TAGS = "JLFCHK"  # tags of locks, anchors of centres of mass, held lengths, colours: they change no mechanism
 
 
 def recognised(text: str) -> bool:
     """Whether the text is of this format."""
     text = text.strip()
-    return len(text) < MOST and (FORM.fullmatch(text) or NATIVE.fullmatch(text)) is not None
+    return len(text) < MAX_TEXT_LENGTH and (LINK_TEXT.fullmatch(text) or NEW_DOCUMENT.fullmatch(text)) is not None
 
 
-def read(text: str, file: str) -> Foreign:
+def read(text: str, file: str) -> ImportedMechanism:
     """The mechanism of a file. Raises ProblemError."""
-    if NATIVE.fullmatch(text.strip()):
+    if NEW_DOCUMENT.fullmatch(text.strip()):
         raise ProblemError(
             _("a document of the newer editor of PMKS+ is not read"),
             found="pmks2:...",
             allowed=_("a link that begins with its settings, as ?2v.Ay,1E8.5,..."),
             file=file,
         )
-    found = FORM.fullmatch(text.strip())
+    found = LINK_TEXT.fullmatch(text.strip())
     assert found is not None
-    return foreign(_Reading.of(_checked(unquote(found[1]), file), file).saved(), file)
+    return import_pmks(_LinkRecords.of(_strip_checks(unquote(found[1]), file), file).saved(), file)
 
 
-def _checked(content: str, file: str) -> str:
+def _strip_checks(content: str, file: str) -> str:
     """The text without its check character and its digest. Raises ProblemError if they do not fit."""
     body, mark, digest = content.rpartition("*")
     if mark and digest != _digest(body):
@@ -97,7 +97,7 @@ def _digest(body: str) -> str:
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _LinkRecords:
     """Records of a link, field by field. exact: numbers that thousandths do not hold, by kind, id and index."""
 
     settings: tuple[str, ...]
@@ -109,17 +109,17 @@ class _Reading:
     file: str
 
     @classmethod
-    def of(cls, content: str, file: str) -> _Reading:
+    def of(cls, content: str, file: str) -> _LinkRecords:
         """Raises ProblemError."""
         *settings, rest = content.split(".", 4)
-        joints, rest = _items(rest)
-        links, rest = _items(rest)
-        forces, rest = _items(rest)
-        exact, left = _entries(rest.partition(".")[2], file)
+        joints, rest = _split_records(rest)
+        links, rest = _split_records(rest)
+        forces, rest = _split_records(rest)
+        exact, left = _read_entries(rest.partition(".")[2], file)
         records = [[item.split(",") for item in items] for items in (joints, links, forces)]
         return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
 
-    def saved(self) -> Saved:
+    def saved(self) -> PmksFile:
         """The file. Raises ProblemError."""
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
@@ -134,16 +134,16 @@ class _Reading:
         roots, notes = [], []
         for fields in self.links:
             link, kind = self._link(fields)
-            if kind in ROOTS:
+            if kind in ROOT_LINKS:
                 roots.append(link)
-            if kind in AUTOMATIC and kind in ROOTS:
+            if kind in AUTOMATIC and kind in ROOT_LINKS:
                 notes.append(
                     _(
                         "PMKS+ computes inertia or centre of link {name} from its shape: the stored values are taken."
                     ).format(name=link.id)
                 )
         joints = tuple(self._joint(fields, left) for fields in self.joints)
-        return Saved(
+        return PmksFile(
             joints,
             tuple(self._whole(link) for link in roots),
             tuple(self._force(fields) for fields in self.forces),
@@ -156,7 +156,7 @@ class _Reading:
             titles[0] if titles else "",
         )
 
-    def _joint(self, fields: list[str], left: list[str]) -> Joint:
+    def _joint(self, fields: list[str], left: list[str]) -> PmksJoint:
         head, name = fields[0], fields[0][1:]
         path = ("joints", name)
         if not name or len(fields) < 5:
@@ -176,7 +176,7 @@ class _Reading:
                 _("a slot needs a joint that slides, a link and two joints of that link"),
                 quote(",".join((carrier, a, b))),
             )
-        return Joint(
+        return PmksJoint(
             name,
             complex(x, y),
             bool(flags & SLIDES),
@@ -190,24 +190,24 @@ class _Reading:
             self._number(path, "J", name, 3, speed),
         )
 
-    def _link(self, fields: list[str]) -> tuple[Link, str]:
+    def _link(self, fields: list[str]) -> tuple[PmksLink, str]:
         """And the character that says whether it is a link of its own and what PMKS+ computes of it."""
         kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
         path = ("links", name)
         if not name or len(fields) < 9 or form not in ("R", "P"):
             raise self._refused(path, _("a record of a link with nine fields is expected"), quote(",".join(fields)))
-        if kind not in ROOTS + PARTS:
+        if kind not in ROOT_LINKS + WELDED_LINKS:
             raise self._refused(
-                path, _("a link of a kind that is not known here"), quote(kind), " ".join(ROOTS + PARTS)
+                path, _("a link of a kind that is not known here"), quote(kind), " ".join(ROOT_LINKS + WELDED_LINKS)
             )
         mass, inertia, x, y = (self._number(path, "L", name, k, text) for k, text in enumerate(fields[2:6]))
         others = fields[7:]
         stop = others.index("") if "" in others else len(others)
         parts = tuple(part for part in others[stop + 1 :] if part)
         joints = tuple(others[:stop])
-        return Link(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
+        return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
-    def _whole(self, link: Link) -> Link:
+    def _whole(self, link: PmksLink) -> PmksLink:
         """The link with the parts of its parts, and the joints of all."""
         records = {fields[0][2:]: self._link(fields)[0] for fields in self.links}
         parts, joints = list(link.parts), list(link.joints)
@@ -216,16 +216,18 @@ class _Reading:
                 raise self._refused(("links", link.id), _("there is no link of that name"), quote(name))
             parts += [part for part in records[name].parts if part not in parts]
             joints += [joint for joint in records[name].joints if joint not in joints]
-        return Link(link.id, tuple(joints), link.piston, link.mass, link.inertia, link.centre, link.name, tuple(parts))
+        return PmksLink(
+            link.id, tuple(joints), link.piston, link.mass, link.inertia, link.centre, link.name, tuple(parts)
+        )
 
-    def _force(self, fields: list[str]) -> Force:
+    def _force(self, fields: list[str]) -> PmksForce:
         head, name = fields[0], fields[0][1:]
         path = ("forces", name)
         if not name or len(fields) != 8:
             raise self._refused(path, _("a record of a force with eight fields is expected"), quote(",".join(fields)))
         flags = self._integer(head[0], path, signed=False)
         x0, y0, x1, y1, size = (self._number(path, "F", name, k, text) for k, text in enumerate(fields[3:]))
-        return Force(
+        return PmksForce(
             name, fields[1], complex(x0, y0), complex(x1, y1), bool(flags & LOCAL), bool(flags & OUTWARD), size
         )
 
@@ -239,7 +241,7 @@ class _Reading:
 
     def _integer(self, text: str, path: tuple[str, ...], *, signed: bool = True) -> int:
         negative = signed and text[:1] == "0"
-        if not text or len(text) > LONGEST or any(char not in DIGITS for char in text):
+        if not text or len(text) > MAX_NUMBER_LENGTH or any(char not in DIGITS for char in text):
             raise self._refused(path, _("this is no number to the base 64"), quote(text))
         found = 0
         for char in text[negative:]:
@@ -250,7 +252,7 @@ class _Reading:
         return ProblemError(message, path=path, found=found, allowed=allowed, file=self.file)
 
 
-def _items(rest: str) -> tuple[list[str], str]:
+def _split_records(rest: str) -> tuple[list[str], str]:
     """Joints, links or forces, and what comes after: each ends with a full stop, and all of them with one more."""
     found = []
     while rest and rest[0] != ".":
@@ -259,7 +261,7 @@ def _items(rest: str) -> tuple[list[str], str]:
     return found, rest[1:]
 
 
-def _entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
+def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
     """Tagged entries behind the records: exact numbers, and what is not carried over. Raises ProblemError."""
     exact: dict[tuple[str, str, int], float] = {}
     left: list[str] = []
@@ -270,9 +272,9 @@ def _entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], t
             try:
                 index, value = int(numbers[0]), float(numbers[1])
             except (ValueError, IndexError):
-                raise _entry(entry, file) from None
+                raise _unknown_entry_error(entry, file) from None
             if len(numbers) != 2 or target[1:2] not in tuple("JLFDI") or not abs(value) <= LARGEST:
-                raise _entry(entry, file)
+                raise _unknown_entry_error(entry, file)
             exact[target[1], target[2:], index] = value
         elif tag == "G":
             raise ProblemError(_("gears of PMKS+ are not read"), found=quote(entry), file=file)
@@ -280,12 +282,12 @@ def _entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], t
             what = _("The design of its synthesis.") if tag == "S" else _("Materials, sections and their load cases.")
             if what not in left:
                 left.append(what)
-        elif tag not in SILENT:
-            raise _entry(entry, file)
+        elif tag not in IGNORED_TAGS:
+            raise _unknown_entry_error(entry, file)
     return exact, tuple(left)
 
 
-def _entry(entry: str, file: str) -> ProblemError:
+def _unknown_entry_error(entry: str, file: str) -> ProblemError:
     return ProblemError(
         _("an entry that is not known here"), found=quote(entry), allowed="J L F C H K P S T", file=file
     )

@@ -7,11 +7,18 @@ import math
 
 from tmm_cli.language import _
 from tmm_cli.problem.errors import ProblemError
-from tmm_cli.problem.formats.imported_mechanism import FRAME, Body, Drive, Foreign, Node, Slide
+from tmm_cli.problem.formats.imported_mechanism import (
+    FRAME,
+    FileNode,
+    ImportedBody,
+    ImportedDrive,
+    ImportedMechanism,
+    ImportedSlide,
+)
 from tmm_cli.problem.reader import read_text
 
-JOINTS = ("ground", "revolute", "prismatic", "tracker")
-LINKS = ("ground", "driver", "arc_driver", "link")
+JOINT_TYPES = ("ground", "revolute", "prismatic", "tracker")
+LINK_TYPES = ("ground", "driver", "arc_driver", "link")
 
 
 def recognised(text: str) -> bool:
@@ -19,35 +26,35 @@ def recognised(text: str) -> bool:
     return text.lstrip().startswith("{") and '"joints"' in text and '"links"' in text
 
 
-def read(text: str, file: str) -> Foreign:
+def read(text: str, file: str) -> ImportedMechanism:
     """The mechanism of a file. Raises ProblemError."""
-    top = Node(tree := read_text(text, file), tree.data)
-    joints: dict[str, Node] = {}
+    top = FileNode(tree := read_text(text, file), tree.data)
+    joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():
         if joints.setdefault(joint["id"].text(), joint) is not joint:
             raise joint["id"].refused(_("a name is given twice"))
     links = top["links"].items()
-    frame = _frame(joints, links)
-    places = {name: _place(joint) for name, joint in joints.items()}
-    kinds = {name: _kind(joint) for name, joint in joints.items()}
-    bodies: list[Body] = []
+    frame = _frame_joints(joints, links)
+    places = {name: _joint_place(joint) for name, joint in joints.items()}
+    kinds = {name: _joint_type(joint) for name, joint in joints.items()}
+    bodies: list[ImportedBody] = []
     drive, left = None, []
     notes = [_("Lengths have no unit in pylinkage: they are taken for millimetres.")]
     for link in links:
-        kind, name = link["type"].one_of(LINKS), link["id"].text()
+        kind, name = link["type"].one_of(LINK_TYPES), link["id"].text()
         if name in (body.name for body in bodies):
             raise link["id"].refused(_("a name is given twice"))
         if kind == "ground":
             continue
         own = [one.one_of(joints) for one in link["joints"].items()]
-        followed = [j for j in joints if kinds[j] == "tracker" and _refs(joints[j]) <= set(own)]
+        followed = [j for j in joints if kinds[j] == "tracker" and _referenced_joints(joints[j]) <= set(own)]
         own += [j for j in followed if j not in own]
-        bodies.append(Body(name, tuple(own), _label(link, name)))
+        bodies.append(ImportedBody(name, tuple(own), _link_label(link, name)))
         if kind != "link":
             if drive is not None:
                 raise link.refused(_("one driving link is wanted"))
             rate = speed.number() if (speed := link.get("angular_velocity")) else math.tau / 360
-            drive = Drive(name, rate)
+            drive = ImportedDrive(name, rate)
             notes.append(_("The angular velocity of pylinkage, rad per unit of time, is taken for rad/s."))
             if kind == "arc_driver":
                 left.append(
@@ -60,13 +67,13 @@ def read(text: str, file: str) -> Foreign:
     slides = []
     for name, kind in kinds.items():
         if kind == "prismatic":
-            joint, stone = joints[name], _stone(name, [body.name for body in bodies])
+            joint, stone = joints[name], _block_name(name, [body.name for body in bodies])
             axis = vector.vector() if (vector := joint.get("axis")) else 1 + 0j
             if not axis:
                 raise joint["axis"].refused(_("a direction is wanted"))
             through = at.vector() if (at := joint.get("line_point")) else 0j
-            bodies.append(Body(stone, (name,)))
-            slides.append(Slide(stone, name, FRAME, through, cmath.phase(axis)))
+            bodies.append(ImportedBody(stone, (name,)))
+            slides.append(ImportedSlide(stone, name, FRAME, through, cmath.phase(axis)))
             notes.append(
                 _("Joint {joint} runs on a line of the frame: slider {link} is put there.").format(
                     joint=name, link=stone
@@ -81,7 +88,7 @@ def read(text: str, file: str) -> Foreign:
         if j not in used and kinds[j] != "tracker"
     ]
     title = named.text() if (named := top.get("name")) and named.data else ""
-    return Foreign(
+    return ImportedMechanism(
         "pylinkage",
         title,
         "mm",
@@ -95,9 +102,9 @@ def read(text: str, file: str) -> Foreign:
     )
 
 
-def _frame(joints: dict[str, Node], links: list[Node]) -> tuple[str, ...]:
+def _frame_joints(joints: dict[str, FileNode], links: list[FileNode]) -> tuple[str, ...]:
     """Joints of the frame: those called so, of its link, and those that a driver turns about."""
-    found = [name for name, joint in joints.items() if _kind(joint) == "ground"]
+    found = [name for name, joint in joints.items() if _joint_type(joint) == "ground"]
     for link in links:
         if link["type"].data == "ground":
             found += [one.one_of(joints) for one in link["joints"].items()]
@@ -106,26 +113,26 @@ def _frame(joints: dict[str, Node], links: list[Node]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _kind(joint: Node) -> str:
+def _joint_type(joint: FileNode) -> str:
     given = joint.get("type")
-    return given.one_of(JOINTS) if given else "revolute"
+    return given.one_of(JOINT_TYPES) if given else "revolute"
 
 
-def _place(joint: Node) -> complex:
+def _joint_place(joint: FileNode) -> complex:
     if joint["position"].data == [None, None]:
         raise joint["position"].refused(_("the mechanism was saved before it was assembled"), _("places of all joints"))
     return joint["position"].vector()
 
 
-def _refs(joint: Node) -> set[str]:
+def _referenced_joints(joint: FileNode) -> set[str]:
     return {joint[key].text() for key in ("ref_joint1_id", "ref_joint2_id")}
 
 
-def _label(link: Node, name: str) -> str:
+def _link_label(link: FileNode, name: str) -> str:
     return called.text() if (called := link.get("name")) and called.data != name else ""
 
 
-def _stone(joint: str, names: list[str]) -> str:
+def _block_name(joint: str, names: list[str]) -> str:
     found = f"slider {joint}"
     while found in names:
         found += "'"

@@ -42,12 +42,12 @@ def template_text(name: str, language: str = ENGLISH, file: str | None = None) -
     if language != ENGLISH:
         translate = _translator(language)
         first = "# " + translate(first.removeprefix("# "))
-        rest = "\n".join(_translated(rest.split("\n"), translate))
+        rest = "\n".join(_translate_lines(rest.split("\n"), translate))
         rest = re.sub("^# lang: en", f"lang: {language}  ", rest, count=1, flags=re.MULTILINE)
     return f"{first}\n{rest}".replace("{file}", file or f"{name}.yaml")
 
 
-def translations() -> list[dict[str, str]]:
+def load_translations() -> list[dict[str, str]]:
     """Texts of templates by language."""
     text = files(__name__).joinpath("translations/words.yaml").read_text(encoding="utf-8")
     found: list[dict[str, str]] = yaml.safe_load(text)
@@ -57,11 +57,11 @@ def translations() -> list[dict[str, str]]:
 def _translator(language: str) -> Translate:
     if language == ENGLISH:
         return lambda text: text
-    found = {entry["en"]: entry[language] for entry in translations()}
+    found = {entry["en"]: entry[language] for entry in load_translations()}
     return found.__getitem__
 
 
-def _translated(lines: list[str], translate: Translate) -> list[str]:
+def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
     """Lines of a template: comments of several lines are paragraphs, broken anew; others stand behind their values."""
     found: list[str] = []
     paragraph: list[str] = []

@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.mechanics.numerics import SAME_POSITION, settled
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, planar
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, make_complex
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.blocks import TaskBlock, choose_key_set
 from tmm_cli.synthesis.construction import (
@@ -387,7 +387,7 @@ def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
     count = len(shape.positions)
     poses = [
         (
-            planar(*(values.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
+            make_complex(*(values.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
             values.number(pose[2], ANGLE, ("positions", k, 2)),
         )
         for k, pose in enumerate(shape.positions)

@@ -13,7 +13,7 @@ from pydantic import Field
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, least
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER
-from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest, quote
+from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest_name, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
 from tmm_cli.synthesis.four_bar import FourBarLinks, classify_four_bar, extreme_cosine
 from tmm_cli.synthesis.four_bar_by_angles import freudenstein, freudenstein as least_squares
@@ -395,7 +395,7 @@ def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> Generate
             path=("function",),
             found=quote(shape.function),
             allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
-            near=nearest(name, FUNCTIONS),
+            near=nearest_name(name, FUNCTIONS),
         )
     ends: dict[str, Any] = {
         key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))

@@ -28,7 +28,7 @@ from tmm_cli.problem import (
     ValueReader,
     VariedUnits,
     Vector,
-    mobility,
+    mobility_error,
     quote,
 )
 from tmm_cli.synthesis.blocks import TaskBlock, TriedFileError
@@ -220,7 +220,7 @@ def _check_mobility(variant: Variant) -> None:
     try:
         mobile(variant.linkage)
     except MobilityError as refusal:
-        told = mobility(refusal.structure)
+        told = mobility_error(refusal.structure)
         raise ProblemError(
             _("with values in the middle of these bounds {reason}").format(reason=told.message),
             path=("vary",),
@@ -277,9 +277,9 @@ def _read_quantity(
             "link": list(linkage.moving),
             "point": [point for link in linkage.moving for point in linkage.links[link].points],
         }
-        sense.known(name, dict.fromkeys(known[kind.named]), (*path, kind.named), kind.named)
+        sense.known_name(name, dict.fromkeys(known[kind.named]), (*path, kind.named), kind.named)
     for n, link in enumerate(given.links):
-        sense.known(link, linkage.links, (*path, "links", n), "link")
+        sense.known_name(link, linkage.links, (*path, "links", n), "link")
     wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
     wanted = list(values) if given.values else wanted
     if len(places) != len(wanted) and (places or given.values):
