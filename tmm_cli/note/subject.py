@@ -38,7 +38,7 @@ from tmm_cli.mechanics.plans import extent, round_scale
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, cells, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import Column, Table, figures, terminal_cells as cells_of
 
 EDGE = 0.4  # mm
@@ -131,7 +131,7 @@ class Subject:
 
     def unit(self, dimension: Dimension) -> str:
         """The file's unit as it is printed."""
-        return on_paper(self.results.problem.units.spelt(dimension))
+        return typeset_unit(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
         """A number as the language writes it."""
@@ -244,7 +244,11 @@ def rows_of(
     """
     units = subject.results.problem.units
     columns = [
-        (by_hand(on_paper(c.heading(units))), _texts(replace(_on_paper(c), digits=digits), units, zeros), c.dimension)
+        (
+            by_hand(typeset_unit(c.heading(units))),
+            _texts(replace(_on_paper(c), digits=digits), units, zeros),
+            c.dimension,
+        )
         for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
@@ -296,4 +300,4 @@ def _cell(text: str) -> str:
 
 def _on_paper(column: Column) -> Column:
     """A column of units as they are printed."""
-    return replace(column, values=[on_paper(unit) for unit in column.values]) if column.header == "unit" else column
+    return replace(column, values=[typeset_unit(unit) for unit in column.values]) if column.header == "unit" else column
