@@ -42,7 +42,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.problem import UnitSystem, on_paper
+from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import terminal_cells, walk
 
 LETTER_SIZE = 3.2  # mm: letters of a table as it comes
@@ -207,9 +207,9 @@ def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     ]
     heads = [
         _("force or moment"),
-        _("size, {unit}").format(unit=on_paper(units.spelt(FORCE))),
+        _("size, {unit}").format(unit=typeset_unit(units.spelt(FORCE))),
         _("angle from x, °"),
-        _("moment, {unit}").format(unit=on_paper(units.spelt(MOMENT))),
+        _("moment, {unit}").format(unit=typeset_unit(units.spelt(MOMENT))),
     ]
     place = driver_caption(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
@@ -258,7 +258,7 @@ def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
             for column in found.columns
         ]
         heads = [translated(column.header) for column in found.columns]
-        rows = [[*told, on_paper(unit)] for *told, unit in zip(*columns, strict=True)]
+        rows = [[*told, typeset_unit(unit)] for *told, unit in zip(*columns, strict=True)]
         yield "table-dynamics", draw_table(found.title, heads, rows)
     yield "table-law", table_over_positions(results, _("Law of motion of the driver"), _law_columns(results))
 
