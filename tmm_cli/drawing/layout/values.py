@@ -183,7 +183,7 @@ def table_over_positions(results: Results, title: str, columns: Sequence[Quantit
     place: QuantityColumn = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
     every = [place, *columns]
     heads: list[Words] = [_("No.")]
-    heads += [(name, f", {on_paper(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
+    heads += [(name, f", {typeset_unit(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / MOST_POSITIONS))
     cells = [format_column(values, dimension, units, chosen) for __, values, dimension in every]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
