@@ -45,7 +45,7 @@ from tmm_cli import solve
 from tmm_cli.cli import application
 from tmm_cli.drawing.formats import run_in_process
 from tmm_cli.mechanics.accuracy import at, exact
-from tmm_cli.mechanics.numerics import array, exactly, rounded
+from tmm_cli.mechanics.numerics import array, to_double_double, to_float
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import (
     KEYS_IN_OTHER_LANGUAGES,
@@ -361,7 +361,7 @@ def beyond(results: Any) -> str | None:
     motion, request = results.motion, results.inputs.request
     if motion is None or not len(motion.q):
         return None
-    q, first = exactly(motion.q), results.start
+    q, first = to_double_double(motion.q), results.start
     if results.inputs.extended is not None and request.places:
         places = np.stack(results.inputs.extended().request.places)
         q, first = places[list(results.numbers)], places[0]
@@ -373,7 +373,7 @@ def beyond(results: Any) -> str | None:
                 if column.dimension is None or not all(key in wide for key in keys[k]):
                     continue
                 true = array([wide[key] for key in keys[k]]).T.ravel()
-                error = rounded(np.abs(column.array - true))
+                error = to_float(np.abs(column.array - true))
                 if column.dimension == ANGLE:  # a cycle may have several turns
                     error = np.abs(error - 2 * np.pi * np.round(error / (2 * np.pi)))
                 if np.any(error > column.bound):

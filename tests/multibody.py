@@ -13,7 +13,7 @@ import mpmath as mp
 import numpy as np
 
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 
 DIGITS = 60
@@ -208,7 +208,7 @@ class Multibody:
     def _sketched(self):
         """Where the sketch was understood to show the links, angles within half a turn but for drivers'."""
         law = DriverMotion(self.it.sketch.at, 1.0, 0.0, 1)
-        motion = move(self.it, self.motion.kernels, np.array([self.it.sketch.at]), law)
+        motion = compute_motion(self.it, self.motion.kernels, np.array([self.it.sketch.at]), law)
         X = np.zeros(self.size)
         for name, i in self.at_row.items():
             x, z = motion.poses[name].x[0], motion.poses[name].z[0]

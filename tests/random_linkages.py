@@ -12,10 +12,10 @@ import math
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import SHAPES, CamLaw, Newton, Piece, Pose
+from tmm_cli.mechanics.groups import RISE_LAWS, CamLaw, CamLawPiece, NewtonSolver, Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Mesh, Sketch, Slide, Spring
-from tmm_cli.mechanics.numerics import least_over_largest
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.numerics import singular_value_ratio
+from tmm_cli.mechanics.structure import analyse_structure
 
 TYPES = ("RRR", "RRP", "RPR", "PRP", "RPP")
 HIGH = ("III", "IV", "VI")  # four, four and six links in one group
@@ -293,10 +293,12 @@ class Anything(Maker):
         (j,) = self.new(1)
         over = self.random.uniform(0.5, 1.5, 4)
         rise = float(self.random.uniform(0.1, 0.5))
-        shapes = [name for name in SHAPES if name not in ("linear", "parabolic", "cosine")]  # with a second derivative
+        shapes = [
+            name for name in RISE_LAWS if name not in ("linear", "parabolic", "cosine")
+        ]  # with a second derivative
         law = CamLaw(
             tuple(
-                Piece(float(part), lift, self.choose(shapes))
+                CamLawPiece(float(part), lift, self.choose(shapes))
                 for part, lift in zip(over / over.sum() * 2 * math.pi, (rise, 0.0, -rise, 0.0), strict=True)
             ),
             self.angle(),
@@ -349,15 +351,15 @@ class Anything(Maker):
     def sound(self) -> bool:
         """Whether its groups are far from dead positions, by their equations at the sketch."""
         it = self.linkage()
-        structure = analyse(it)
+        structure = analyse_structure(it)
         if not structure.sound:
             return False
         poses = {
             name: Pose(np.array([o]), np.array([z]), np.array([cmath.phase(z)])) for name, (o, z) in self.poses.items()
         }
         for group in structure.groups:
-            kernel = Newton.of(group, it)
-            if float(least_over_largest(kernel.matrix(poses))[0]) < SOUND / len(group.links):
+            kernel = NewtonSolver.of(group, it)
+            if float(singular_value_ratio(kernel.matrix(poses))[0]) < SOUND / len(group.links):
                 return False
         return True
 

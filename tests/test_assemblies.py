@@ -18,10 +18,10 @@ from test_commands import described, tmm
 
 from tmm_cli import load, solve
 from tmm_cli.mechanics.assembly import assemble, close_from_afar, find_assemblies, placed_by_angles
-from tmm_cli.mechanics.groups import DriverMotion, Newton, driven_state, drives_at, frame_state
-from tmm_cli.mechanics.kinematics import find_range, move
+from tmm_cli.mechanics.groups import DriverMotion, NewtonSolver, driven_state, drives_at, frame_state
+from tmm_cli.mechanics.kinematics import compute_motion, find_range
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SIX = Path(__file__).parent.parent / "problems" / "triad-six-assemblies.yaml"
@@ -181,12 +181,12 @@ def triad(seed, legs):
 
 def listed(linkage):
     """The assemblies of the triad of a linkage with its kernel, the poses before it and the drivers."""
-    structure = analyse(linkage)
+    structure = analyse_structure(linkage)
     q = np.array([linkage.sketch.at])
     drives = drives_at(linkage, q)
     placed = {FRAME: frame_state(q)[0], "1": driven_state(linkage, linkage.driver, drives["1"])[0]}
     found = find_assemblies(linkage, structure, (), linkage.sketch.at).groups[0]
-    return found, Newton.of(structure.groups[0], linkage), placed, drives
+    return found, NewtonSolver.of(structure.groups[0], linkage), placed, drives
 
 
 def random_legs(seed):
@@ -282,7 +282,7 @@ driver: {link: 1, speed: 60 rpm}
 sketch: {at: 90 deg}
 """
     linkage = problem(text).linkage
-    (group,) = find_assemblies(linkage, analyse(linkage), (), math.pi / 2).groups
+    (group,) = find_assemblies(linkage, analyse_structure(linkage), (), math.pi / 2).groups
     assert (group.method, len(group.assemblies)) == ("polynomial", 4)
     side = [
         math.copysign(1, ((0.04j - a.points["P"]) / (a.points["Q"] - a.points["P"])).imag) for a in group.assemblies
@@ -306,7 +306,7 @@ def test_two_assemblies_meet_where_the_driver_turns_back():
     seed = 7
     while True:
         linkage, _ = triad(seed, ["RR"] * 3)
-        structure = analyse(linkage)
+        structure = analyse_structure(linkage)
         kernels = assemble(linkage, structure)
         way = find_range(linkage, kernels)
         if not way.full:
@@ -327,7 +327,7 @@ def test_the_search_ends_where_a_group_moves_by_itself():
     given = problem(THREE_EQUAL_LEGS)
     with pytest.raises(ProblemError, match=r"group III\(2,3,4,5\)"):
         solve(given, "kinematics")
-    (group,) = find_assemblies(given.linkage, analyse(given.linkage), (), 0.0).groups
+    (group,) = find_assemblies(given.linkage, analyse_structure(given.linkage), (), 0.0).groups
     assert group.moves and not group.complete
     assert 1 <= len(group.assemblies) <= 6
 
@@ -343,7 +343,7 @@ driver: {link: 1, speed: 60 rpm}
 sketch: {at: 60 deg, B: [300, 150]}
 """
     linkage = problem(text).linkage
-    structure = analyse(linkage)
+    structure = analyse_structure(linkage)
     kernels = assemble(linkage, structure)
 
     def count(q, linkage=linkage, kernels=kernels):
@@ -372,7 +372,7 @@ def test_a_group_of_class_four_is_listed_without_a_proof():
         angles = {name: cmath.phase(z) for name, (_, z) in maker.poses.items() if name != FRAME}
         hinges = tuple(Hinge(name, tuple(joined)) for name, joined in maker.hinges.items())
         linkage = Linkage(links, hinges, (), Driver("1", "turn", "O", 1.0), Sketch(angles["1"], {}, angles))
-        structure = analyse(linkage)
+        structure = analyse_structure(linkage)
         (group,) = find_assemblies(linkage, structure, assemble(linkage, structure), linkage.sketch.at).groups
         assert group.group.group_class == 4
         assert (group.method, group.complete, group.most) == ("many starts", False, None)
@@ -430,8 +430,8 @@ def test_an_undecided_sketch_is_told_of_the_listing_and_the_listing_works(tmp_pa
         places = [f"{p}: [{1000 * at['x']:.0f}, {1000 * at['y']:.0f}]" for p, at in assembly["points"].items()]
         sketch = f"sketch: {{at: 90 deg, {', '.join(places)}}}"
         given = problem(undecided(SIX.read_text(encoding="utf-8")).replace("sketch: {at: 90 deg}", sketch))
-        kernels = assemble(given.linkage, analyse(given.linkage))
-        there = move(given.linkage, kernels, np.array([math.pi / 2]), DriverMotion(0.0, 1.0, 0.0, 1))
+        kernels = assemble(given.linkage, analyse_structure(given.linkage))
+        there = compute_motion(given.linkage, kernels, np.array([math.pi / 2]), DriverMotion(0.0, 1.0, 0.0, 1))
         assert float(np.angle(there.poses["2"].z)[0]) == pytest.approx(assembly["angles"]["2"], abs=1e-9)
 
 

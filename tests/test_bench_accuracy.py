@@ -21,12 +21,12 @@ from tmm_cli.bench import (
     REFERENCE_NAMES,
     TARGETS,
     Accuracy,
+    AccuracyRow,
     Answers,
     Case,
-    Loops,
+    LoopEquations,
     Method,
-    Row,
-    chart,
+    draw_accuracy,
     errors,
     measure_accuracy,
     places,
@@ -173,7 +173,7 @@ def test_a_finer_grid_makes_a_truer_drawing(name):
 
 def test_loops_have_two_equations_each_and_one_coordinate_a_moving_link(name):
     case = reference(name).case
-    loops = Loops(case)
+    loops = LoopEquations(case)
     contours = len(case.structure.pairs) - len(case.linkage.moving)
     assert len(loops.cut) == contours
     assert len(loops.free) == 2 * contours == len(case.linkage.moving) - 1
@@ -197,10 +197,12 @@ def test_what_a_method_does_not_give_is_nan_and_where_it_fails_its_error_is_infi
 
 
 def test_a_missed_target_is_a_failure_and_reduced_ones_are_twice_as_wide():
-    row = Row("shaper", "closed", "closed", None, 1.0, dict.fromkeys(QUANTITIES, 1.5e-13) | {"positions": 1e-15})
+    row = AccuracyRow(
+        "shaper", "closed", "closed", None, 1.0, dict.fromkeys(QUANTITIES, 1.5e-13) | {"positions": 1e-15}
+    )
     assert len(Accuracy((row,), 360, 1, reduced=False).failures) == 4
     assert Accuracy((row,), 360, 1, reduced=True).failures == ()
-    lost = Row("shaper", "closed", "closed", None, 1.0, dict.fromkeys(QUANTITIES, float("nan")))
+    lost = AccuracyRow("shaper", "closed", "closed", None, 1.0, dict.fromkeys(QUANTITIES, float("nan")))
     assert len(Accuracy((lost,), 360, 1, reduced=True).failures) == 5
 
 
@@ -208,7 +210,7 @@ def test_the_chart_has_a_panel_for_every_quantity_and_every_family_in_its_legend
     measured = measure_accuracy(
         ["crank-slider"], reduced=True, methods=(CLOSED_FORM, BY_NAME["newton-4"], BY_NAME["board-0.50"])
     )
-    figure = chart(measured, "crank-slider")
+    figure = draw_accuracy(measured, "crank-slider")
     panels = [axes for axes in figure.axes if axes.get_title(loc="left")]
     assert len(panels) == 5
     assert all(axes.get_xscale() == axes.get_yscale() == "log" for axes in panels)

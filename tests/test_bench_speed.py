@@ -12,10 +12,10 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli.bench import MECHANISMS, Growth, Iterated, Race, Rival, Speed, Sweeping, chain, exponent, measured, speed
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.forces import applied, compute_lever, power, react
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 
 Q = np.linspace(0.1, 6.2, 40)
 TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair
@@ -35,8 +35,8 @@ def test_the_code_by_hand_gives_what_the_product_gives(mechanism, variants):
 
 def test_a_long_chain_of_dyads_moves_and_balances():
     it = chain(30)
-    structure = mobile(it)
-    motion = move(it, assemble(it, structure), np.linspace(0, 6.28, 25), DriverMotion(1.0, 10.0, 0.0, 1))
+    structure = analyse_mobile_structure(it)
+    motion = compute_motion(it, assemble(it, structure), np.linspace(0, 6.28, 25), DriverMotion(1.0, 10.0, 0.0, 1))
     assert len(structure.groups) == 30 and bool(np.all(motion.moving))
     loads = applied(motion, None)
     drivers = power(motion, react(motion, structure, loads))

@@ -26,7 +26,7 @@ from tmm_cli.bench import (
     Case,
     Method,
     Unable,
-    close,
+    close_positions,
     known_scenes,
     limit,
     measure_stability,
@@ -293,7 +293,7 @@ def test_newtons_method_gives_nothing_where_it_does_not_converge():
         def matrix(self, X, q):
             return 2 * X[..., None]
 
-    found = close(Parabola(), np.array([[1.5], [1.5]]), np.array([2.0, -1.0]), 1e-12)
+    found = close_positions(Parabola(), np.array([[1.5], [1.5]]), np.array([2.0, -1.0]), 1e-12)
     assert found[0, 0] == pytest.approx(2**0.5) and np.isnan(found[1, 0])
 
 

@@ -43,10 +43,10 @@ from tmm_cli.mechanics.accuracy import (
 )
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.forces import Item, Lever
-from tmm_cli.mechanics.groups import SHAPES
+from tmm_cli.mechanics.groups import RISE_LAWS
 from tmm_cli.mechanics.kinematics import find_range
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
-from tmm_cli.mechanics.numerics import ROUNDOFF, exactly
+from tmm_cli.mechanics.numerics import ROUNDOFF, to_double_double
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -57,7 +57,7 @@ from tmm_cli.mechanics.quantities import (
     MOMENT,
     SPEED,
 )
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import build_any_problem, build_problem, read_text
 from tmm_cli.reports import (
     accuracy,
@@ -159,7 +159,7 @@ def truth(body, it, structure, k):
 
 def judged(it, q, kernels, bounded=True):
     """(value, true error, bound) of every quantity at every place that is not refused."""
-    structure = analyse(it)
+    structure = analyse_structure(it)
     results = bare(it, q, structure, kernels)
     nothing = Digits(defaultdict(lambda: np.full(len(q), np.nan)))
     values, digits = bounds(results) if bounded else (quantities(results), nothing)
@@ -188,7 +188,7 @@ def judged(it, q, kernels, bounded=True):
 
 def assembled(it):
     """The groups of a linkage, and how far its driver can go."""
-    kernels = assemble(it, analyse(it))
+    kernels = assemble(it, analyse_structure(it))
     return kernels, find_range(it, kernels)
 
 
@@ -291,7 +291,7 @@ def test_a_force_next_to_nothing_acts_far_away_and_that_is_known_no_better_than_
     assert "9.0000" in text and beyond(results) is None
 
 
-@pytest.mark.parametrize("law", SHAPES)
+@pytest.mark.parametrize("law", RISE_LAWS)
 def test_every_law_of_a_cam_is_known_to_its_bounds(law):
     text = (PROBLEMS / "cam-lever.yaml").read_text(encoding="utf-8").replace("law: sine", f"law: {law}")
     assert beyond(solve(build_any_problem(read_text(text, "cam.yaml")))) is None
@@ -460,7 +460,7 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)
-    wide = cells_with_digits(at(results, exact(results), exactly(results.motion.q), results.start))
+    wide = cells_with_digits(at(results, exact(results), to_double_double(results.motion.q), results.start))
     for header in ("s", "v relative", "a relative"):
         k, column = next((k, c) for k, c in enumerate(told.columns) if c.header == header)
         expected = [wide[False, "slides", k, row] for row in range(2)]

@@ -26,7 +26,7 @@ from tmm_cli.drawing.sheets import (
 from tmm_cli.drawing.symbols import STRUCTURAL, MechanismScene, form_by_pairs, higher_pair_outline, replacement_link
 from tmm_cli.mechanics.groups import Pose
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Sketch, Slide
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import build_problem, read_text
 
 
@@ -63,7 +63,7 @@ def scene(points, links, slides=(), driver="O", turn=0.4):
         Sketch(0.0),
     )
     moved = {name: Pose(np.array([origin]), np.array([z])) for name, (origin, z) in poses.items()}
-    return MechanismScene(linkage, analyse(linkage), moved)
+    return MechanismScene(linkage, analyse_structure(linkage), moved)
 
 
 TRIAD = scene(
@@ -167,7 +167,7 @@ def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_
 
 
 def test_the_legend_counts_mobility_after_chebyshev():
-    facts = Legend(analyse(load(str(ROOT / "problems" / "six-bar.yaml")).linkage)).facts
+    facts = Legend(analyse_structure(load(str(ROOT / "problems" / "six-bar.yaml")).linkage)).facts
     assert "n = 5 moving links, p₁ = 7 lower pairs (6 turning, 1 sliding), p₂ = 0 higher pairs" in facts
     assert "W = 3n − 2p₁ − p₂ = 3·5 − 2·7 − 0 = 1" in facts
     assert "Mechanism of class II" in facts

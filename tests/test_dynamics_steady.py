@@ -28,7 +28,7 @@ from tmm_cli.mechanics.dynamics import (
 from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.forces import applied, react
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -261,7 +261,7 @@ def test_reactions_under_the_law_of_motion_agree_with_lagrange_multipliers(k):
     assert acceleration != 0
     linkage = replace(results.linkage, driver=replace(driver, rate=rate, acceleration=acceleration))
     q = motion.q[k : k + 1]
-    here = move(linkage, results.kernels, q, DriverMotion(float(q[0]), rate, acceleration, driver.sense))
+    here = compute_motion(linkage, results.kernels, q, DriverMotion(float(q[0]), rate, acceleration, driver.sense))
     reactions = react(here, results.structure, applied(here, results.strokes))
     for pair in results.structure.pairs:
         own = results.reactions.of(pair.name).force[k]

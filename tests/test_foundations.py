@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tmm_cli import load
-from tmm_cli.mechanics.groups import CLOSED
-from tmm_cli.mechanics.numerics import bisect, find_roots, leaves, mapped
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.groups import CLOSED_FORM_SOLVERS
+from tmm_cli.mechanics.numerics import bisect, find_roots, map_record, record_leaves
+from tmm_cli.mechanics.structure import analyse_structure
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.longdouble])
@@ -36,19 +36,21 @@ class Part:
 
 def test_a_map_over_records_meets_every_leaf_at_its_path():
     record = Part((1.0, Part((2.0,))), {"a": 3.0}, 4.0)
-    assert dict(leaves(record)) == {
+    assert dict(record_leaves(record)) == {
         "sizes[0]": 1.0,
         "sizes[1].sizes[0]": 2.0,
         "sizes[1].kept": 0.0,
         "named.a": 3.0,
         "kept": 4.0,
     }
-    assert mapped(lambda path, value: value + 1, record, skip=("kept",)) == Part((2.0, Part((3.0,))), {"a": 4.0}, 4.0)
-    sums = mapped(lambda path, one, other: one + other, record, record)
-    assert dict(leaves(sums)) == {path: 2 * value for path, value in leaves(record)}
+    assert map_record(lambda path, value: value + 1, record, skip=("kept",)) == Part(
+        (2.0, Part((3.0,))), {"a": 4.0}, 4.0
+    )
+    sums = map_record(lambda path, one, other: one + other, record, record)
+    assert dict(record_leaves(sums)) == {path: 2 * value for path, value in record_leaves(record)}
 
 
 @pytest.mark.parametrize("name", ["shaper", "cylinder", "excavator", "press-class-iii"])
 def test_a_group_is_of_one_closed_type_at_most(name):
-    for group in analyse(load(f"problems/{name}.yaml").linkage).groups:
-        assert sum(kind.fits(group) for kind in CLOSED) <= 1
+    for group in analyse_structure(load(f"problems/{name}.yaml").linkage).groups:
+        assert sum(kind.fits(group) for kind in CLOSED_FORM_SOLVERS) <= 1

@@ -11,7 +11,7 @@ from fuzz_blocks import BLOCKS, Parts
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.mechanics.groups import State
+from tmm_cli.mechanics.groups import GroupState
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
 
@@ -87,5 +87,5 @@ def test_a_sweep_of_links_that_hold_one_another_is_refused_in_the_words_of_the_f
 
 
 def test_no_states_of_a_group_are_moved_by_no_step():
-    none = State(np.zeros((0, 4), complex), np.zeros((0, 4))).moved(np.zeros((0, 12)), 1.0)
+    none = GroupState(np.zeros((0, 4), complex), np.zeros((0, 4))).moved(np.zeros((0, 12)), 1.0)
     assert none.x.shape == none.unwrapped.shape == (0, 4)

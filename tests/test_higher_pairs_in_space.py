@@ -7,13 +7,13 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.structure import space
+from tmm_cli.mechanics.structure import count_in_space
 from tmm_cli.problem import build_problem, read_text
 
 
 def in_space(text):
     results = solve(build_problem(read_text(text, "x.yaml")), "structure")
-    return space(results.linkage, results.structure)
+    return count_in_space(results.linkage, results.structure)
 
 
 @pytest.mark.parametrize("text, crowned", [(blocks.PLANET, "z"), (blocks.RACK, "k"), (blocks.CAM, "c")])

@@ -17,8 +17,8 @@ from test_bad_linkages import changed
 from test_commands import tmm
 
 from tmm_cli.mechanics.forces import FrictionSolution, LockedRange, find_locked_ranges
-from tmm_cli.mechanics.groups import CamLaw, Piece
-from tmm_cli.mechanics.numerics import exactly, solve as solve_linear
+from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
+from tmm_cli.mechanics.numerics import solve as solve_linear, to_double_double
 from tmm_cli.note import Paragraph, Subject, losses
 from tmm_cli.reports import collect_warnings as words, doubts, to_json
 
@@ -116,7 +116,7 @@ def test_a_train_comes_back_when_its_last_wheel_does(number, teeth, turns):
 
 def test_a_system_with_only_one_side_in_double_doubles_is_solved_in_double_doubles():
     """Rows of wheels alone are ratios: they stay float64 where the angles next to a dead position are longer."""
-    right = exactly(np.array([[1.0, 2.0]])) / 3
+    right = to_double_double(np.array([[1.0, 2.0]])) / 3
     found = solve_linear(np.array([[[2.0, 0.0], [0.0, 4.0]]]), right)
     assert np.all(found * np.array([2.0, 4.0]) == right)
 
@@ -133,7 +133,7 @@ def test_wheels_next_to_a_dead_position_are_solved():
 
 
 def test_a_law_of_many_pieces_is_looked_up():
-    law = CamLaw(tuple(Piece(math.tau / 100, (-1) ** k * 0.001, "3-4-5") for k in range(100)), 0.3)
+    law = CamLaw(tuple(CamLawPiece(math.tau / 100, (-1) ** k * 0.001, "3-4-5") for k in range(100)), 0.3)
     angle = np.linspace(-7, 7, 1001)
     value, first, second = law(angle)
     step = 1e-5
@@ -381,7 +381,7 @@ def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monk
     text = kites(2)
     assert bool(solved_text(text).motion.moving.all())
     assert "the change points of group II(" in refusal(kites(10))
-    monkeypatch.setattr("tmm_cli.mechanics.assembly.choose.MOST_TURNS", 299)
+    monkeypatch.setattr("tmm_cli.mechanics.assembly.assembling.LARGEST_SEARCH", 299)
     assert refusal(text) == (
         f"x.yaml:{place(text, 'links:')}: links: the change points of group II(c2,r2) take too long to find: so many "
         "groups lie before it\n  found:   3 groups over 100 turns of the driver\n"
@@ -390,7 +390,7 @@ def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monk
 
 
 def test_a_group_that_is_too_large_is_named_before_a_search_that_is_too_long(monkeypatch):
-    monkeypatch.setattr("tmm_cli.mechanics.assembly.choose.MOST_TURNS", 0)
+    monkeypatch.setattr("tmm_cli.mechanics.assembly.assembling.LARGEST_SEARCH", 0)
     text = changed(ladder(47), "points: {", "points: {Q: [-1, 2], ")
     text = changed(text, "driver:", "  p: {points: [A, P], length: 0.8}\n  q: {points: [Q, P], length: 0.8}\ndriver:")
     text = changed(text, "sketch: {at: 0, ", "sketch: {at: 0, P: [-0.2, 1.9], ")

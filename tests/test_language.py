@@ -18,7 +18,7 @@ from tmm_cli.cli import bounds_of, each, opened, speaking
 from tmm_cli.drawing.paper import filling_axis
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
 from tmm_cli.mechanics.forces import balance_symbol, load_symbols
-from tmm_cli.mechanics.quantities import KINDS
+from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.problem import UnitSystem, parse_unit
 from tmm_cli.reports import write_results
 
@@ -202,7 +202,7 @@ def test_numbers_for_people_have_the_decimal_mark_of_their_language():
     [("ru", "rpm", "об/мин"), ("ru", "kg*m^2", "кг·м²"), ("sr", "rpm", "o/min"), ("en", "kg*m^2", "kg*m^2")],
 )
 def test_a_unit_is_spelt_as_the_language_spells_it_and_read_so_too(tongue, unit, spelling):
-    kind = next(kind for kind in KINDS.values() if parse_unit(unit).dimension == kind.dimension)
+    kind = next(kind for kind in DIMENSIONS.values() if parse_unit(unit).dimension == kind.dimension)
     units = UnitSystem({kind.dimension.name: unit})
     with spoken(tongue):
         assert units.spelt(kind.dimension) == spelling

@@ -16,8 +16,8 @@ from tmm_cli import load, solve
 from tmm_cli.mechanics.analysis import at_places, redriven
 from tmm_cli.mechanics.forces import applied, react
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.kinematics import compute_motion
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import build_problem, read_text
 from tmm_cli.synthesis import redrive
 
@@ -71,7 +71,7 @@ def by_cosines(a, b, opposite):
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_formula_of_structure(name):
-    structure = analyse(problem(name).linkage)
+    structure = analyse_structure(problem(name).linkage)
     assert structure.formula == FORMULAS[name]
     assert structure.mobility == len(structure.drivers)
 
@@ -100,7 +100,7 @@ def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
     )
     start = it.sketch.at if it.others else results.start
     law = DriverMotion(start, it.driver.rate, 0.0, -it.driver.sense)
-    other = move(back, results.kernels, motion.q, law)
+    other = compute_motion(back, results.kernels, motion.q, law)
     for link in it.moving:
         one, two = motion.centre(link), other.centre(link)
         assert np.max(np.abs(one.v + two.v)) <= 1e-12 * np.max(np.abs(one.v), initial=1e-3)
@@ -202,8 +202,8 @@ def test_class_iv_ratio_by_instant_centres():
 
 def test_class_iv_is_one_of_class_iii_when_driven_from_the_other_end():
     problem = load(str(PROBLEMS / "class-iv.yaml"))
-    assert analyse(problem.linkage).mechanism_class == 4
-    assert analyse(redriven(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
+    assert analyse_structure(problem.linkage).mechanism_class == 4
+    assert analyse_structure(redriven(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
 
 
 def test_cardan_gear_draws_an_exact_straight_line():

@@ -16,7 +16,7 @@ from tmm_cli.drawing.sheets import dense_coordinates
 from tmm_cli.mechanics.accuracy import bounds, judged
 from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.mechanics.dynamics import reduced_machine
-from tmm_cli.mechanics.numerics import DoubleDouble, Table, rounded
+from tmm_cli.mechanics.numerics import DoubleDouble, InterpolationTable, to_float
 from tmm_cli.problem import build_any_problem, read_text, template_text
 from tmm_cli.reports import collect_warnings, input_data_tables
 from tmm_cli.sweep import Mechanisms, read_axes, swept
@@ -322,23 +322,25 @@ def by_hand(x, rows):
 
 
 def test_two_equal_arguments_are_a_jump_with_the_value_from_the_left_before_and_from_the_right_after():
-    table = Table((0.0, 20.0, 20.0, 80.0, 80.0, 100.0), (0.0, 0.0, 1500.0, 900.0, 300.0, 300.0))
+    table = InterpolationTable((0.0, 20.0, 20.0, 80.0, 80.0, 100.0), (0.0, 0.0, 1500.0, 900.0, 300.0, 300.0))
     at = np.array([-1, 10, np.nextafter(20, 0) - 1e-9, 20, 50, 80 - 1e-9, 80, 90, 100, 200])
     assert table(at) == pytest.approx([0, 0, 0, 1500, 1200, 900, 300, 300, 300, 300], abs=1e-7)
-    exact = Table(*(tuple(DoubleDouble.decimal(str(x)) for x in row) for row in (table.arguments, table.values)))
-    assert rounded(exact(at)) == pytest.approx(table(at), abs=1e-7)
-    each = Table(table.arguments, (0.0, 0.0, np.array([[1500.0], [15.0]]), 900.0, 300.0, 300.0))
+    exact = InterpolationTable(
+        *(tuple(DoubleDouble.decimal(str(x)) for x in row) for row in (table.arguments, table.values))
+    )
+    assert to_float(exact(at)) == pytest.approx(table(at), abs=1e-7)
+    each = InterpolationTable(table.arguments, (0.0, 0.0, np.array([[1500.0], [15.0]]), 900.0, 300.0, 300.0))
     assert each(at)[0] == pytest.approx(table(at), abs=1e-7) and each(at)[1][4] == pytest.approx((15 + 900) / 2)
     assert table.slope(np.array([10, 20, 50, 80, 90])) == pytest.approx([0, -10, -10, 0, 0])
 
 
 def test_a_table_may_jump_in_its_first_and_in_its_last_row():
-    table = Table((30.0, 30.0, 90.0, 90.0), (1.0, 5.0, 8.0, 2.0))
+    table = InterpolationTable((30.0, 30.0, 90.0, 90.0), (1.0, 5.0, 8.0, 2.0))
     assert table(np.array([0, 29, 30, 60, 90, 100])) == pytest.approx([1, 1, 5, 6.5, 2, 2])
 
 
 def test_between_two_jumps_a_smooth_table_is_a_spline_of_its_own_rows():
-    table = Table((0.0, 1.0, 2.0, 3.0, 3.0, 4.0, 6.0), (0.0, 2.0, 1.0, 4.0, 7.0, 5.0, 6.0), "smooth")
+    table = InterpolationTable((0.0, 1.0, 2.0, 3.0, 3.0, 4.0, 6.0), (0.0, 2.0, 1.0, 4.0, 7.0, 5.0, 6.0), "smooth")
     left, right = np.linspace(0, 2.99, 21), np.linspace(3, 6, 21)
     first = CubicSpline([0, 1, 2, 3], [0, 2, 1, 4], bc_type="natural")
     second = CubicSpline([3, 4, 6], [7, 5, 6], bc_type="natural")

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from tmm_cli import prepare, solve
 from tmm_cli.mechanics.analysis import at_positions
 from tmm_cli.mechanics.dynamics import reduced_machine
-from tmm_cli.mechanics.numerics import Table
+from tmm_cli.mechanics.numerics import InterpolationTable
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import collect_warnings, doubts, input_data_tables
 
@@ -180,7 +180,7 @@ def test_work_of_an_indicator_diagram_is_its_area():
 
 
 def test_a_step_table_holds_each_row_up_to_the_next():
-    table = Table((0.0, 1.0, 3.0), (5.0, 7.0, 2.0), "step")
+    table = InterpolationTable((0.0, 1.0, 3.0), (5.0, 7.0, 2.0), "step")
     assert table(np.array([-1, 0, 0.99, 1, 2.9, 3, 4])).tolist() == [5, 5, 5, 7, 7, 2, 2]
 
 
@@ -198,7 +198,7 @@ def test_a_smooth_table_is_a_cubic_spline_that_closes_where_the_turn_does():
 def test_slopes_of_tables_are_their_derivatives():
     x, step = np.linspace(0.05, 4.9, 61), 1e-6
     for between in ("linear", "smooth"):
-        table = Table((0.0, 1.0, 2.5, 5.0), (1.0, -1.0, 4.0, 0.0), between)
+        table = InterpolationTable((0.0, 1.0, 2.5, 5.0), (1.0, -1.0, 4.0, 0.0), between)
         assert table.slope(x) == pytest.approx((table(x + step) - table(x - step)) / (2 * step), abs=1e-6)
 
 

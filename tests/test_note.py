@@ -21,7 +21,7 @@ from tmm_cli import load, solve
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol, find_transmitted_forces
-from tmm_cli.mechanics.quantities import KINDS
+from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.note import (
     EXACT,
     MOST_FIGURES,
@@ -153,7 +153,7 @@ def known(results: Results) -> np.ndarray:
     for table in (one.table for one in results.linkage.loads if one.table is not None):
         found += [*table.arguments, *table.values]
     units = results.problem.units
-    own = {float(units.from_si(1.0, kind.dimension)) for kind in KINDS.values()}
+    own = {float(units.from_si(1.0, kind.dimension)) for kind in DIMENSIONS.values()}
     every = np.outer(found, sorted(own | {1.0, 100.0, 180 / np.pi, 30 / np.pi}))
     return np.unique(np.abs(every[np.isfinite(every)]))
 

@@ -17,7 +17,7 @@ from tmm_cli import solve
 from tmm_cli.batch import read_task
 from tmm_cli.grading import Given, Submission, VariantTable, grade
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import ProblemError, build_problem, read_text
 from tmm_cli.reports import to_json
 
@@ -180,8 +180,8 @@ sketch: {at: 300, A: [0, 150], C: [-290, 150]}
 
 
 def test_links_are_attached_to_the_driven_piston_before_the_lever_that_it_swings():
-    usual = analyse(build_problem(read_text(CYLINDER, "x.yaml")).linkage)
-    to_lever = analyse(build_problem(read_text(attached(CYLINDER, "A", 1), "x.yaml")).linkage)
+    usual = analyse_structure(build_problem(read_text(CYLINDER, "x.yaml")).linkage)
+    to_lever = analyse_structure(build_problem(read_text(attached(CYLINDER, "A", 1), "x.yaml")).linkage)
     assert [(p.i, p.j) for p in usual.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("3", "4")]
     assert [(p.i, p.j) for p in to_lever.pairs if p.point == "A" and p.kind == "R"] == [("1", "3"), ("1", "4")]
 
@@ -244,7 +244,7 @@ def test_the_order_of_links_in_the_file_does_not_change_what_is_attached(name):
     for order in islice(permutations(linkage.moving), 0, None, max(1, factorial(len(linkage.moving)) // 60)):
         links = {name: linkage.links[name] for name in (FRAME, *order)}
         hinges = tuple(replace(h, links=tuple(n for n in links if n in h.links)) for h in linkage.hinges)
-        structure = analyse(replace(linkage, links=links, hinges=hinges))
+        structure = analyse_structure(replace(linkage, links=links, hinges=hinges))
         found.add(frozenset((p.point, frozenset((p.i, p.j))) for p in structure.pairs if p.kind == "R"))
     assert len(found) == 1
 
@@ -252,7 +252,7 @@ def test_the_order_of_links_in_the_file_does_not_change_what_is_attached(name):
 @pytest.mark.parametrize("seed", range(12))
 def test_links_of_a_compound_hinge_are_attached_by_the_rule_in_random_chains(seed):
     linkage = random_linkages.linkage(seed, ("RRR", "RRR", "RRP", "RRR"))
-    structure = analyse(linkage)
+    structure = analyse_structure(linkage)
     for hinge in linkage.hinges:
         pairs = [{p.i, p.j} for p in structure.pairs if p.point == hinge.point and p.kind == "R"]
         assert len(pairs) == len(hinge.links) - 1

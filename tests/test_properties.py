@@ -13,10 +13,10 @@ from random_linkages import TYPES, linkage
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.forces import applied, compute_lever, react
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Link
 from tmm_cli.mechanics.numerics import cross, dot
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 
 CHAINS = st.lists(st.sampled_from(TYPES), min_size=1, max_size=4).map(tuple)
 SEEDS = st.integers(0, 2**32 - 1)
@@ -25,11 +25,11 @@ GENERIC = 0.02  # margins below this are near a dead position, where nothing kee
 
 def solved(it, offsets=(0.0, 0.01, -0.01), law=None):
     """Motion and forces of a linkage about its sketch."""
-    structure = analyse(it)
+    structure = analyse_structure(it)
     kernels = assemble(it, structure)
     q = it.sketch.at + np.array(offsets)
     d = it.driver
-    motion = move(it, kernels, q, law or DriverMotion(q[0], d.rate, d.acceleration, d.sense))
+    motion = compute_motion(it, kernels, q, law or DriverMotion(q[0], d.rate, d.acceleration, d.sense))
     loads = applied(motion, None)
     reactions = react(motion, structure, loads)
     return structure, motion, loads, reactions
@@ -52,7 +52,7 @@ def generic(it):
 @given(SEEDS, CHAINS)
 @settings(max_examples=30)
 def test_groups_are_found_as_they_were_put_together(seed, kinds):
-    structure = analyse(linkage(seed, kinds))
+    structure = analyse_structure(linkage(seed, kinds))
     assert structure.mobility == structure.freedom == 1
     # all groups that are solved; one on two points of the frame is rigid, and the structural report leaves it out
     assert sorted(g.type for g in structure.all_groups) == sorted(kinds)
@@ -97,11 +97,11 @@ def test_pairs_stay_closed_in_place_velocity_and_acceleration(seed, kinds):
 def test_velocities_and_accelerations_are_derivatives_of_places(seed, kinds):
     it = linkage(seed, kinds)
     step = 1e-4
-    structure = analyse(it)
+    structure = analyse_structure(it)
     generic(it)
     kernels = assemble(it, structure)
     q = it.sketch.at + step * np.arange(-2, 3)
-    motion = move(it, kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
+    motion = compute_motion(it, kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assume(min(float(np.min(p.margin)) for p in motion.placements) > 0.2)
     for point in it.sketch.points:
         x = motion.named(point)

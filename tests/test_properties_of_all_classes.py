@@ -10,9 +10,9 @@ from transforms import mirrored, renamed, reversed_in_time, sized, turned
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.forces import applied, compute_energy, compute_lever, power, react
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import cross
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 
 LINKAGES = [
     (1, ("III", "gear"), "crank"),
@@ -38,8 +38,8 @@ def law_of(it):
 
 def solved(it, offsets=OFFSETS, kernels=None):
     """Motion and forces of a linkage about its sketch."""
-    structure = analyse(it)
-    motion = move(it, kernels or assemble(it, structure), it.sketch.at + np.array(offsets), law_of(it))
+    structure = analyse_structure(it)
+    motion = compute_motion(it, kernels or assemble(it, structure), it.sketch.at + np.array(offsets), law_of(it))
     loads = applied(motion, None)
     return structure, motion, loads, react(motion, structure, loads)
 
@@ -158,9 +158,9 @@ def test_lever_and_powers_agree_with_the_force_plan(found):
 def test_a_position_alone_is_that_position_among_others(found):
     motion = found[1]
     it = motion.linkage
-    many = move(it, motion.kernels, it.sketch.at + np.linspace(-1, 1, 41), law_of(it))
+    many = compute_motion(it, motion.kernels, it.sketch.at + np.linspace(-1, 1, 41), law_of(it))
     for k in (0, 7, 20, 33):
-        alone = move(it, motion.kernels, many.q[k : k + 1], law_of(it))
+        alone = compute_motion(it, motion.kernels, many.q[k : k + 1], law_of(it))
         assert alone.placed[0] == many.placed[k]
         assert alone.moving[0] == many.moving[k]
         if many.moving[k]:
@@ -176,7 +176,7 @@ def test_velocities_and_accelerations_are_derivatives_of_places(found):
     it = motion.linkage
     step = 2e-3
     q = it.sketch.at + step * np.arange(-4, 5)
-    motion = move(it, motion.kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
+    motion = compute_motion(it, motion.kernels, q, DriverMotion(it.sketch.at, 1.0, 0.0, 1))
     assert np.all(motion.moving)
     weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
     for name in it.moving:

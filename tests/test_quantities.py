@@ -10,7 +10,17 @@ from models import PROBLEMS
 from tmm_cli import load, prepare, solve
 from tmm_cli.drawing.sheets import detailed_drawings, draw_lever, draw_motion_plans
 from tmm_cli.mechanics.accuracy import quantities
-from tmm_cli.mechanics.quantities import BALANCE, BALANCING, ENERGY, LINK, LOAD, POINT, REACTION, SLIDE, columns
+from tmm_cli.mechanics.quantities import (
+    BALANCE,
+    BALANCING,
+    ENERGY,
+    LINK,
+    LOAD,
+    POINT,
+    REACTION,
+    SLIDE,
+    quantity_columns,
+)
 from tmm_cli.problem import build_problem, read_text
 from tmm_cli.reports import accuracy, schema, tables, terminal_cells, to_json
 
@@ -50,7 +60,7 @@ def test_a_table_has_the_headers_of_its_quantities(shaper):
 
 
 def test_a_vector_has_its_components_and_its_size_in_a_table(shaper):
-    found = {header: values for header, values, __ in columns(POINT, shaper.motion.named("E"))}
+    found = {header: values for header, values, __ in quantity_columns(POINT, shaper.motion.named("E"))}
     v = shaper.motion.named("E").v
     np.testing.assert_array_equal([found["vx"], found["vy"], found["v"]], [v.real, v.imag, np.abs(v)])
 

@@ -11,7 +11,7 @@ from higher import PROBLEMS
 from models import PROBLEMS as FILES, results_of
 
 from tmm_cli import solve
-from tmm_cli.mechanics.groups import SHAPES
+from tmm_cli.mechanics.groups import RISE_LAWS
 from tmm_cli.problem import build_problem, read_text
 from tmm_cli.reports import tables
 
@@ -129,7 +129,7 @@ def flat_follower(law, **keys):
     return solve(build_problem(read_text(text, "cam.yaml")), "kinematics")
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", RISE_LAWS)
 def test_a_cam_turned_clockwise_moves_its_follower_as_its_mirror_image_does_where_pieces_meet_too(shape):
     """Where the acceleration jumps it is that of the piece which then begins, whichever way the cam turns."""
     own, image = (
@@ -139,7 +139,7 @@ def test_a_cam_turned_clockwise_moves_its_follower_as_its_mirror_image_does_wher
     drawn = flat_follower(f"[{own}, {{over: 90}}]", speed="speed: 1, turns: cw").motion.centre("2")
     other = flat_follower(f"[{{over: 90}}, {image}]", speed="speed: 1").motion.centre("2")
     assert np.max(np.abs(drawn.v - other.v)) < 1e-15 and np.max(np.abs(drawn.a - other.a)) < 1e-13
-    rises = 0.02 * abs(SHAPES[shape](0.0)[2]) / math.radians(90) ** 2
+    rises = 0.02 * abs(RISE_LAWS[shape](0.0)[2]) / math.radians(90) ** 2
     assert abs(other.a[3]) == pytest.approx(rises, rel=1e-12, abs=1e-15)
 
 
@@ -155,7 +155,7 @@ def test_a_stroke_of_a_cam_begins_with_the_speed_and_the_acceleration_of_its_pie
         at=f"at: {start} deg",
         count="count: 12, from: working stroke",
     ).motion.centre("2")
-    __, first, second = (abs(float(x)) for x in SHAPES[shape](0.0))
+    __, first, second = (abs(float(x)) for x in RISE_LAWS[shape](0.0))
     for n in (0, 4):  # both strokes
         assert abs(follower.v[n]) == pytest.approx(0.02 * first / math.radians(120), abs=1e-14)
         assert abs(follower.a[n]) == pytest.approx(0.02 * second / math.radians(120) ** 2, abs=1e-13)

@@ -16,10 +16,10 @@ from test_commands import tmm
 from test_jams import planets
 
 from tmm_cli import solve
-from tmm_cli.mechanics.assembly import mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Link
 from tmm_cli.mechanics.numerics import CROSSING_AGREES
-from tmm_cli.mechanics.structure import Passive, analyse, classification, ties_of
+from tmm_cli.mechanics.structure import PairRedundancy, analyse_structure, classify_linkage, list_ties
 from tmm_cli.problem import ProblemError
 from tmm_cli.reports import left_out
 
@@ -314,7 +314,7 @@ def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
     """Two bolts are two hinges: they repeat one constraint, and the plate counts as one with its link."""
     random = np.random.default_rng(seed)
     linkage = random_linkages.linkage(seed, tuple(map(str, random.choice(random_linkages.TYPES, 2))))
-    plain = analyse(linkage)
+    plain = analyse_structure(linkage)
     link = str(random.choice([name for name in linkage.moving if len(linkage.links[name].points) > 1]))
     bolts = sorted(linkage.links[link].points)[-2:]
     first, last = (linkage.local(link, bolt) for bolt in bolts)
@@ -323,7 +323,7 @@ def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
     hinges = [Hinge(point, (*known.get(point, (link,)), "plate")) for point in bolts]
     others = [hinge for hinge in linkage.hinges if hinge.point not in bolts]
     sketched = {**linkage.sketch.angles, "plate": linkage.sketch.angles[link] - math.pi / 2}
-    bolted = mobile(
+    bolted = analyse_mobile_structure(
         replace(
             linkage,
             links={**linkage.links, "plate": plate},
@@ -361,13 +361,13 @@ def test_all_redundant_linkages_of_the_bank_are_of_class_ii(name, formula, sente
     structure = solve(problem(name), "structure").structure
     assert (structure.formula, structure.roman, [*left_out(structure)]) == (formula, "II", sentences)
     if name == "four-bars/transfer":
-        assert classification(structure) == ("closed", "simple"), "not complex, of several types"
+        assert classify_linkage(structure) == ("closed", "simple"), "not complex, of several types"
 
 
 @pytest.mark.parametrize("name", EVERY)
 def test_every_group_of_the_bank_is_an_assur_group(name):
     """3n - 2p1 - p2 = 0 for each group, and with the drivers' links it is the number of drivers."""
-    structure = mobile(problem(name).linkage)
+    structure = analyse_mobile_structure(problem(name).linkage)
     assert [group.mobility for group in structure.groups] == [0] * len(structure.groups)
     n, lower, higher = structure.count
     assert 3 * n - 2 * lower - higher == len(structure.drivers) == structure.mobility + structure.redundant
@@ -404,11 +404,11 @@ def test_the_table_of_the_structure_says_what_is_redundant_below_the_formula():
 def test_whatever_the_order_of_links_each_group_is_solved_after_those_it_is_attached_to():
     """A parallelogram with a dyad on its rocker: its redundant coupler is solved with the parallelogram."""
     linkage = solved_text(WITH_A_DYAD, stage="structure").linkage
-    condition = next(k for k, tie in enumerate(ties_of(linkage)) if tie.name == "B" and "4" in (tie.a, tie.b))
-    passive = Passive("B", 1, ("3", "4"), ("0", "1", "2", "3", "4"))
+    condition = next(k for k, tie in enumerate(list_ties(linkage)) if tie.name == "B" and "4" in (tie.a, tie.b))
+    passive = PairRedundancy("B", 1, ("3", "4"), ("0", "1", "2", "3", "4"))
     for order in permutations("23456"):
         reordered = replace(linkage, links={name: linkage.links[name] for name in ("0", "1", *order)})
-        structure = replace(analyse(reordered, {condition: 1}), passive=(passive,))
+        structure = replace(analyse_structure(reordered, {condition: 1}), passive=(passive,))
         placed = {"0", "1"}
         for group in structure.solved:
             assert placed.issuperset(group.known), order

@@ -15,13 +15,21 @@ from bank import NAMES, problem as read, solved
 from test_commands import ROOT, SHAPER, tmm
 
 from tmm_cli import load, solve
-from tmm_cli.bench import NAMED, Saving, Savings, all_orders, counted, no_closed_form, savings_charts
+from tmm_cli.bench import (
+    SAVING_TITLES,
+    Saving,
+    Savings,
+    count_solutions,
+    savings_charts,
+    with_all_orders,
+    without_closed_forms,
+)
 from tmm_cli.drawing.run import sheet_files as drawings
 from tmm_cli.mechanics.assembly import assemble
-from tmm_cli.mechanics.groups import DriverMotion, NotComputed, towards
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.groups import DriverMotion, NotComputed, solvers_towards
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import UnitSystem, build_any_problem, build_chain, read_file, read_text
 from tmm_cli.reports import Column, Staged, Table, csv_text, describe_stages, heavy, json_bytes, json_text, listed
 from tmm_cli.synthesis import count, structure_of
@@ -51,9 +59,9 @@ def into_numpy(work):
 @pytest.mark.parametrize("name", NAMES[::2])
 def test_structure_alone_builds_no_arrays_and_solves_no_group(name):
     problem = read(name)
-    with counted() as count:
+    with count_solutions() as count:
         called = into_numpy(lambda: structure_of(problem).structure.formula)
-    if analyse(problem.linkage).sound:
+    if analyse_structure(problem.linkage).sound:
         assert count.all == 0
         assert called == []
     else:  # counting alone does not tell its mobility: the rank does, from numbers
@@ -68,7 +76,7 @@ def test_the_structure_of_a_chain_in_space_builds_no_arrays():
 def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_turn():
     toothed = solve(load(str(ROOT / "problems" / "planetary-dwell-press.yaml")), "structure")
     shaper = solve(load(str(SHAPER)), "structure")
-    with counted() as count:
+    with count_solutions() as count:
         assert toothed.roles["1"] == "carrier"
         assert count.all == 0
         assert shaper.roles["1"] == "crank"
@@ -80,10 +88,10 @@ def test_a_name_that_the_pairs_tell_needs_no_motion_and_a_crank_is_told_by_its_t
 def test_a_link_alone_moves_as_in_the_whole_linkage_by_the_groups_on_its_way(name):
     problem, whole = read(name), solved(name)
     for link in problem.linkage.moving:
-        kernels = towards(whole.kernels, [link])
+        kernels = solvers_towards(whole.kernels, [link])
         assert kernels == tuple(kernel for kernel in whole.kernels if kernel in kernels)
         q = whole.motion.q[:3]
-        alone = move(problem.linkage, kernels, q, DriverMotion(float(q[0]), 1.0, 0.0, 1), 1)
+        alone = compute_motion(problem.linkage, kernels, q, DriverMotion(float(q[0]), 1.0, 0.0, 1), 1)
         there = alone.placed & whole.motion.placed[:3]
         here, known = alone.poses[link].x[there], whole.motion.poses[link].x[:3][there]
         assert np.allclose(here, known, rtol=1e-12, atol=1e-13)  # where it is iterated, to rounding
@@ -93,7 +101,7 @@ def test_groups_that_do_not_lead_to_what_is_asked_are_not_solved():
     problem = load(str(ROOT / "problems" / "engine-four.yaml"))
     ways = {"3": ["II(2,3)"], "5": ["II(4,5)"], "7": ["II(6,7)"], "1": []}  # all rods are attached to the crank
     for piston, titles in ways.items():
-        with counted() as count:
+        with count_solutions() as count:
             results = solve(problem, "kinematics", of=[piston])
         assert [kernel.group.title for kernel in results.motion.kernels] == titles
         assert count.accelerations == len(titles) * len(results.numbers)
@@ -124,9 +132,9 @@ def test_an_unknown_name_is_one_error_with_the_nearest_one():
 
 def test_only_positions_asked_for_are_solved():
     problem = load(str(SHAPER))
-    with counted() as one:
+    with count_solutions() as one:
         results = solve(problem, "forces", [7])
-    with counted() as all_of_them:
+    with count_solutions() as all_of_them:
         solve(problem, "forces")
     groups, others = len(results.structure.groups), len(results.asked) - 1
     assert all_of_them.places - one.places == groups * others
@@ -143,15 +151,15 @@ def test_range_strokes_dead_positions_and_names_need_no_accelerations_and_are_th
         found = solve(problem, "structure").mechanism
         return found.driver_range, found.strokes, found.dead, found.roles, found.further
 
-    with counted() as count:
+    with count_solutions() as count:
         lean = quality()
     assert count.accelerations == 0
-    with all_orders():
+    with with_all_orders():
         assert repr(quality()) == repr(lean)
 
 
 def test_without_the_saving_every_place_has_accelerations():
-    with all_orders(), counted() as count:
+    with with_all_orders(), count_solutions() as count:
         solve(load(str(SHAPER)), "structure").driver_range  # noqa: B018
     assert count.accelerations == count.velocities > 0
 
@@ -160,7 +168,7 @@ def test_places_alone_have_no_velocities_and_asking_for_them_is_an_error():
     results = solve(load(str(SHAPER)), "kinematics")
     q = results.motion.q
     law = DriverMotion(float(q[0]), 1.0, 0.0, 1)
-    places, rates = (move(results.linkage, results.kernels, q, law, order) for order in (0, 1))
+    places, rates = (compute_motion(results.linkage, results.kernels, q, law, order) for order in (0, 1))
     assert np.allclose(places.spot("E"), results.motion.named("E").x, rtol=1e-15, atol=0)
     assert np.array_equal(rates.first["5"].v, results.motion.first["5"].v)
     with pytest.raises(NotComputed, match="velocities"):
@@ -187,10 +195,10 @@ def test_every_group_with_a_closed_form_is_solved_by_it():
 
 def test_closed_form_and_newton_give_the_same_places():
     results = solve(load(str(ROOT / "problems" / "six-bar.yaml")), "kinematics")
-    with no_closed_form():
+    with without_closed_forms():
         iterated = assemble(results.linkage, results.structure)
-    motion = move(results.linkage, iterated, results.motion.q, DriverMotion(0.0, 1.0, 0.0, 1), 0)
-    assert {type(kernel).__name__ for kernel in iterated} == {"Newton"}
+    motion = compute_motion(results.linkage, iterated, results.motion.q, DriverMotion(0.0, 1.0, 0.0, 1), 0)
+    assert {type(kernel).__name__ for kernel in iterated} == {"NewtonSolver"}
     for link, pose in motion.poses.items():
         assert np.allclose(pose.x, results.motion.poses[link].x, rtol=0, atol=1e-13)
 
@@ -199,7 +207,7 @@ def test_a_group_that_is_equally_far_from_dead_everywhere_is_not_searched_for_de
     """Its margin has hundreds of least values, all of them rounding."""
     text = (ROOT / "problems" / "crossed-slots.yaml").read_text(encoding="utf-8").replace("L: [0, 220]", "L: [0, 440]")
     results = solve(build_any_problem(read_text(text, "x.yaml")))
-    with counted() as count:
+    with count_solutions() as count:
         assert results.dead == ()
     assert count.all < 15_000
 
@@ -220,7 +228,7 @@ def test_what_shows_tables_imports_no_drawing_and_no_optimisation():
 def test_explain_says_of_every_stage_what_the_stage_does():
     results = solve(load(str(SHAPER)), "kinematics")
     rows = {row[0]: row for row in describe_stages(results)}
-    with counted() as count:
+    with count_solutions() as count:
         results.mechanism.strokes  # noqa: B018
         asked = count.places
         results.dead  # noqa: B018
@@ -231,12 +239,12 @@ def test_explain_says_of_every_stage_what_the_stage_does():
 
 
 def test_every_saving_is_one(tmp_path, monkeypatch):
-    monkeypatch.setattr("tmm_cli.bench.savings.FEW", 1)
-    monkeypatch.setattr("tmm_cli.cli.bench.finish.png", lambda figure: b"")
+    monkeypatch.setattr("tmm_cli.bench.savings.FEW_REPEATS", 1)
+    monkeypatch.setattr("tmm_cli.cli.bench.png_bytes", lambda figure: b"")
     done = tmm("bench", "savings", "--reduced", "--json", "-o", tmp_path)
     assert done.returncode == 0
     found = json.loads(done.stdout)
-    assert tuple(saving["name"] for saving in found["savings"]) == tuple(NAMED)
+    assert tuple(saving["name"] for saving in found["savings"]) == tuple(SAVING_TITLES)
     assert found["holds"] and all(saving["holds"] for saving in found["savings"])
     assert {path.name for path in tmp_path.iterdir()} == {f"savings.{kind}" for kind in ("csv", "json", "png")}
 

@@ -21,7 +21,7 @@ from tmm_cli import solve
 from tmm_cli.cli import named_types, schemes as scheme_files, skeleton
 from tmm_cli.drawing.sheets import GROUP_EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
-from tmm_cli.mechanics.structure import ROMAN, analyse, group_class
+from tmm_cli.mechanics.structure import ROMAN, analyse_structure, group_class
 from tmm_cli.problem import UnitSystem, build_problem, read_text
 from tmm_cli.reports import schemes_table, show
 from tmm_cli.synthesis import (
@@ -177,7 +177,7 @@ def held_and_driven(chain):
 @pytest.mark.parametrize("links", [4, 6, 8])
 def test_schemes_of_turning_pairs_are_the_chains_with_a_frame_and_a_crank(links):
     """Two ways to all hinged mechanisms with one freedom: attaching groups, and holding links of chains."""
-    found = [analyse(linkage) for chain in chains(links) for linkage in held_and_driven(chain)]
+    found = [analyse_structure(linkage) for chain in chains(links) for linkage in held_and_driven(chain)]
     assert {structure.mobility for structure in found} == {1}
     small = [s for s in found if all(len(g.links) <= 4 for g in s.groups)]
     attached = schemes(links - 1, 1, MULTI_LINK)
@@ -238,7 +238,7 @@ def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, m
     monkeypatch.setattr(scheme_files, "FEW", 2)  # poses: the best of few is not as good, the structure is one
     for scheme in schemes(links, 1, named_types(groups))[some]:
         problem = build_problem(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
-        structure = analyse(problem.linkage)
+        structure = analyse_structure(problem.linkage)
         assert structure.formula == scheme.formula
         assert (structure.mobility, structure.freedom) == (1, 1)
         assert structure.redundant_pairs == structure.under_constrained == ()

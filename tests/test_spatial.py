@@ -16,16 +16,16 @@ from test_commands import ROOT, described, tmm
 from tmm_cli import load
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import (
-    CHOICES,
-    KINDS,
+    PAIR_CHOICES,
+    PAIR_FREEDOMS,
     SpatialChain,
     SpatialPair,
-    analyse,
-    classification,
-    contours,
-    examine,
-    rank_of,
-    space,
+    analyse_structure,
+    classify_linkage,
+    count_chain,
+    count_in_space,
+    find_contours,
+    out_of_plane_rank,
     spatial_chain,
 )
 from tmm_cli.problem import ProblemError, build_chain, build_problem, read_file, read_text
@@ -47,7 +47,7 @@ LETTERS = {
 def chain(text):
     """A chain from words like "R01 S12": kind and both links."""
     pairs = [
-        SpatialPair(f"{word}{k}", word[1], word[2], KINDS[LETTERS[word[0]]], LETTERS[word[0]])
+        SpatialPair(f"{word}{k}", word[1], word[2], PAIR_FREEDOMS[LETTERS[word[0]]], LETTERS[word[0]])
         for k, word in enumerate(text.split())
     ]
     links = dict.fromkeys(link for p in pairs for link in (p.i, p.j) if link != FRAME)
@@ -88,7 +88,7 @@ def loop(kinds):
     ],
 )
 def test_closed_chains_by_hand(kinds, mobility, local, redundant):
-    found = examine(loop(kinds), wanted=1)
+    found = count_chain(loop(kinds), wanted=1)
     assert (found.mobility, found.local_mobility, found.redundant) == (mobility, local, redundant)
     assert (found.form, len(found.contours)) == ("closed", 1)
     assert len(found.contours[0].links) == len(kinds)
@@ -101,7 +101,7 @@ def stewart(leg):
         bodies = [FRAME, *(f"{k}{part}" for part in range(len(leg) - 1)), "p"]
         links += bodies[1:-1]
         pairs += [
-            SpatialPair(f"{kind}{k}{n}", bodies[n], bodies[n + 1], KINDS[LETTERS[kind]], LETTERS[kind])
+            SpatialPair(f"{kind}{k}{n}", bodies[n], bodies[n + 1], PAIR_FREEDOMS[LETTERS[kind]], LETTERS[kind])
             for n, kind in enumerate(leg)
         ]
     return SpatialChain((*links, "p"), tuple(pairs))
@@ -109,7 +109,7 @@ def stewart(leg):
 
 @pytest.mark.parametrize("leg, mobility, local", [("SPS", 12, 6), ("UPS", 6, 0), ("SCS", 18, 12), ("SHS", 12, 6)])
 def test_stewart_platforms_move_in_six_ways_and_their_legs_turn_on_their_own(leg, mobility, local):
-    found = examine(stewart(leg), wanted=6)
+    found = count_chain(stewart(leg), wanted=6)
     assert (len(found.chain.links), found.chain.mobility) == (13, mobility)
     assert found.local_mobility == local
     assert found.redundant == 0
@@ -117,7 +117,7 @@ def test_stewart_platforms_move_in_six_ways_and_their_legs_turn_on_their_own(leg
 
 
 def test_a_leg_of_a_stewart_platform_turns_as_one():
-    found = examine(stewart("SPS"))
+    found = count_chain(stewart("SPS"))
     assert [part.links for part in found.local] == [(f"{k}0", f"{k}1") for k in range(6)]
     assert {part.freedoms for part in found.local} == {1}
 
@@ -134,28 +134,28 @@ def test_a_leg_of_a_stewart_platform_turns_as_one():
 )
 def test_manoeuvrability_is_mobility_with_the_output_held(text, mobility, held):
     arm = chain(text)
-    found = examine(arm, output=arm.links[-1])
+    found = count_chain(arm, output=arm.links[-1])
     assert (found.form, found.mobility, found.manoeuvrability) == ("open", mobility, held)
     assert found.manoeuvrability == mobility - 6
 
 
 def test_an_elbow_that_swings_is_no_local_freedom_but_a_rod_that_turns_is():
-    arm = examine(chain("S01 R12 S23"), output="3")
+    arm = count_chain(chain("S01 R12 S23"), output="3")
     assert (arm.local, arm.idle_manoeuvrability) == ((), 0)
-    rods = examine(chain("R01 S12 S23 R34 S45"), output="5")
+    rods = count_chain(chain("R01 S12 S23 R34 S45"), output="5")
     assert rods.local_mobility == 1
-    strut = examine(chain("S01 P12 S23"), output="3")
+    strut = count_chain(chain("S01 P12 S23"), output="3")
     assert (strut.manoeuvrability, strut.idle_manoeuvrability) == (1, 1)
 
 
 def test_what_dimensions_alone_could_decide_is_not_called_local():
-    assert examine(loop("RSCR")).local == ()  # local only if the ball lay on the axis
-    assert examine(chain("R01 S12")).local == ()  # an open end
-    assert examine(chain("S01 S01")).local == ()  # a door: that is what it is for
+    assert count_chain(loop("RSCR")).local == ()  # local only if the ball lay on the axis
+    assert count_chain(chain("R01 S12")).local == ()  # an open end
+    assert count_chain(chain("S01 S01")).local == ()  # a door: that is what it is for
 
 
 def test_a_ball_between_two_plates_keeps_all_but_two_of_its_freedoms():
-    found = examine(chain("B01 B12 P02"))
+    found = count_chain(chain("B01 B12 P02"))
     assert [(part.links, part.freedoms) for part in found.local] == [(("1",), 4)]
     assert found.mobility == 5
 
@@ -163,7 +163,7 @@ def test_a_ball_between_two_plates_keeps_all_but_two_of_its_freedoms():
 def test_all_pistons_of_a_swashplate_pump_and_their_shoes_turn_on_their_own():
     """Seven pistons in a rotating block, shoes on a plate: W = 6*15 - 5*1 - 4*7 - 3*14 = 15, all but one local."""
     legs = " ".join(f"C1{x} S{x}{x.upper()} E{x.upper()}0" for x in "abcdefg")
-    found = examine(chain(f"R01 {legs}"), wanted=1)
+    found = count_chain(chain(f"R01 {legs}"), wanted=1)
     assert (found.mobility, found.local_mobility, found.redundant) == (15, 14, 0)
     assert {part.links for part in found.local} == {(x,) for x in "abcdefgABCDEFG"}
 
@@ -179,8 +179,8 @@ def test_all_pistons_of_a_swashplate_pump_and_their_shoes_turn_on_their_own():
     ],
 )
 def test_a_chain_that_cannot_move_by_the_count_is_reported(text, links):
-    assert examine(chain(text)).immobile == links
-    assert examine(chain(text), wanted=1).immobile == (), "its dimensions are special then, and q is counted"
+    assert count_chain(chain(text)).immobile == links
+    assert count_chain(chain(text), wanted=1).immobile == (), "its dimensions are special then, and q is counted"
 
 
 def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant_constraints(tmp_path):
@@ -199,13 +199,13 @@ def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant
 
 
 def test_contours_are_short_and_start_near_the_frame():
-    found = examine(chain("R01 R12 R23 R30 R34 R45 P50 R56"))
+    found = count_chain(chain("R01 R12 R23 R30 R34 R45 P50 R56"))
     assert [c.title for c in found.contours] == ["0-1-2-3-0", "0-3-4-5-0"]
     assert (found.form, found.branches) == ("mixed", ("6",))
-    doubled = examine(chain("R01 R01 P12"))
+    doubled = count_chain(chain("R01 R01 P12"))
     assert [(c.title, c.pairs) for c in doubled.contours] == [("0-1-0", ("R010", "R011"))]
     # a contour of two cells side by side that does not run through the frame
-    assert [c.title for c in examine(chain("R01 R12 R23 R34 R41")).contours] == ["1-2-3-4-1"]
+    assert [c.title for c in count_chain(chain("R01 R12 R23 R34 R41")).contours] == ["1-2-3-4-1"]
 
 
 def test_every_chain_has_as_many_independent_contours_as_pairs_more_than_links():
@@ -216,7 +216,7 @@ def test_every_chain_has_as_many_independent_contours_as_pairs_more_than_links()
         ends = [(names[random.integers(0, k)], names[k]) for k in range(1, n + 1)]
         ends += [tuple(names[k] for k in random.choice(n + 1, 2, replace=False)) for _ in range(random.integers(0, 8))]
         pairs = tuple(SpatialPair(f"P{k}", i, j, 1, "turning") for k, (i, j) in enumerate(ends))
-        found = contours(pairs, names[1:])
+        found = find_contours(pairs, names[1:])
         assert len(found) == len(pairs) - n
         matrix = np.zeros((len(found), len(pairs)), dtype=int)
         by_name = {p.name: p for p in pairs}
@@ -293,7 +293,7 @@ def jacobian(linkage, structure, poses, kinds, rates=None):
     links = structure.links
     blocks = []
     for pair in structure.pairs:
-        free = screws(Placed(linkage, pair, poses, rates), kinds.get(pair.name, CHOICES[pair.kind][0]), poses)
+        free = screws(Placed(linkage, pair, poses, rates), kinds.get(pair.name, PAIR_CHOICES[pair.kind][0]), poses)
         conditions = np.linalg.svd(free)[0][:, np.linalg.matrix_rank(free) :].T
         block = np.zeros((len(conditions), 6 * len(links)))
         for link, sign in ((pair.i, 1), (pair.j, -1)):
@@ -318,9 +318,9 @@ def lower_only(name):
 def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_jacobian(name):
     results = solved(name)
     linkage, structure, motion = results.linkage, results.structure, results.motion
-    if not analyse(linkage).sound:
+    if not analyse_structure(linkage).sound:
         pytest.skip("some constraints are passive in the plane")
-    found = space(linkage, structure)
+    found = count_in_space(linkage, structure)
     kinds = proposal(found)
     # a lower pair asks for three conditions out of the plane, teeth and cams for one
     assert (found.redundant, found.redundant_then) == (3 * structure.contours - 2 * structure.higher, 0)
@@ -345,30 +345,30 @@ def test_proposals_hold_in_the_positions_of_the_file_by_the_rank_of_the_whole_ja
 
 def six_bar():
     linkage = load(str(ROOT / "problems" / "six-bar.yaml")).linkage
-    return linkage, analyse(linkage)
+    return linkage, analyse_structure(linkage)
 
 
 def test_the_six_bar_of_the_source_has_six_redundant_constraints():
     linkage, structure = six_bar()
     assert (structure.mobility, spatial_chain(structure, {}).mobility) == (1, -5)
-    assert space(linkage, structure).redundant == 6
-    assert rank_of(linkage, structure, {}).redundant == 6
+    assert count_in_space(linkage, structure).redundant == 6
+    assert out_of_plane_rank(linkage, structure, {}).redundant == 6
 
 
 def test_seven_constraints_fewer_as_in_the_source_leave_a_rod_that_turns_about_itself():
     """Both ends of rod 4 spherical, and the coupler on a spherical and a cylindrical pair."""
     linkage, structure = six_bar()
     kinds = {"A": "spherical", "B": "cylindrical", "B''": "spherical", "F": "spherical"}
-    rank = rank_of(linkage, structure, kinds)
+    rank = out_of_plane_rank(linkage, structure, kinds)
     assert (rank.redundant, rank.free, rank.local) == (0, 1, 1)
     then = spatial_chain(structure, kinds)
     assert then.mobility == 2 == 1 + 1
     assert then.mobility - spatial_chain(structure, {}).mobility == 7
-    assert [part.links for part in examine(then).local] == [("4",)]
+    assert [part.links for part in count_chain(then).local] == [("4",)]
 
 
 def test_the_source_also_names_what_is_proposed_the_pin_that_two_hinges_share_becomes_cylindrical():
-    found = space(*six_bar())
+    found = count_in_space(*six_bar())
     assert proposal(found) == {"A": "spherical", "B": "cylindrical", "B''": "cylindrical", "F": "spherical"}
     assert (found.proposed.mobility, found.rank.local, found.redundant_then) == (1, 0, 0)
 
@@ -385,8 +385,8 @@ def test_the_source_also_names_what_is_proposed_the_pin_that_two_hinges_share_be
 )
 def test_of_a_four_bar_the_rank_sees_what_the_count_alone_does_not(kinds, redundant, free):
     linkage = load(str(ROOT / "problems" / "crank-rocker.yaml")).linkage
-    structure = analyse(linkage)
-    rank = rank_of(linkage, structure, kinds)
+    structure = analyse_structure(linkage)
+    rank = out_of_plane_rank(linkage, structure, kinds)
     assert (rank.redundant, rank.free) == (redundant, free)
     # what is free out of the plane and what is held twice differ by the count
     assert 1 + rank.free - rank.redundant == spatial_chain(structure, kinds).mobility
@@ -395,23 +395,23 @@ def test_of_a_four_bar_the_rank_sees_what_the_count_alone_does_not(kinds, redund
 def test_a_stone_hinged_on_the_line_of_its_guide_cannot_be_held_by_a_ball_and_a_round_guide():
     """The ball and the round guide both say how high the hinge is, so one of them says it in vain."""
     linkage = load(str(ROOT / "problems" / "slotted-lever.yaml")).linkage
-    structure = analyse(linkage)
-    rank = rank_of(linkage, structure, {"A": "spherical", "A'": "cylindrical"})
+    structure = analyse_structure(linkage)
+    rank = out_of_plane_rank(linkage, structure, {"A": "spherical", "A'": "cylindrical"})
     assert (rank.redundant, rank.free, rank.local) == (1, 1, 1)
     assert spatial_chain(structure, {"A": "spherical", "A'": "cylindrical"}).mobility == 1  # the count sees nothing
-    assert proposal(space(linkage, structure)) == {"A": "spherical", "A'": "planar"}
+    assert proposal(count_in_space(linkage, structure)) == {"A": "spherical", "A'": "planar"}
 
 
 def fewest(linkage, structure):
     """Changed pairs and freedoms of the best proposal, by trying everything."""
     moving = [p for p in structure.pairs if FRAME not in (p.i, p.j)]
     best = None
-    for chosen in itertools.product(*(CHOICES[p.kind] for p in moving)):
+    for chosen in itertools.product(*(PAIR_CHOICES[p.kind] for p in moving)):
         kinds = {p.name: kind for p, kind in zip(moving, chosen, strict=True)}
-        changed = [k for p, k in zip(moving, chosen, strict=True) if k != CHOICES[p.kind][0]]
-        score = (len(changed), sum(KINDS[k] for k in changed))
+        changed = [k for p, k in zip(moving, chosen, strict=True) if k != PAIR_CHOICES[p.kind][0]]
+        score = (len(changed), sum(PAIR_FREEDOMS[k] for k in changed))
         if best is None or score < best:
-            rank = rank_of(linkage, structure, kinds)
+            rank = out_of_plane_rank(linkage, structure, kinds)
             if not rank.redundant and rank.free == rank.local:
                 best = score
     return best
@@ -421,9 +421,9 @@ def fewest(linkage, structure):
 def test_no_proposal_for_one_group_has_fewer_changes_or_fewer_freedoms(kind):
     for seed in range(6):
         linkage = random_linkages.linkage(seed, (kind,))
-        structure = analyse(linkage)
+        structure = analyse_structure(linkage)
         if any(p.i == FRAME and p.j in g.links for g in structure.groups for p in g.outer):
-            found = space(linkage, structure)
+            found = count_in_space(linkage, structure)
             score = (
                 None
                 if found.replacements is None
@@ -434,8 +434,8 @@ def test_no_proposal_for_one_group_has_fewer_changes_or_fewer_freedoms(kind):
 
 def test_a_group_of_class_iii_is_served_too_and_no_proposal_is_shorter():
     linkage = build_problem(read_text(CLASS_III, "iii.yaml")).linkage
-    structure = analyse(linkage)
-    found = space(linkage, structure)
+    structure = analyse_structure(linkage)
+    found = count_in_space(linkage, structure)
     assert (found.redundant, found.redundant_then) == (6, 0)
     assert (len(found.replacements), sum(r.freedoms for r in found.replacements)) == fewest(linkage, structure)
 
@@ -445,12 +445,12 @@ def test_every_random_linkage_gets_a_proposal_unless_a_part_of_it_is_a_truss_on_
         random = np.random.default_rng(seed)
         kinds = tuple(str(k) for k in random.choice(random_linkages.TYPES, int(random.integers(1, 5))))
         linkage = random_linkages.linkage(seed, kinds)
-        structure = analyse(linkage)
+        structure = analyse_structure(linkage)
         still = {FRAME}
         for group in structure.all_groups:
             if all({p.i, p.j} - set(group.links) <= still for p in group.outer):
                 still |= set(group.links)
-        found = space(linkage, structure)
+        found = count_in_space(linkage, structure)
         assert (found.replacements is None) == (len(still) > 1), (seed, kinds)
         if found.replacements is not None:
             assert (found.redundant, found.redundant_then) == (3 * len(kinds), 0)
@@ -458,17 +458,17 @@ def test_every_random_linkage_gets_a_proposal_unless_a_part_of_it_is_a_truss_on_
 
 
 def test_words_of_the_classification():
-    words = {name: classification(analyse(problem(name).linkage)) for name in NAMES}
+    words = {name: classify_linkage(analyse_structure(problem(name).linkage)) for name in NAMES}
     assert words["crank-slider"] == ("closed", "simple")
     assert words["shaper"] == ("closed", "complex", "several types")
     alone = "tmm: 1\npoints: {O: [0, 0]}\nlinks: {1: {points: [O, A], length: 1}}\ndriver: {link: 1, speed: 1 rad/s}\n"
     linkage = build_problem(
         read_text(alone.replace("[O, A], length: 1", "{O: [0, 0], A: [1, 0]}"), "alone.yaml")
     ).linkage
-    assert classification(analyse(linkage)) == ("open", "elementary")
-    assert space(linkage, analyse(linkage)).replacements == ()
-    twice = analyse(random_linkages.linkage(4, ("RRR", "RRR")))
-    assert classification(twice) == ("closed", "complex", "same type")
+    assert classify_linkage(analyse_structure(linkage)) == ("open", "elementary")
+    assert count_in_space(linkage, analyse_structure(linkage)).replacements == ()
+    twice = analyse_structure(random_linkages.linkage(4, ("RRR", "RRR")))
+    assert classify_linkage(twice) == ("closed", "complex", "same type")
 
 
 # ---------------------------------------------------------------- files

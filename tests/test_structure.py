@@ -17,10 +17,10 @@ from test_commands import SHAPER, tmm
 from tmm_cli import solve
 from tmm_cli.mechanics.analysis import at_places
 from tmm_cli.mechanics.structure import (
-    analyse,
+    analyse_structure,
     basic_schemes,
-    classification,
-    contours,
+    classify_linkage,
+    find_contours,
     four_link_scheme,
     is_dependent,
     link_motion,
@@ -94,7 +94,7 @@ def test_groups_do_not_depend_on_the_order_in_which_links_are_written(order):
 
 def test_a_class_iii_group_is_named_and_solved():
     problem = build_problem(read_text(CLASS_III + "sketch: {at: 250 deg, 1: 1, 2: 38, 3: 124, 4: 29}", "iii.yaml"))
-    structure = analyse(problem.linkage)
+    structure = analyse_structure(problem.linkage)
     assert structure.formula == "I(0,5) -> III(1,2,3,4)"
     assert structure.groups[0].order == 3
     results = solve(problem)
@@ -216,7 +216,7 @@ def test_a_position_where_nothing_has_an_arm_is_no_failure_of_the_lever_and_no_w
 def kind(name):
     """Classes of its groups with their pairs, toothed pairs, drivers: by what a problem is solved, drawn and told."""
     linkage = solved(name).linkage
-    groups = {(group.title.partition("(")[0], str(group.type)) for group in analyse(linkage).groups}
+    groups = {(group.title.partition("(")[0], str(group.type)) for group in analyse_structure(linkage).groups}
     return groups, {mesh.kind for mesh in linkage.meshes}, [driver.kind for driver in linkage.drivers]
 
 
@@ -268,7 +268,7 @@ def test_pairs_groups_and_motions_are_those_counted_by_hand(name, p5, p4, w, typ
     assert 3 * n - 2 * p5 - p4 == structure.mobility == w
     assert [(group.type_number, group.letters) for group in structure.groups] == types
     assert {group.mobility for group in structure.groups} == {0}
-    assert classification(structure)[1:] == kind
+    assert classify_linkage(structure)[1:] == kind
     if motions:
         assert "".join(link_motion(results.linkage, link)[0] for link in structure.links) == motions
 
@@ -331,7 +331,7 @@ def test_basic_schemes_of_the_bank(name, contours_of_four, six_bar):
 @pytest.mark.parametrize("name, dependent", [("parallel-couplers", 1), ("four-bars/transfer", 3), ("six-bar", 0)])
 def test_a_contour_closed_by_a_redundant_link_is_dependent(name, dependent):
     structure = solve(problem(name), "structure").structure
-    marked = [is_dependent(contour, structure) for contour in contours(structure.pairs, structure.links)]
+    marked = [is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links)]
     assert (marked[0], sum(marked)) == (False, dependent)
 
 

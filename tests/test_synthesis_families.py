@@ -10,7 +10,7 @@ from test_synthesis_four_bar_by_k import problem
 from test_synthesis_slotted_lever import lever
 
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import settled
+from tmm_cli.mechanics.numerics import zero_within_rounding
 from tmm_cli.synthesis import FourBarByKTask
 
 
@@ -54,6 +54,10 @@ def test_the_family_within_bounds_is_drawn_and_listed_and_holds_the_chosen_lever
 
 def test_what_is_zero_within_rounding_of_a_construction_is_zero_and_nothing_else_changes():
     exact = np.longdouble("1e-17")
-    assert settled(1e-16, 1.0) == 0 and settled(1e-14, 1.0) == 1e-14 and settled(complex(3, 1e-16), 3.0) == 3
-    assert settled(exact, 1.0) == exact or np.finfo(np.longdouble).eps > 1e-18
-    assert list(settled(np.array([1e-16, -2.0]), 2.0)) == [0, -2]
+    assert (
+        zero_within_rounding(1e-16, 1.0) == 0
+        and zero_within_rounding(1e-14, 1.0) == 1e-14
+        and zero_within_rounding(complex(3, 1e-16), 3.0) == 3
+    )
+    assert zero_within_rounding(exact, 1.0) == exact or np.finfo(np.longdouble).eps > 1e-18
+    assert list(zero_within_rounding(np.array([1e-16, -2.0]), 2.0)) == [0, -2]

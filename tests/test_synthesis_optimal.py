@@ -11,7 +11,7 @@ import pytest
 from test_commands import ROOT, tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.numerics import peak, zero
+from tmm_cli.mechanics.numerics import locate_zero, window_peak
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
     OBJECTIVE_TOLERANCE,
@@ -336,8 +336,8 @@ def test_polish_solves_a_problem_of_textbooks():
 
 def test_peaks_and_zeros_are_found_between_the_places():
     q = 0.37 + 0.0055 * np.arange(-16, 17) + np.array([[0.0], [0.002]])
-    assert peak(np.cos(q - 0.371)) == pytest.approx([1, 1], abs=1e-14)
-    assert q[:, 0] + 0.0055 * zero(np.sin(q - 0.371)) == pytest.approx([0.371] * 2, abs=1e-13)
+    assert window_peak(np.cos(q - 0.371)) == pytest.approx([1, 1], abs=1e-14)
+    assert q[:, 0] + 0.0055 * locate_zero(np.sin(q - 0.371)) == pytest.approx([0.371] * 2, abs=1e-13)
 
 
 def test_the_history_of_the_search_is_drawn(tmp_path):

@@ -15,7 +15,7 @@ from test_properties import CHAINS
 import tmm_cli
 from tmm_cli import load, solve
 from tmm_cli.batch import CHECKS, CHUNK, DependsOnData, NotAlikeError, everything, prepare_batch, record, varying
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 
 Q = np.linspace(0.1, 6.3, 24)
 
@@ -141,7 +141,8 @@ def test_class_ii_problems_of_the_bank():
     for name in NAMES[1::2]:
         it = problem(name).linkage
         if any(
-            not isinstance(group.type, str) or group.drivers or len(group.links) > 2 for group in analyse(it).groups
+            not isinstance(group.type, str) or group.drivers or len(group.links) > 2
+            for group in analyse_structure(it).groups
         ):
             continue
         batch = prepare_batch(replace(it, loads=tuple(load for load in it.loads if load.table is None)))

@@ -13,7 +13,7 @@ from test_tape import agree, kind, largest_of_kinds, plainly
 from tmm_cli.batch import prepare_batch
 from tmm_cli.bench import errors, reference
 from tmm_cli.bench.methods import product as taped
-from tmm_cli.mechanics.numerics import Eliminated, Order
+from tmm_cli.mechanics.numerics import EliminatedSystem, EliminationOrder
 from tmm_cli.problem import build_problem, read_text
 
 ROUND = np.linspace(0.123, 6.28, 90)
@@ -120,11 +120,13 @@ def test_elimination_solves_both_ways(seed, explicit, free):
     matrix = random.normal(size=(n, n)) * (random.random((n, n)) < 0.7) + 3 * np.eye(n)
     for row in range(explicit):
         matrix[row, row + 1 : explicit] = 0
-    order = Order(tuple((k, k) for k in range(explicit)), tuple(range(explicit, n)), tuple(range(explicit, n)))
+    order = EliminationOrder(
+        tuple((k, k) for k in range(explicit)), tuple(range(explicit, n)), tuple(range(explicit, n))
+    )
     rows = [{k: np.array([value]) for k, value in enumerate(line) if value} for line in matrix]
     right = random.normal(size=n)
     for scales in (None, (random.uniform(0.1, 10, n), random.uniform(0.1, 10, n))):
-        by = Eliminated(rows, order, scales)
+        by = EliminatedSystem(rows, order, scales)
         if np.linalg.cond(matrix) < 1e4:
             assert np.allclose(np.ravel(by.solve(right)), np.linalg.solve(matrix, right), atol=1e-9)
             assert np.allclose(np.ravel(by.transposed(right)), np.linalg.solve(matrix.T, right), atol=1e-9)

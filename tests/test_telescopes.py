@@ -15,11 +15,11 @@ from test_cylinders import SWINGING
 from tmm_cli import load, solve
 from tmm_cli.batch import OneByOne, Places, Taped, everything, prepare_batch, solved as stages
 from tmm_cli.mechanics.accuracy import widened
-from tmm_cli.mechanics.assembly import assemble, find_assemblies, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble, find_assemblies
 from tmm_cli.mechanics.forces import applied, react
-from tmm_cli.mechanics.groups import DriverMotion, Newton, State, Telescope, TelescopeParts
-from tmm_cli.mechanics.kinematics import move
-from tmm_cli.mechanics.numerics import EPS, exactly
+from tmm_cli.mechanics.groups import DriverMotion, GroupState, NewtonSolver, Telescope, TelescopeParts
+from tmm_cli.mechanics.kinematics import compute_motion
+from tmm_cli.mechanics.numerics import EPS, to_double_double
 from tmm_cli.problem import read_text
 from tmm_cli.synthesis import Candidates, build_synthesised, measure_demands, read_task
 
@@ -52,11 +52,11 @@ def swinging(seed, chain):
 
 def both(linkage):
     """Its groups in closed form and by Newton's method from the sketch."""
-    structure = mobile(linkage)
+    structure = analyse_mobile_structure(linkage)
     (closed,) = assemble(linkage, structure)
-    places = move(linkage, [closed], np.array([linkage.sketch.at]), LAW, 0).placements[0].poses
-    start = State(np.stack([pose.x for pose in places], -1), np.stack([pose.turned for pose in places], -1))
-    return structure, closed, replace(Newton.of(closed.group, linkage), start=start)
+    places = compute_motion(linkage, [closed], np.array([linkage.sketch.at]), LAW, 0).placements[0].poses
+    start = GroupState(np.stack([pose.x for pose in places], -1), np.stack([pose.turned for pose in places], -1))
+    return structure, closed, replace(NewtonSolver.of(closed.group, linkage), start=start)
 
 
 def near(one, other, size=None):
@@ -71,7 +71,7 @@ def test_it_moves_and_holds_as_newtons_method_says(chain, seed):
     structure, closed, iterated = both(linkage)
     assert isinstance(closed, Telescope)
     q = linkage.sketch.at + np.linspace(-0.01, 0.01, 7)
-    one, other = (move(linkage, [kernel], q, LAW) for kernel in (closed, iterated))
+    one, other = (compute_motion(linkage, [kernel], q, LAW) for kernel in (closed, iterated))
     assert np.all(one.moving) and np.all(other.moving)
     for link in linkage.moving:
         assert near(one.poses[link].x, other.poses[link].x) and near(one.poses[link].z, other.poses[link].z)
@@ -102,7 +102,7 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
     q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5)
     found = batch(q)
     for k, one in enumerate(batch.linkages):
-        structure = mobile(one)
+        structure = analyse_mobile_structure(one)
         expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
         for name in found:
             assert near(found[name][k] if np.ndim(found[name]) > 1 else found[name], expected[name]), name
@@ -113,8 +113,8 @@ def test_in_double_doubles_it_has_all_of_its_digits(chain):
     linkage = swinging(2, chain)
     wide = widened(linkage)
     _, closed, iterated = both(linkage)
-    q = exactly(linkage.sketch.at + np.linspace(-0.01, 0.01, 5))
-    one, other = (move(wide, [kernel.rebind(wide)], q, LAW) for kernel in (closed, iterated))
+    q = to_double_double(linkage.sketch.at + np.linspace(-0.01, 0.01, 5))
+    one, other = (compute_motion(wide, [kernel.rebind(wide)], q, LAW) for kernel in (closed, iterated))
     for link in linkage.moving:
         assert np.max(np.abs(one.poses[link].x - other.poses[link].x)) < 200 * EPS
         size = np.max(np.abs(other.second[link].a))
@@ -128,7 +128,7 @@ def test_its_gap_grows_as_fast_as_it_says(chain, seed):
     linkage = swinging(seed, chain)
     _, kernel, _ = both(linkage)
     step = 1e-3
-    motion = move(linkage, [kernel], linkage.sketch.at + step * np.arange(-2, 3), LAW, 1)
+    motion = compute_motion(linkage, [kernel], linkage.sketch.at + step * np.arange(-2, 3), LAW, 1)
     at = kernel.closed(motion.poses, motion.drives)
     rate = kernel.residual_rate(at, motion.poses, motion.first, motion.drives)
     b2, b1, _, a1, a2 = at.residual
@@ -192,7 +192,7 @@ def test_links_that_are_not_such_a_chain_stay_with_newtons_method():
     """A drive in a hinge, or a cylinder between links of a larger group."""
     loader = load(str(ROOT / "problems" / "loader.yaml")).linkage
     for linkage in (loader, any_linkage(1, ("arm",)), any_linkage(1, ("III",))):
-        assert all(TelescopeParts.of(group) is None for group in mobile(linkage).groups)
+        assert all(TelescopeParts.of(group) is None for group in analyse_mobile_structure(linkage).groups)
 
 
 LIFT = """tmm: 1
@@ -258,7 +258,7 @@ def test_drivers_of_each_candidate_pass_through_its_own_sketch():
     found = search.program(variants, Places(np.linspace(0, 1, 7), np.zeros(0)))
     for k, numbers in enumerate(variants):
         own = search.task.make(numbers.tolist())
-        structure, q = mobile(own.linkage), np.linspace(*own.ends, 7)
+        structure, q = analyse_mobile_structure(own.linkage), np.linspace(*own.ends, 7)
         kernels = assemble(own.linkage, structure)
         expected = stages(own.linkage, structure, kernels, q, search.outputs, True, None)
         assert near(found["0.y"][k], 1.0 * expected["0.y"])
@@ -272,6 +272,6 @@ def test_a_batch_of_linkages_with_sketches_of_their_own_moves_each_from_its_own(
     q = 1.1 + np.linspace(0, 0.02, 5)
     found = prepare_batch(linkages, everything)(q)
     for k, one in enumerate(linkages):
-        structure = mobile(one)
+        structure = analyse_mobile_structure(one)
         expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
         assert all(near(1.0 * found[name][k], 1.0 * expected[name]) for name in found)

@@ -12,9 +12,9 @@ from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
     ANGULAR_SPEED,
+    DIMENSIONS,
     FORCE,
     INERTIA,
-    KINDS,
     LENGTH,
     MASS,
     MOMENT,
@@ -110,7 +110,7 @@ def test_products_of_any_two(a: str, b: str, sign: str) -> None:
 
 
 def test_every_kind_has_its_article_and_an_example() -> None:
-    for kind in KINDS.values():
+    for kind in DIMENSIONS.values():
         assert str(kind.dimension).startswith(("a ", "an ")) and kind.example in kind.dimension.example
 
 
@@ -136,7 +136,7 @@ def test_defaults_of_bare_numbers() -> None:
         "MPa",
         "kg/m^3",
     ]
-    assert [units.symbol(kind.dimension) for kind in KINDS.values()] == symbols
+    assert [units.symbol(kind.dimension) for kind in DIMENSIONS.values()] == symbols
     assert units.factor(LENGTH) == 0.001
     assert units.factor(NUMBER) == 1
 
@@ -149,7 +149,7 @@ def test_every_unit_is_told_in_latin_letters_whatever_those_of_the_file() -> Non
         ("moment of inertia", "кг·м²", "kg·m²"),
         ("angular speed", "мин⁻¹", "min⁻¹"),
     ]:
-        assert UnitSystem({kind: written}).symbol(KINDS[kind].dimension) == told
+        assert UnitSystem({kind: written}).symbol(DIMENSIONS[kind].dimension) == told
         assert parse_unit(told) == parse_unit(written)
     with spoken("sr"):
         assert UnitSystem({"length": "мм"}).spelt(LENGTH) == "mm"

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import CamLaw, Piece
+from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
 from tmm_cli.mechanics.linkage import FRAME, Hinge, Linkage, Mesh, Output
 
 
@@ -253,7 +253,7 @@ def sized(it: Linkage, size: float) -> Linkage:
         if m.kind == "rack":
             return replace(m, ratio=m.ratio * size, offset=m.offset * size)
         if m.kind == "cam" and m.slide:
-            pieces = tuple(Piece(p.over, p.rise * size, p.shape) for p in m.law.pieces)
+            pieces = tuple(CamLawPiece(p.over, p.rise * size, p.shape) for p in m.law.pieces)
             return replace(m, offset=m.offset * size, law=replace(m.law, pieces=pieces))
         return m
 

@@ -22,7 +22,7 @@ from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.kinematics import find_range
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 
 DATA = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "stability"
 DIGITS, SEEDS = 50, 5
@@ -37,7 +37,7 @@ class Closely(Multibody):
     def __init__(self, scene, begin=None):
         self.scene, self.begin, self.rounds = scene, begin, 2 if begin is None else 10
         it, q = scene.linkage, np.array([scene.q])
-        structure = analyse(it)
+        structure = analyse_structure(it)
         self.structure = structure
         super().__init__(it, structure, SimpleNamespace(q=q, time=np.zeros(1), linkage=it, kernels=None))
 
@@ -334,7 +334,7 @@ def folding(r, seed):
             n |= {key + "x": Decimal(x + shake[0]) / 1000, key + "y": Decimal(y + shake[1]) / 1000}
         it = triad(n)
         try:
-            way = find_range(it, assemble(it, analyse(it)))
+            way = find_range(it, assemble(it, analyse_structure(it)))
         except LinkageError:
             continue
         if not way.full and min(abs(end - 1.5) for end in (way.start, way.end)) > 0.4:

@@ -22,7 +22,7 @@ from tmm_cli.language import ENGLISH, _, language, spelt
 from tmm_cli.mechanics.analysis import Results, at_places
 from tmm_cli.mechanics.forces import subscript
 from tmm_cli.mechanics.kinematics import Motion
-from tmm_cli.mechanics.numerics import Real, Vector, largest, without_rounding
+from tmm_cli.mechanics.numerics import Real, Vector, largest_magnitude, without_rounding
 from tmm_cli.mechanics.plans import in_letters
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError
@@ -102,7 +102,7 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
     """A diagram in the units of the file."""
 
     def values(si: Real) -> list[float | None]:
-        clean = without_rounding(si, largest(si))
+        clean = without_rounding(si, largest_magnitude(si))
         return rounded(results.problem.units.from_si(clean, quantities.dimension), 5)
 
     return {

@@ -15,7 +15,15 @@ import numpy as np
 from tmm_cli.batch.trace_program import Program
 from tmm_cli.batch.traced_arrays import TracedArray, record
 from tmm_cli.batch.variant import each
-from tmm_cli.mechanics.groups import BranchTrace, Closed, Kernel, LinkStates, Newton, Unrolled, link_states
+from tmm_cli.mechanics.groups import (
+    BranchTrace,
+    ClosedFormSolver,
+    GroupSolver,
+    LinkStates,
+    NewtonSolver,
+    UnrolledNewton,
+    link_states,
+)
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
@@ -25,26 +33,28 @@ STEPS = 4  # of Newton's method from the trace's own nodes to places of a table
 Stands = Sequence[Any]
 
 
-def unrolled(linkage: Linkage, kernels: Sequence[Kernel]) -> tuple[Kernel, ...]:
+def unrolled(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
     """The groups with those that are found by iteration as straight lines. Raises NotUnrolledError."""
     there = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
     return tuple(
-        Unrolled.from_newton(kernel, there.poses, there.drives, geared) if isinstance(kernel, Newton) else kernel
+        UnrolledNewton.from_newton(kernel, there.poses, there.drives, geared)
+        if isinstance(kernel, NewtonSolver)
+        else kernel
         for kernel in kernels
     )
 
 
-def wants(kernels: Sequence[Kernel]) -> int:
+def wants(kernels: Sequence[GroupSolver]) -> int:
     """How many starts the groups take."""
-    return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear)
+    return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear)
 
 
-def started(kernels: Sequence[Kernel], stands: Stands, steps: int | None = None) -> tuple[Kernel, ...]:
+def started(kernels: Sequence[GroupSolver], stands: Stands, steps: int | None = None) -> tuple[GroupSolver, ...]:
     """The groups with their starts, one after another; steps: of Newton's method, if not the usual ones."""
     found, at = [], 0
     for kernel in kernels:
-        if isinstance(kernel, Unrolled) and not kernel.linear:
+        if isinstance(kernel, UnrolledNewton) and not kernel.linear:
             own = tuple(stands[at : at + len(kernel.free)])
             kernel = replace(kernel, starts=own, steps=steps or kernel.steps)
             at += len(own)
@@ -56,7 +66,7 @@ def sure(states: LinkStates) -> Any:
     """Where the steps on a tape have closed all groups that take such."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
-        if isinstance(kernel, Unrolled):
+        if isinstance(kernel, UnrolledNewton):
             found = found & (at.residual < 0)
     return found
 
@@ -65,7 +75,7 @@ def wound(states: LinkStates) -> Any:
     """Where turns of wheels are those of the tables that groups in closed form have."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
-        if isinstance(kernel, Closed) and kernel.winding is not None:
+        if isinstance(kernel, ClosedFormSolver) and kernel.winding is not None:
             found = found & kernel.winding.sure(kernel.group.links, at.poses, states.q)
     return found
 
@@ -75,7 +85,7 @@ def unknowns(states: LinkStates) -> Mapping[str, Any]:
     found: dict[str, Any] = {"sure": sure(states)}
     number = 0
     for kernel in states.kernels:
-        if isinstance(kernel, Unrolled) and not kernel.linear:
+        if isinstance(kernel, UnrolledNewton) and not kernel.linear:
             links = kernel.group.links
             places = [p for link in links for p in _parts(states.poses[link].x, states.poses[link].unwrapped)]
             rates = [p for link in links for p in _parts(states.first[link].v, states.first[link].w)]
@@ -132,9 +142,9 @@ class Table:
 class Starts:
     """Starts of all groups of a linkage at any places of its driver."""
 
-    def __init__(self, linkage: Linkage, kernels: Sequence[Kernel]) -> None:
+    def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
         """kernels: as straight lines."""
-        own = [kernel for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear]
+        own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         traces = [kernel.trace for kernel in own if kernel.trace is not None]
         self.tables: list[Table] = []
         if not own:
@@ -154,7 +164,7 @@ class Starts:
         return [x for table in self.tables for x in table(q)]
 
 
-def _closing(linkage: Linkage, kernels: Sequence[Kernel]) -> Program:
+def _closing(linkage: Linkage, kernels: Sequence[GroupSolver]) -> Program:
     """Unknowns by places of the driver and starts that may be far."""
 
     def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
@@ -170,7 +180,7 @@ def _places(trace: BranchTrace, *, turns: bool) -> Real:
     return low + (high - low) * np.arange(count + 1) / count
 
 
-def _traced(kernel: Unrolled, trace: BranchTrace, q: Real) -> list[Real]:
+def _traced(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
     """Free unknowns near places of a trace."""
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
@@ -249,9 +259,11 @@ class Ways:
 class Marches:
     """Of linkages of one kind; kernels: those of the first one, as straight lines; first: its numbers."""
 
-    def __init__(self, varied: Varied, first: Sequence[float], linkage: Linkage, kernels: Sequence[Kernel]) -> None:
+    def __init__(
+        self, varied: Varied, first: Sequence[float], linkage: Linkage, kernels: Sequence[GroupSolver]
+    ) -> None:
         self.first, self.at, many = np.array(first, dtype=float), linkage.sketch.at, len(first)
-        self.own = [kernel for kernel in kernels if isinstance(kernel, Unrolled) and not kernel.linear]
+        self.own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         unknown = [(kernel, column) for kernel in self.own for column in kernel.free]
         self.x = np.array([_first(kernel, column) for kernel, column in unknown])
         self.scale = np.array([1.0 if column % 3 == 2 else float(kernel.size) for kernel, column in unknown])
@@ -266,7 +278,7 @@ class Marches:
                 for k, at in enumerate(
                     at
                     for kernel, at in zip(own, states.placements, strict=True)
-                    if isinstance(kernel, Unrolled) and not kernel.linear
+                    if isinstance(kernel, UnrolledNewton) and not kernel.linear
                 )
             }
             return {**unknowns(states), **dets}
@@ -374,12 +386,12 @@ class Marches:
         return np.concatenate([down, there[..., None], up], axis=-1)
 
 
-def _rough(kernel: Kernel) -> Kernel:
+def _rough(kernel: GroupSolver) -> GroupSolver:
     """A group that is closed as well as starts need be."""
-    return replace(kernel, enough=CONVERGED) if isinstance(kernel, Unrolled) else kernel
+    return replace(kernel, enough=CONVERGED) if isinstance(kernel, UnrolledNewton) else kernel
 
 
-def _first(kernel: Unrolled, column: int) -> float:
+def _first(kernel: UnrolledNewton, column: int) -> float:
     """A free unknown of a group at the sketch."""
     assert kernel.start is not None
     x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]

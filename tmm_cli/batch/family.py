@@ -13,33 +13,42 @@ from tmm_cli.batch.prepare import straight
 from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Make, NoTapeError, each, stands, stood_for
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
-from tmm_cli.mechanics.assembly import CLOSE, assemble, mobile, sketched_angles
+from tmm_cli.mechanics.assembly import SKETCH_CLOSE, analyse_mobile_structure, assemble, sketched_angles
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.groups import (
-    Closed,
-    Drive,
-    Drives,
-    Kernel,
+    ClosedFormSolver,
+    DriverState,
+    DriverStates,
+    GroupSolver,
+    GroupState,
     LinkStates,
-    Newton,
+    NewtonSolver,
     Pose,
     Poses,
-    State,
-    Unrolled,
+    UnrolledNewton,
     link_states,
-    towards,
+    solvers_towards,
 )
-from tmm_cli.mechanics.kinematics import Curve, OutputCurve, Stroke, Strokes, cycle_of, moving_slope, resisted, runs_of
+from tmm_cli.mechanics.kinematics import (
+    OutputCurve,
+    Stroke,
+    StrokeCurve,
+    Strokes,
+    cycle_turns,
+    measure_runs,
+    moving_slope,
+    resisted_direction,
+)
 from tmm_cli.mechanics.linkage import Linkage, Request
-from tmm_cli.mechanics.numerics import SAME_PLACE, Real, find_roots, mapped, unit
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, Real, find_roots, map_record, unit
 from tmm_cli.mechanics.structure import Structure, output_link
 
 
 @dataclass(frozen=True)
-class Marched(Newton):
+class Marched(NewtonSolver):
     """Such a group. lines: the same as straight lines; ways: of its free unknowns, nan where none was found."""
 
-    lines: Unrolled = field(kw_only=True)
+    lines: UnrolledNewton = field(kw_only=True)
     ways: Ways = field(kw_only=True)
 
     def rebind(self, linkage: Linkage) -> Marched:
@@ -50,11 +59,11 @@ class Marched(Newton):
         """Of some variants."""
         return replace(self, ways=self.ways.take(rows))
 
-    def begun(self, poses: Poses, q: Real, drives: Drives) -> tuple[State, Real]:
+    def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
         posed = self.lines.posed(dict(zip(self.lines.free, self.ways(q), strict=True)), poses, drives)
         parts = [(posed[link].x, posed[link].turned) for link in self.group.links]
         x, turned = (np.stack(np.broadcast_arrays(*part), axis=-1) for part in zip(*parts, strict=True))
-        return State(x, turned), np.full(x.shape[:-1], -1.0)
+        return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
     def kept(self, found: LinkStates) -> Real:
         """Which variants lie along their ways, far from dead positions, and as their sketch surely shows them.
@@ -66,21 +75,25 @@ class Marched(Newton):
         start, _ = self.begun(found.poses, found.q, found.drives)
         z = np.stack([pose.z for pose in at.poses], axis=-1)
         known = {link: Pose(p.x[:, :1], p.z[:, :1]) for link, p in found.poses.items() if link not in later}
-        drives = {link: Drive(d.value[:, :1], d.first[:, :1], d.second[:, :1]) for link, d in found.drives.items()}
+        drives = {
+            link: DriverState(d.value[:, :1], d.first[:, :1], d.second[:, :1]) for link, d in found.drives.items()
+        }
         shown = sketched_angles(self, found.linkage, known, drives)
         with np.errstate(invalid="ignore"):
             followed = np.all(np.abs(z - unit(start.unwrapped)) < CORRECTION, axis=(1, 2))
-            meant = np.all(np.abs(z[:, :1] - (z[:1, :1] if shown is None else unit(shown))) < CLOSE, axis=(1, 2))
+            meant = np.all(np.abs(z[:, :1] - (z[:1, :1] if shown is None else unit(shown))) < SKETCH_CLOSE, axis=(1, 2))
             whole: Real = followed & meant & np.all((at.det * at.det[0, 0] > 0) & (at.margin > self.near), axis=1)
         return whole
 
 
-def marched(varied: Varied, columns: Real, linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...]:
+def marched(
+    varied: Varied, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
+) -> tuple[GroupSolver, ...]:
     """The groups of the first variant as those of all, whose numbers are rows of columns; still to be rebound.
 
     Raises NoTapeError, DependsOnData.
     """
-    traces = [kernel.trace for kernel in kernels if isinstance(kernel, Newton) and not kernel.by_angle]
+    traces = [kernel.trace for kernel in kernels if isinstance(kernel, NewtonSolver) and not kernel.by_angle]
     if not traces:
         return kernels
     lines = straight(linkage, kernels)
@@ -88,10 +101,10 @@ def marched(varied: Varied, columns: Real, linkage: Linkage, kernels: tuple[Kern
         raise NoTapeError
     half = np.full((len(columns), 1), np.pi)
     ways = Marches(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, EACH_TURN, closed=True)
-    found: list[Kernel] = []
+    found: list[GroupSolver] = []
     first = 0
     for kernel, line in zip(kernels, lines, strict=True):
-        if isinstance(kernel, Newton) and isinstance(line, Unrolled) and not line.linear:
+        if isinstance(kernel, NewtonSolver) and isinstance(line, UnrolledNewton) and not line.linear:
             last = first + len(line.free)
             own = kernel.group, kernel.size, kernel.constraints, kernel.start, None, kernel.passive, kernel.order
             found.append(Marched(*own, lines=line, ways=ways.of(slice(first, last))))
@@ -121,7 +134,7 @@ class Family:
 
     linkage: Linkage
     structure: Structure
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     request: Request
     q: Real
     strokes: Strokes | None
@@ -146,7 +159,7 @@ class Family:
 
 def rows_of(record: Any, rows: Real) -> Any:
     """A record with these rows of its arrays (variants, 1)."""
-    return mapped(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
+    return map_record(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
 
 
 def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
@@ -172,13 +185,16 @@ def together(make: Make, columns: Real) -> Family | None:
     try:
         varied = make([TracedNumber(x, column) for x, column in zip(first, each(columns), strict=True)])
         plain = make(first).linkage
-        structure = mobile(plain)
+        structure = analyse_mobile_structure(plain)
         kernels = assemble(plain, structure)
         if plain.others or plain.driver.kind != "turn" or plain.driver.stroke is not None or varied.ends is not None:
             return None
-        if not all(kernel.plain if isinstance(kernel, Closed) else isinstance(kernel, Newton) for kernel in kernels):
+        if not all(
+            kernel.plain if isinstance(kernel, ClosedFormSolver) else isinstance(kernel, NewtonSolver)
+            for kernel in kernels
+        ):
             return None
-        if cycle_of(plain, kernels) != 1:  # strokes are looked for in one turn
+        if cycle_turns(plain, kernels) != 1:  # strokes are looked for in one turn
             return None
         kernels = marched(lambda data: stood_for(make, first, data, plain.sketch), columns, plain, kernels)
     except (DependsOnData, NoTapeError, LinkageError):
@@ -197,14 +213,14 @@ def together(make: Make, columns: Real) -> Family | None:
 def _alone(make: Make, row: Real) -> Family:
     """One variant, found as a file of its own. Raises LinkageError."""
     variant = make(row.tolist())
-    structure = mobile(variant.linkage)
+    structure = analyse_mobile_structure(variant.linkage)
     mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
     q = np.asarray(mechanism.asked)[None, :]
     sound = np.array([True])
     return Family(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
 
 
-def _all_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> tuple[Strokes | None, Real]:
+def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int) -> tuple[Strokes | None, Real]:
     """Strokes of the main output of all variants, with those of further links on which loads depend; None where one of
     these has none. And which variants have one working and one idle stroke of each, and turn fully."""
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
@@ -220,7 +236,7 @@ def _all_strokes(linkage: Linkage, kernels: tuple[Kernel, ...], count: int) -> t
 
 
 def _strokes(
-    linkage: Linkage, kernels: tuple[Kernel, ...], count: int, link: str | None
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int, link: str | None
 ) -> tuple[Strokes | None, Real]:
     """Strokes of one output of all variants, and which have one working and one idle stroke and turn fully."""
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
@@ -231,7 +247,7 @@ def _strokes(
             sound = sound & kernel.kept(whole)
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound
-    curve = OutputCurve(linkage, towards(kernels, [link]), link)
+    curve = OutputCurve(linkage, solvers_towards(kernels, [link]), link)
     forward = np.broadcast_to(moving_slope(whole, link), q.shape) >= 0
     turns_back = forward[:, :-1] != forward[:, 1:]
     if not np.any(turns_back):  # it turns on and on
@@ -243,18 +259,18 @@ def _strokes(
     at = np.nonzero(turns_back)[1].reshape(count, 2)
     rows = np.arange(count)[:, None]
     ends = find_roots(curve.slope, q[rows, at], q[rows, at + 1])
-    return named_strokes(linkage, curve, ends, resisted(linkage, link)), sound
+    return named_strokes(linkage, curve, ends, resisted_direction(linkage, link)), sound
 
 
-def named_strokes(linkage: Linkage, curve: Curve, ends: Real, resists: Any) -> Strokes:
+def named_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
     """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
     lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
-    lows, runs = runs_of(curve, ends, sense * lengths)
+    lows, runs = measure_runs(curve, ends, sense * lengths)
     forward = np.where(runs > 0, lengths, 0).sum(axis=1)
     back = np.where(runs < 0, lengths, 0).sum(axis=1)
-    slower = np.sign(np.where(np.abs(forward - back) > SAME_PLACE, forward - back, 0))
+    slower = np.sign(np.where(np.abs(forward - back) > SAME_DRIVER_POSITION, forward - back, 0))
     rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
     direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
     asked = linkage.working_direction(curve.link)

@@ -32,10 +32,17 @@ from tmm_cli.batch.trace_terms import Term
 from tmm_cli.batch.traced_arrays import DependsOnData, record
 from tmm_cli.batch.variant import changed, parts, varying
 from tmm_cli.mechanics.analysis import values
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.forces import Reactions, applied, react, solve_friction
-from tmm_cli.mechanics.groups import Closed, Drive, DriverMotion, Kernel, NotUnrolledError, drives_at
-from tmm_cli.mechanics.kinematics import Motion, Strokes, move
+from tmm_cli.mechanics.groups import (
+    ClosedFormSolver,
+    DriverMotion,
+    DriverState,
+    GroupSolver,
+    NotUnrolledError,
+    drives_at,
+)
+from tmm_cli.mechanics.kinematics import Motion, Strokes, compute_motion
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGLE
@@ -71,7 +78,7 @@ class Batch:
 
     linkages: tuple[Linkage, ...]
     structure: Structure
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     wanted: Wanted
     forces: bool
     strokes: Strokes | None
@@ -79,7 +86,9 @@ class Batch:
     checks: Program | None = None
     columns: tuple[Real, ...] = ()
     starts: Callable[[Real], list[Real]] | None = None
-    others: dict[int, tuple[Kernel, ...]] = field(default_factory=dict)  # groups of linkages that were looked at alone
+    others: dict[int, tuple[GroupSolver, ...]] = field(
+        default_factory=dict
+    )  # groups of linkages that were looked at alone
 
     def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
         """What was wanted, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
@@ -151,7 +160,7 @@ def prepare_batch(
     by_stroke = [x.name for x in first.loads if x.table is not None and x.table.against in ("stroke", "crank turn")]
     if by_stroke and (strokes is None or len(linkages) > 1):
         raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
-    structure = mobile(first)
+    structure = analyse_mobile_structure(first)
     kernels = assemble(first, structure)
     # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
@@ -189,7 +198,7 @@ def prepare_batch(
 
 
 def ways_of(
-    varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[Kernel]
+    varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[GroupSolver]
 ) -> Ways:
     """Ways of all linkages as far as that of the first one goes."""
     numbers = np.hstack(list(columns))
@@ -202,9 +211,9 @@ def ways_of(
     return march(numbers, low * ones, high * ones, int(np.ceil(EACH_TURN * turns)), closed=closed)
 
 
-def straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...] | None:
+def straight(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:
     """The groups as a tape can hold them; None where it cannot."""
-    if any(kernel.way is not None for kernel in kernels if isinstance(kernel, Closed)):
+    if any(kernel.way is not None for kernel in kernels if isinstance(kernel, ClosedFormSolver)):
         return None
     try:
         return unrolled(linkage, kernels)
@@ -215,7 +224,7 @@ def straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...
 def solved(
     linkage: Linkage,
     structure: Structure,
-    kernels: tuple[Kernel, ...],
+    kernels: tuple[GroupSolver, ...],
     q: Any,
     wanted: Wanted,
     forces: bool,
@@ -232,10 +241,12 @@ def solved(
     law = DriverMotion(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
     speed = law.speed(q)
     drives = {
-        link: Drive(d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration))
+        link: DriverState(
+            d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration)
+        )
         for link, d in drives_at(linkage, q).items()
     }
-    motion = move(linkage, kernels, q, TIME, blank=blank, drives=drives)
+    motion = compute_motion(linkage, kernels, q, TIME, blank=blank, drives=drives)
     reactions = reactions_of(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
     checks = {"placed": motion.placed, "moving": motion.moving, "margin": margin}

@@ -17,7 +17,7 @@ from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Variant
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity, quantities
-from tmm_cli.mechanics.assembly import mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER, Dimension
 from tmm_cli.problem import (
@@ -214,7 +214,7 @@ class Task:
         """All that could be asked, by name."""
         whole = self.problem.whole
         with translate_errors(whole):
-            return quantities(whole.linkage, mobile(whole.linkage))
+            return quantities(whole.linkage, analyse_mobile_structure(whole.linkage))
 
     @property
     def positions(self) -> int:

@@ -19,10 +19,10 @@ from tmm_cli.batch.trace_program import Program
 from tmm_cli.batch.traced_arrays import DependsOnData, TracedArray, TracedNumber, record
 from tmm_cli.batch.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, each, sketch_of, stood_for
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.groups import Kernel
-from tmm_cli.mechanics.kinematics import cycle_of, places as places_of
+from tmm_cli.mechanics.groups import GroupSolver
+from tmm_cli.mechanics.kinematics import cycle_turns, driver_positions as places_of
 from tmm_cli.mechanics.linkage import Linkage, Sketch
 from tmm_cli.mechanics.numerics import Real
 
@@ -37,12 +37,12 @@ class Taped:
         """make: a variant for given numbers; first: those of the linkage whose assembly all have."""
         self.make, self.first, self.variant = make, first, make(first)
         self.linkage = self.variant.linkage
-        self.structure = mobile(self.linkage)
+        self.structure = analyse_mobile_structure(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
         if self.linkage.friction or (forces and self.linkage.by_strokes):
             raise NoTapeError
         self.lines = _straight(self.linkage, self.kernels)
-        self.turns = cycle_of(self.linkage, self.kernels) or 1
+        self.turns = cycle_turns(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
         # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
@@ -101,7 +101,7 @@ class Taped:
     def sketch(self, numbers: Real) -> Sketch:
         """How one variant looks at the place of the sketch."""
         linkage = self.make([float(number) for number in numbers]).linkage
-        kernels: Sequence[Kernel] = [kernel.rebind(linkage) for kernel in self.lines]
+        kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
         if self.marches is not None:
             kernels = started(kernels, list(self.marches.sketched(np.array([numbers]))[0]), STEPS_OF_VARIANTS)
         return sketch_of(linkage, kernels)
@@ -127,7 +127,7 @@ class Taped:
         return self._last[1]
 
 
-def _straight(linkage: Linkage, kernels: tuple[Kernel, ...]) -> tuple[Kernel, ...]:
+def _straight(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...]:
     """The groups as a tape of variants can hold them. Raises NoTapeError."""
     lines = straight(linkage, kernels)
     if lines is None:
@@ -164,9 +164,9 @@ class OneByOne:
         self.make, self.wanted, self.forces = make, wanted, forces
         self.variant = make(first)
         self.linkage = self.variant.linkage
-        self.structure = mobile(self.linkage)
+        self.structure = analyse_mobile_structure(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
-        self.turns = cycle_of(self.linkage, self.kernels) or 1
+        self.turns = cycle_turns(self.linkage, self.kernels) or 1
         self.by_strokes = forces and self.linkage.by_strokes
         self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
         self.names = tuple(self._one(tuple(first), Places(np.zeros(1), np.zeros(0))))
@@ -206,7 +206,7 @@ class OneByOne:
             self.known[numbers] = variant, mechanism
         return self.known[numbers]
 
-    def _nearest(self, numbers: tuple[float, ...]) -> tuple[Kernel, ...]:
+    def _nearest(self, numbers: tuple[float, ...]) -> tuple[GroupSolver, ...]:
         """The groups of that known variant whose numbers differ least, as shares of their sizes."""
         if not self.known:
             return self.kernels

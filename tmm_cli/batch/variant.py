@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch.traced_arrays import TracedNumber
-from tmm_cli.mechanics.groups import DriverMotion, Kernel
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.groups import DriverMotion, GroupSolver
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import Linkage, Request, Sketch
-from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, leaves, mapped
+from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, map_record, record_leaves
 
 LEFT = ("sketch",)  # what says how a linkage is assembled, not what it is
 
@@ -27,12 +27,12 @@ class NotAlikeError(ValueError):
 
 def numbers(record: Any) -> Iterator[tuple[str, Any]]:
     """All numbers of a record with their paths, and all else that must be equal in linkages of one kind."""
-    return leaves(record, LEFT)
+    return record_leaves(record, LEFT)
 
 
 def changed(record: Any, new: Mapping[str, Any]) -> Any:
     """A record with the numbers at some paths exchanged."""
-    return mapped(lambda path, value: new.get(path, value), record, skip=LEFT)
+    return map_record(lambda path, value: new.get(path, value), record, skip=LEFT)
 
 
 def stands(record: Any) -> Any:
@@ -193,10 +193,10 @@ class DriverRanges:
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
 
 
-def sketch_of(linkage: Linkage, kernels: Iterable[Kernel]) -> Sketch:
+def sketch_of(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
     """All points and angles of the moving links where the sketch is, for groups whose assembly is known."""
     at = linkage.sketch.at
-    poses = move(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
+    poses = compute_motion(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
     points = {
         point: complex(poses[link].at(local)[0])
         for link in linkage.moving

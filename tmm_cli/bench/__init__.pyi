@@ -3,18 +3,14 @@
 from .accuracy import (
     TARGETS as TARGETS,
     Accuracy as Accuracy,
-    Row as Row,
+    AccuracyRow as AccuracyRow,
     measure_accuracy as measure_accuracy,
     places as places,
 )
 from .by_hand import MECHANISMS as MECHANISMS
-from .chart_accuracy import accuracy_charts as accuracy_charts, chart as chart
-from .chart_axes import png as png
-from .chart_savings import savings_charts as savings_charts
-from .chart_searches import search_charts as search_charts
-from .chart_speed import speed_charts as speed_charts
+from .chart_accuracy import accuracy_charts as accuracy_charts, draw_accuracy as draw_accuracy
+from .chart_axes import png_bytes as png_bytes
 from .chart_stability import stability_charts as stability_charts
-from .counting import all_orders as all_orders, counted as counted, no_closed_form as no_closed_form
 from .grading import (
     Figure as Figure,
     Grades as Grades,
@@ -30,7 +26,7 @@ from .methods.case import (
     Unable as Unable,
     errors as errors,
 )
-from .methods.loops import Loops as Loops, close as close
+from .methods.constraint_equations import LoopEquations as LoopEquations, close_positions as close_positions
 from .methods.product import recast as recast
 from .methods.registry import CLOSED_FORM as CLOSED_FORM, FEWER as FEWER, METHODS as METHODS
 from .references import (
@@ -40,7 +36,15 @@ from .references import (
     reference as reference,
     seeds as seeds,
 )
-from .savings import NAMED as NAMED, Saving as Saving, Savings as Savings, measure_savings as measure_savings
+from .savings import (
+    SAVING_TITLES as SAVING_TITLES,
+    Saving as Saving,
+    Savings as Savings,
+    count_solutions as count_solutions,
+    measure_savings as measure_savings,
+    with_all_orders as with_all_orders,
+    without_closed_forms as without_closed_forms,
+)
 from .scenes import BY_NAME as BY_NAME, FAMILIES as FAMILIES, chain as chain, shape as shape, triad as triad
 from .searches import (
     PER_SECOND as PER_SECOND,
@@ -75,3 +79,4 @@ from .stability import (
     measure_stability as measure_stability,
     ours as ours,
 )
+from .time_charts import savings_charts as savings_charts, search_charts as search_charts, speed_charts as speed_charts

@@ -34,7 +34,7 @@ Solver = Callable[[Real], Answers]
 
 
 @dataclass(frozen=True)
-class Row:
+class AccuracyRow:
     """One method on one linkage. microseconds: a position, None where time means nothing; errors: nan is not given."""
 
     linkage: str
@@ -49,7 +49,7 @@ class Row:
 class Accuracy(Measured):
     """The whole measurement. absent: rivals that are not installed, or cannot do a linkage, and why."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[AccuracyRow, ...]
     positions: int
     repeats: int
 
@@ -138,7 +138,7 @@ def measure_accuracy(
     rivals, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
     repeats = REDUCED_REPEATS if reduced else REPEATS
-    rows: list[Row] = []
+    rows: list[AccuracyRow] = []
     for name in linkages:
         progress(name)
         true = reference(name)
@@ -152,5 +152,5 @@ def measure_accuracy(
         q = places(true.case, COUNT)
         seconds = times({m: partial(solver, q) for m, solver in solvers.items() if m.timed}, repeats)
         micro = {m: 1e6 * median(of_turns) / COUNT for m, of_turns in seconds.items()}
-        rows += [Row(name, m.name, m.family, m.setting, micro.get(m), worst[m]) for m in solvers]
+        rows += [AccuracyRow(name, m.name, m.family, m.setting, micro.get(m), worst[m]) for m in solvers]
     return Accuracy(tuple(rows), COUNT, repeats, reduced=reduced, absent=tuple(absent))

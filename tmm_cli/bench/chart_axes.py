@@ -12,12 +12,12 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from tmm_cli.mechanics.plans import LANDSCAPE
 
 MM = 1 / 25.4  # inches
-DARK, GREY, RED, BLUE, GREEN, ORANGE = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c77700"
+INK, GREY, RED, BLUE, GREEN, ORANGE = "#1a1a1a", "#8a8a8a", "#b3261e", "#1f4e9c", "#1d7a3a", "#c77700"
 DPI = 110
 PLAIN = FuncFormatter(lambda value, __: f"{value:g}")
 
 
-def page(title: str, caption: str, share: float = 1.0) -> Figure:
+def make_page(title: str, caption: str, share: float = 1.0) -> Figure:
     """A landscape sheet of A4, or this share of its height, with a title and a line below it."""
     height = share * LANDSCAPE[1]
     figure = Figure(figsize=(LANDSCAPE[0] * MM, height * MM))
@@ -27,7 +27,7 @@ def page(title: str, caption: str, share: float = 1.0) -> Figure:
     return figure
 
 
-def bare(axes: Any, title: str, x: str = "", y: str = "") -> None:
+def label_axes(axes: Any, title: str, x: str = "", y: str = "") -> None:
     """A title, what the axes are, small figures, a light grid behind."""
     axes.set_title(title, fontsize=10, loc="left")
     axes.set_xlabel(x, fontsize=9)
@@ -37,7 +37,7 @@ def bare(axes: Any, title: str, x: str = "", y: str = "") -> None:
     axes.set_axisbelow(True)
 
 
-def decades(axes: Any) -> None:
+def set_log_axes(axes: Any) -> None:
     """Both axes logarithmic, with plain numbers."""
     for set_scale, axis in ((axes.set_xscale, axes.xaxis), (axes.set_yscale, axes.yaxis)):
         set_scale("log")
@@ -45,14 +45,14 @@ def decades(axes: Any) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def errors(axes: Any, powers: range) -> None:
+def set_error_axis(axes: Any, powers: range) -> None:
     """Errors upward, marked at these powers of ten; the axis ends where its limits are set."""
     axes.set_yscale("log")
     axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def png(figure: Figure) -> bytes:
+def png_bytes(figure: Figure) -> bytes:
     """Its picture; the same figure gives the same bytes."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None}, pil_kwargs={"compress_level": 3})

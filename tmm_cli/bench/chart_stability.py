@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tmm_cli.bench.chart_axes import DARK, GREEN, ORANGE, RED, errors, page
+from tmm_cli.bench.chart_axes import GREEN, INK, ORANGE, RED, make_page, set_error_axis
 from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.bench.stability import PRODUCT, Row, Stability
+from tmm_cli.bench.stability import PRODUCT, Stability, StabilityRow
 
 PANELS = 5  # on a sheet; the sixth place is the key's
-LOW, HIGH = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
-METHODS: dict[str, tuple[str, dict[str, Any]]] = {
+STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
+STYLES: dict[str, tuple[str, dict[str, Any]]] = {
     PRODUCT: ("tmm, with its bound", {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
     "closed": ("groups (tmm) in float64 alone", {"marker": ".", "ms": 4, "color": "#e58a83", "lw": 1.0}),
     "newton-2": ("Newton on loop closure, 1e-2", {"marker": "^", "color": "#8fb4e8"}),
@@ -26,7 +26,7 @@ METHODS: dict[str, tuple[str, dict[str, Any]]] = {
     "differences-4": ("central differences, 1e-4 rad", {"marker": "v", "color": ORANGE}),
     "single": ("groups in single precision", {"marker": "D", "color": "#7a3d99"}),
     "extended": ("groups in extended precision", {"marker": "D", "color": "#7a3d99", "mfc": "white"}),
-    "board-0.50": ("drawing board, 0.50 mm", {"marker": "_", "ms": 4, "color": DARK}),
+    "board-0.50": ("drawing board, 0.50 mm", {"marker": "_", "ms": 4, "color": INK}),
     "cosines": ("law of cosines (acos)", {"marker": "P", "color": "#00838f"}),
     "freudenstein": ("Freudenstein, tan of half the angle", {"marker": "X", "color": "#5d4037"}),
 }
@@ -49,49 +49,53 @@ def stability_charts(stability: Stability) -> dict[str, Figure]:
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
     title = "Near what kills a method ({page} of {pages})"
     return {
-        f"stability-{number}.png": _sheet(stability, chosen, title.format(page=number, pages=len(pages)))
+        f"stability-{number}.png": _draw_sheet(stability, chosen, title.format(page=number, pages=len(pages)))
         for number, chosen in enumerate(pages, 1)
     }
 
 
-def _sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:
-    shown = [method for method in METHODS if method in stability.methods]
+def _draw_sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:
+    shown = [method for method in STYLES if method in stability.methods]
     caption = (
         "Above: largest error of the answers given, positions to balancing moment, over the largest value. Below: of "
         f"{max(row.scenes for row in stability.rows)} linkages at each distance the share that it gets right, does not "
         "and says so, gets wrong."
     )
-    figure = page(title, caption)
+    figure = make_page(title, caption)
     for number, family in enumerate(families):
         left, bottom = 0.075 + 0.322 * (number % 3), 0.51 - 0.47 * (number // 3)
         above = figure.add_axes((left, bottom + 0.19, 0.25, 0.2))
         below = figure.add_axes((left, bottom + 0.015, 0.25, 0.168))
-        _errors(above, stability, family, shown, number % 3 == 0)
-        _made(below, stability, family, shown)
-    _key(figure, shown)
+        _draw_errors(above, stability, family, shown, number % 3 == 0)
+        _draw_outcomes(below, stability, family, shown)
+    _draw_key(figure, shown)
     return figure
 
 
-def _style(method: str) -> dict[str, Any]:
-    return {"ms": 3, "lw": 0.8} | METHODS[method][1]
+def _line_style(method: str) -> dict[str, Any]:
+    return {"ms": 3, "lw": 0.8} | STYLES[method][1]
 
 
-def _places(rows: list[Row], family: str) -> list[Row]:
+def _rows_of_family(rows: list[StabilityRow], family: str) -> list[StabilityRow]:
     """Rows from left to right: the worst distance on the right, sizes and ratios as they grow."""
     return sorted(rows, key=lambda row: row.distance, reverse=BY_NAME[family].unit in ("rad", "share"))
 
 
-def _errors(axes: Any, stability: Stability, family: str, shown: list[str], labelled: bool) -> None:
+def _draw_errors(axes: Any, stability: Stability, family: str, shown: list[str], labelled: bool) -> None:
     axes.set_title(BY_NAME[family].title, fontsize=8.5, loc="left", pad=3)
-    errors(axes, range(-18, 4, 3))
-    axes.set_ylim(LOW, HIGH)
+    set_error_axis(axes, range(-18, 4, 3))
+    axes.set_ylim(STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR)
     for method in shown:
-        rows = _places(stability.of(family, method), family)
+        rows = _rows_of_family(stability.of(family, method), family)
         if not rows:
             continue
-        axes.plot(range(len(rows)), np.clip([row.error for row in rows], LOW, HIGH), **_style(method))
+        axes.plot(
+            range(len(rows)),
+            np.clip([row.error for row in rows], STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR),
+            **_line_style(method),
+        )
         if method == PRODUCT:
-            bound = np.clip([row.bound for row in rows], LOW, HIGH)
+            bound = np.clip([row.bound for row in rows], STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR)
             axes.plot(range(len(rows)), bound, color=RED, lw=1.2, ls=":", zorder=8)
         axes.set_xlim(-0.5, len(rows) - 0.5)
     axes.minorticks_off()
@@ -102,11 +106,11 @@ def _errors(axes: Any, stability: Stability, family: str, shown: list[str], labe
         axes.set_ylabel("largest error", fontsize=7.5)
 
 
-def _made(axes: Any, stability: Stability, family: str, shown: list[str]) -> None:
+def _draw_outcomes(axes: Any, stability: Stability, family: str, shown: list[str]) -> None:
     """A row a method, a column a distance: its colours mixed by the shares of the linkages."""
     there = [method for method in shown if stability.of(family, method)]
-    rows = [_places(stability.of(family, method), family) for method in there]
-    picture = np.array([[_mixed(row) for row in line] for line in rows])
+    rows = [_rows_of_family(stability.of(family, method), family) for method in there]
+    picture = np.array([[_outcome_colour(row) for row in line] for line in rows])
     axes.imshow(picture, aspect="auto", interpolation="nearest")
     axes.set_yticks(range(len(there)), there, fontsize=6)
     axes.set_yticks(np.arange(len(there) - 1) + 0.5, minor=True)
@@ -121,14 +125,14 @@ def _made(axes: Any, stability: Stability, family: str, shown: list[str]) -> Non
     axes.set_xlabel(DISTANCES[BY_NAME[family].unit], fontsize=7, labelpad=1.5)
 
 
-def _mixed(row: Row) -> tuple[float, ...]:
+def _outcome_colour(row: StabilityRow) -> tuple[float, ...]:
     colours = [to_rgb(colour) for __, colour in VERDICTS.values()]
     counts = (row.right, row.said, row.wrong)
     return tuple(sum(n * rgb[k] for n, rgb in zip(counts, colours, strict=True)) / row.scenes for k in range(3))
 
 
-def _key(figure: Figure, shown: list[str]) -> None:
-    handles: list[Any] = [Line2D([], [], label=METHODS[method][0], **_style(method)) for method in shown]
+def _draw_key(figure: Figure, shown: list[str]) -> None:
+    handles: list[Any] = [Line2D([], [], label=STYLES[method][0], **_line_style(method)) for method in shown]
     handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="the bound that tmm prints"))
     for label, colour in VERDICTS.values():
         handles.append(Patch(facecolor=colour, edgecolor="#808080", lw=0.5, label=label))

@@ -1,21 +1,27 @@
-"""What is saved by computing no more than what was asked for: counts and times, with each saving and without it."""
+"""Work saved by computing only what was requested: counts and times, with each saving and without it.
+
+Solutions are counted from outside: the calculation itself knows nothing of it. A solution is a group at one driver
+position, or one iteration of Newton's method there; its velocities and its accelerations count as one more each.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
-from tmm_cli.bench.counting import all_orders, counted, no_closed_form
+import numpy as np
+
 from tmm_cli.bench.measured import Measured
 from tmm_cli.drawing.run import sheet_files
-from tmm_cli.mechanics.analysis import Results, at_positions, with_forces
-from tmm_cli.mechanics.assembly import assemble
+from tmm_cli.mechanics.analysis import Results, at_positions, mechanism, pipeline, with_forces
+from tmm_cli.mechanics.assembly import assemble, assembling, sketch_matching
 from tmm_cli.mechanics.forces import applied
-from tmm_cli.mechanics.groups import DriverMotion, towards
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.groups import DYAD_SOLVERS, DriverMotion, GroupSolver, NewtonSolver, sequence, solvers_towards
+from tmm_cli.mechanics.kinematics import compute_motion, driver_range, motion, pressure_angles, strokes
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER
@@ -23,12 +29,91 @@ from tmm_cli.problem import Problem, build_problem, read_text, template_text
 from tmm_cli.reports import Column, Table
 from tmm_cli.synthesis import solve
 
-MEASURED = "shaper"  # the problem of `tmm new`
-NOTHING = 1e-300  # kg: a link so light carries all its loads, and they are nothing
-REPEATS, FEW = 7, 3
-PLACES, FEW_PLACES = 3601, 721  # over the cycle, for what grows with their number
+STAGES = (assembling, sketch_matching, mechanism, motion, pipeline, pressure_angles, driver_range, strokes)
 
-NAMED = {
+
+@dataclass
+class SolutionCount:
+    """How many solutions there were."""
+
+    places: int = 0
+    velocities: int = 0
+    accelerations: int = 0
+
+    @property
+    def all(self) -> int:
+        return self.places + self.velocities + self.accelerations
+
+
+@contextmanager
+def count_solutions() -> Iterator[SolutionCount]:
+    """Count what is solved meanwhile."""
+    count = SolutionCount()
+    put: list[tuple[Any, str, Any]] = []
+
+    def watch(kind: type[GroupSolver], name: str, of: str, size: Callable[[tuple[Any, ...], Any], int]) -> None:
+        given = getattr(kind, name)
+
+        def watched(*arguments: Any, **named: Any) -> Any:
+            found = given(*arguments, **named)
+            setattr(count, of, getattr(count, of) + size(arguments, found))
+            return found
+
+        put.append((kind, name, given))
+        setattr(kind, name, watched)
+
+    try:
+        for dyad in DYAD_SOLVERS.values():
+            watch(dyad, "closed", "places", lambda _, at: np.size(at.det))
+        watch(NewtonSolver, "residuals", "places", lambda _, gaps: np.size(gaps[..., 0]))
+        every: tuple[type[GroupSolver], ...] = (*DYAD_SOLVERS.values(), NewtonSolver)
+        for kind in every:
+            watch(kind, "rates", "velocities", lambda _, rates: np.size(rates[0].w))
+            watch(kind, "accelerations", "accelerations", lambda _, accels: np.size(accels[0].e))
+        yield count
+    finally:
+        for kind, name, given in reversed(put):
+            setattr(kind, name, given)
+
+
+@contextmanager
+def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
+    """Every stage finds something else under a name meanwhile."""
+    put = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
+    try:
+        for stage, _ in put:
+            setattr(stage, name, other)
+        yield
+    finally:
+        for stage, given in put:
+            setattr(stage, name, given)
+
+
+@contextmanager
+def with_all_orders() -> Iterator[None]:
+    """Every stage computes accelerations."""
+    given = sequence.link_states
+
+    def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
+        return given(linkage, kernels, q, 2, **named)
+
+    with _replace_in_stages("link_states", whole):
+        yield
+
+
+@contextmanager
+def without_closed_forms() -> Iterator[None]:
+    """Every group is solved by Newton's method."""
+    with _replace_in_stages("CLOSED_FORM_SOLVERS", ()):
+        yield
+
+
+MEASURED = "shaper"  # the problem of `tmm new`
+NEGLIGIBLE_MASS = 1e-300  # kg: a link so light carries all its loads, and they are nothing
+REPEATS, FEW_REPEATS = 7, 3
+POSITIONS, FEW_POSITIONS = 3601, 721  # over the cycle, for what grows with their number
+
+SAVING_TITLES = {
     "structure": "structure alone is counted",
     "groups": "groups on the way only",
     "positions": "positions asked for only",
@@ -37,9 +122,9 @@ NAMED = {
     "closed": "closed form where there is one",
     "drawings": "drawings when asked for",
 }
-COUNTED = {"solutions": "solutions", "loads": "loads", "pictures": "pictures"}
+COUNTED_NAMES = {"solutions": "solutions", "loads": "loads", "pictures": "pictures"}
 
-Work = Callable[[], Any]
+Workload = Callable[[], Any]
 
 
 @dataclass(frozen=True)
@@ -80,7 +165,7 @@ class Savings(Measured):
     @property
     def failures(self) -> tuple[str, ...]:
         """What saves nothing."""
-        return tuple(NAMED[saving.name] for saving in self.found if not saving.holds)
+        return tuple(SAVING_TITLES[saving.name] for saving in self.found if not saving.holds)
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
@@ -103,8 +188,8 @@ class Savings(Measured):
                 "savings",
                 "What is saved by computing no more than what is asked for",
                 (
-                    Column("saving", [NAMED[s.name] for s in found]),
-                    Column("counted", [COUNTED[s.counts] for s in found]),
+                    Column("saving", [SAVING_TITLES[s.name] for s in found]),
+                    Column("counted", [COUNTED_NAMES[s.counts] for s in found]),
                     Column("with it", [str(s.with_) for s in found]),
                     Column("without", [str(s.without) for s in found]),
                     Column("with it, ms", [s.seconds[0] * 1e3 for s in found], NUMBER, digits=3),
@@ -121,47 +206,52 @@ def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = 
     """Every saving, on the problem that `tmm new` writes."""
     problem = build_problem(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
     found = []
-    for saving in savings(problem, reduced):
+    for saving in iterate_savings(problem, reduced):
         progress(saving.name)
         found.append(saving)
     return Savings(problem.name, problem.title, tuple(found), reduced=reduced)
 
 
-def savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
+def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
     """Every saving, each with the work that is done with it, and without."""
-    repeats = FEW if reduced else REPEATS
+    repeats = FEW_REPEATS if reduced else REPEATS
     results = with_forces(solve(problem, "kinematics"), cycle=False)
     linkage, kernels = problem.linkage, results.kernels
-    q = results.closely(FEW_PLACES if reduced else PLACES)
+    q = results.closely(FEW_POSITIONS if reduced else POSITIONS)
     law = DriverMotion(float(q[0]), 1.0, 0.0, 1)
-    first = towards(kernels, results.structure.groups[0].links)
-    light, weighed = _light(linkage, 0.0), _light(linkage, NOTHING)
-    with no_closed_form():
+    first = solvers_towards(kernels, results.structure.groups[0].links)
+    light, weighed = _with_light_links(linkage, 0.0), _with_light_links(linkage, NEGLIGIBLE_MASS)
+    with without_closed_forms():
         iterated = assemble(linkage, results.structure)
 
     def quality_of_all_orders() -> None:
-        with all_orders():
-            _quality(problem)
+        with with_all_orders():
+            _quality_results(problem)
 
     for name, one, other in (
-        ("structure", lambda: solve(problem, "structure"), lambda: _named(problem)),
-        ("groups", lambda: move(linkage, first, q, law), lambda: move(linkage, kernels, q, law)),
-        ("positions", lambda: _at(results, q[:1]), lambda: _at(results, q)),
-        ("orders", lambda: _quality(problem), quality_of_all_orders),
+        ("structure", lambda: solve(problem, "structure"), lambda: _structure_results(problem)),
+        ("groups", lambda: compute_motion(linkage, first, q, law), lambda: compute_motion(linkage, kernels, q, law)),
+        ("positions", lambda: _analyse_at(results, q[:1]), lambda: _analyse_at(results, q)),
+        ("orders", lambda: _quality_results(problem), quality_of_all_orders),
     ):
-        yield measured(name, one, other, repeats)
-    yield measured("massless", lambda: _loaded(results, light), lambda: _loaded(results, weighed), repeats, "loads")
-    closed, by_newton = (lambda: move(linkage, kernels, q, law, 0)), (lambda: move(linkage, iterated, q, law, 0))
-    yield measured("closed", closed, by_newton, repeats)
-    yield measured("drawings", lambda: 0, lambda: _pictures(results), 1, "pictures")
+        yield compare_work(name, one, other, repeats)
+    yield compare_work(
+        "massless", lambda: _count_loads(results, light), lambda: _count_loads(results, weighed), repeats, "loads"
+    )
+    closed, by_newton = (
+        (lambda: compute_motion(linkage, kernels, q, law, 0)),
+        (lambda: compute_motion(linkage, iterated, q, law, 0)),
+    )
+    yield compare_work("closed", closed, by_newton, repeats)
+    yield compare_work("drawings", lambda: 0, lambda: _count_pictures(results), 1, "pictures")
 
 
-def measured(name: str, one: Work, other: Work, repeats: int, counts: str = "solutions") -> Saving:
+def compare_work(name: str, one: Workload, other: Workload, repeats: int, counts: str = "solutions") -> Saving:
     """Both ways, run alternately: the time of each at its best, and solutions, or how many of what the work gives."""
     numbers, best = [0, 0], [math.inf, math.inf]
     for __ in range(repeats):
         for k, work in enumerate((one, other)):
-            with counted() as count:
+            with count_solutions() as count:
                 start = perf_counter()
                 found = work()
                 best[k] = min(best[k], perf_counter() - start)
@@ -169,24 +259,24 @@ def measured(name: str, one: Work, other: Work, repeats: int, counts: str = "sol
     return Saving(name, counts, numbers[0], numbers[1], (best[0], best[1]))
 
 
-def _named(problem: Problem) -> object:
+def _structure_results(problem: Problem) -> object:
     """Structure with the range of the driver, from which a crank is told from a rocker."""
     results = solve(problem, "structure")
     return results.driver_range, results.roles
 
 
-def _at(results: Results, q: Real) -> object:
+def _analyse_at(results: Results, q: Real) -> object:
     """Kinematics and forces at some places."""
     return with_forces(replace(results, motion=at_positions(results, q)), cycle=False)
 
 
-def _quality(problem: Problem) -> object:
+def _quality_results(problem: Problem) -> object:
     """All that needs no accelerations: range, strokes, dead positions, pressure angles."""
     results = solve(problem, "structure").mechanism
     return results.driver_range, results.strokes, results.dead, results.roles
 
 
-def _light(linkage: Linkage, mass: float) -> Linkage:
+def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
     """The same with masses of the last moving link alone; the others weigh nothing, or all but nothing."""
     last = linkage.moving[-1]
     links = {
@@ -195,7 +285,7 @@ def _light(linkage: Linkage, mass: float) -> Linkage:
     return replace(linkage, links=links)
 
 
-def _loaded(results: Results, linkage: Linkage) -> int:
+def _count_loads(results: Results, linkage: Linkage) -> int:
     """The number of forces and couples that weights and inertia give, with the force plan and lever under them."""
     assert results.motion is not None
     motion = replace(results.motion, linkage=linkage, finer=None, where=None)
@@ -204,6 +294,6 @@ def _loaded(results: Results, linkage: Linkage) -> int:
     return sum(load.kind in ("weight", "inertia") for load in applied(motion, results.strokes))
 
 
-def _pictures(results: Results) -> int:
+def _count_pictures(results: Results) -> int:
     """How many pictures are made."""
     return sum(1 for __ in sheet_files(with_forces(results)))

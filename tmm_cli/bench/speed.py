@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch import Batch, prepare_batch
-from tmm_cli.bench import speed_of_iterated, speed_of_sweeps
 from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
 from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
 from tmm_cli.bench.methods import product as taped
@@ -18,8 +17,8 @@ from tmm_cli.bench.methods.case import Case, Method, Unable
 from tmm_cli.bench.references import reference
 from tmm_cli.bench.rivals import installed
 from tmm_cli.bench.scenes import chain
-from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar
-from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweeping
+from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar, iterated_table
+from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweep_table, sweeping
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Real
@@ -175,7 +174,7 @@ class Speed(Measured):
                 for r in self.rivals
             ],
         )
-        found = (races, speed_of_iterated.table(self.iterated), speed_of_sweeps.table(self.sweeps), growths)
+        found = (races, iterated_table(self.iterated), sweep_table(self.sweeps), growths)
         return (*found, rivals) if self.rivals else found
 
 

@@ -17,7 +17,7 @@ from tmm_cli.reports import Table
 ITERATED = ("press-class-iii",)
 POSITIONS = (360, 36_000)
 OF_SIX_BAR = 360  # positions
-TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us a position where the six-bar takes 0.23
+ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us a position where the six-bar takes 0.23
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Iterated:
     @property
     def target(self) -> float:
         """At most this ratio."""
-        return TARGETS[self.positions]
+        return ITERATED_TARGETS[self.positions]
 
     def missed(self, slack: float) -> str:
         if self.ratio <= slack * self.target:
@@ -55,7 +55,10 @@ class Iterated:
 
 def against_six_bar(name: str, reduced: bool) -> list[Iterated]:
     """Times of a linkage round its cycle, with all that `everything` holds."""
-    batch, six_bar = prepare_batch(_linkage(name)), prepare_batch(_linkage("six-bar"))
+    batch, six_bar = (
+        prepare_batch(_linkage_with_constant_loads(name)),
+        prepare_batch(_linkage_with_constant_loads("six-bar")),
+    )
     found = []
     for positions in POSITIONS:
         q, few = (batch.linkages[0].sketch.at + 2 * np.pi * np.arange(n) / n for n in (positions, OF_SIX_BAR))
@@ -69,7 +72,7 @@ def against_six_bar(name: str, reduced: bool) -> list[Iterated]:
     return found
 
 
-def _linkage(name: str) -> Linkage:
+def _linkage_with_constant_loads(name: str) -> Linkage:
     """A reference whose loads are constant, as those of the other races are."""
     found = reference(name).case.linkage
     loads = tuple(
@@ -79,7 +82,7 @@ def _linkage(name: str) -> Linkage:
     return replace(found, loads=loads)
 
 
-def table(rows: Sequence[Iterated]) -> Table:
+def iterated_table(rows: Sequence[Iterated]) -> Table:
     """What a terminal shows."""
     return words(
         "iterated",

@@ -14,8 +14,8 @@ from tmm_cli.reports import Table
 from tmm_cli.sweep import Mechanisms, grid_points, read_axes
 
 SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
-SHOWN = ("H,k,pressure,M_b,R_34",)
-MECHANISMS, REDUCED = 20_000, 2_000  # of a sweep: as many as are one job of a long one
+SWEPT_QUANTITIES = ("H,k,pressure,M_b,R_34",)
+SWEPT_MECHANISMS, REDUCED_MECHANISMS = 20_000, 2_000  # of a sweep: as many as are one job of a long one
 A_MINUTE = 1e6
 
 
@@ -46,10 +46,10 @@ class Sweeping:
 
 def sweeping(name: str, reduced: bool) -> Sweeping:
     """How the command computes the points of a sweep, of which every one works."""
-    count = REDUCED if reduced else MECHANISMS
+    count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
     start = perf_counter()
     tree = tree_of(name)
-    mechanisms = Mechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SHOWN)
+    mechanisms = Mechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
     assert mechanisms.turning is not None
     preparing = 1e3 * (perf_counter() - start)
     points = grid_points(mechanisms.axes)
@@ -61,11 +61,11 @@ def sweeping(name: str, reduced: bool) -> Sweeping:
     return timed({"": lambda: mechanisms.at(points)}, found, reduced)
 
 
-def table(rows: Sequence[Sweeping]) -> Table:
+def sweep_table(rows: Sequence[Sweeping]) -> Table:
     """What a terminal shows."""
     return words(
         "sweeps",
-        f"Mechanisms that a sweep goes through in a minute on one core, with {SHOWN[0]}",
+        f"Mechanisms that a sweep goes through in a minute on one core, with {SWEPT_QUANTITIES[0]}",
         ("mechanism", "mechanisms", "positions of each", "a minute", "at least", "preparing once, ms"),
         [
             (

@@ -58,7 +58,7 @@ class Shot:
 
 
 @dataclass(frozen=True)
-class Row:
+class StabilityRow:
     """One method at one distance: of so many scenes how many it answers rightly, says that it cannot, gets wrong.
 
     errors: the largest of the answers it gave; bound: the largest of ours, a share of the largest value.
@@ -86,7 +86,7 @@ class Row:
 class Stability(Measured):
     """The whole measurement. widths: of all bounds of ours, over the true errors."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[StabilityRow, ...]
     widths: tuple[float, ...]
 
     met: ClassVar[str] = "all targets met: every value within its bound or not given"
@@ -99,7 +99,7 @@ class Stability(Measured):
     def methods(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
-    def of(self, family: str, method: str) -> list[Row]:
+    def of(self, family: str, method: str) -> list[StabilityRow]:
         """Rows from the harmless distance to the worst."""
         return [row for row in self.rows if (row.family, row.method) == (family, method)]
 
@@ -174,7 +174,7 @@ def measure_stability(
     """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
     fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in NAIVE]
     chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
-    rows: list[Row] = []
+    rows: list[StabilityRow] = []
     widths: list[float] = []
     absent: dict[str, None] = {}
     for family in families:
@@ -289,7 +289,7 @@ def ours(case: Case, at: Known) -> Shot:
     return Shot(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 
 
-def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
+def _row(family: str, method: str, distance: float, shots: list[Shot]) -> StabilityRow:
     errors: dict[Compared, float] = {}
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
@@ -298,4 +298,4 @@ def _row(family: str, method: str, distance: float, shots: list[Shot]) -> Row:
     right, said, wrong = (sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong"))
     why = tuple(sorted({shot.why for shot in shots if shot.why}))
     bound = max(wide, default=float("nan"))
-    return Row(family, method, distance, len(shots), right, said, wrong, errors, bound, why)
+    return StabilityRow(family, method, distance, len(shots), right, said, wrong, errors, bound, why)

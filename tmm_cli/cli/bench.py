@@ -22,7 +22,7 @@ from tmm_cli.bench import (
     measure_searches,
     measure_speed,
     measure_stability,
-    png,
+    png_bytes,
     savings_charts,
     search_charts,
     speed_charts,
@@ -113,7 +113,7 @@ def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
         contents[f"{name}.csv"] = lines.getvalue().encode()
     elif len(measured.tables) == 1:
         contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
-    contents |= {file: png(figure) for file, figure in charts.items()}
+    contents |= {file: png_bytes(figure) for file, figure in charts.items()}
     for file, content in contents.items():
         write_whole(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)

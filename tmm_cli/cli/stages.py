@@ -14,7 +14,7 @@ from tmm_cli.cli.reporting import computed, report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, with_assemblies, with_centres, with_extremes
-from tmm_cli.mechanics.assembly import listed
+from tmm_cli.mechanics.assembly import name_assembly_files
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import ProblemError, translate_errors
 from tmm_cli.synthesis import inputs_of, solve
@@ -125,7 +125,7 @@ def _list_assemblies(
     problem = opened(file, settings).whole
     with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)
-    code = report(results, [stem for stem, *__ in listed(results.assemblies or ())], as_json, None)
+    code = report(results, [stem for stem, *__ in name_assembly_files(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
         if here.undecided is not None:
             text = _("the sketch does not decide which assembly {group} has; all of them are listed")

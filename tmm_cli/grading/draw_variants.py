@@ -20,7 +20,7 @@ from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.forces import reach_of_tables
 from tmm_cli.mechanics.groups import LinkStates, link_states
-from tmm_cli.mechanics.kinematics import Strokes, angle, followers, named
+from tmm_cli.mechanics.kinematics import Strokes, driven_links, driving_pair_names, pressure_angle
 from tmm_cli.mechanics.numerics import END_OF_SLOT, SAME_ASSEMBLY, Real, Vector
 from tmm_cli.reports import tables_of_many
 from tmm_cli.synthesis import solve
@@ -67,12 +67,12 @@ class Faults:
 
     def _pressures(self, states: LinkStates) -> Iterator[tuple[Real, str]]:
         for kernel, at in zip(states.kernels, states.placements, strict=True):
-            for lead in followers(kernel.group):
-                limit = self.limits.get((lead[0], named(lead)))
+            for lead in driven_links(kernel.group):
+                limit = self.limits.get((lead[0], driving_pair_names(lead)))
                 if limit is not None:
                     beyond = _("its pressure angle goes beyond {limit} deg")
                     told = beyond.format(limit=numeral(np.degrees(limit), ".4g"))
-                    yield _top(angle(states, kernel, at, lead)) <= limit, told
+                    yield _top(pressure_angle(states, kernel, at, lead)) <= limit, told
 
 
 def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:

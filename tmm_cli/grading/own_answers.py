@@ -18,19 +18,19 @@ from tmm_cli.mechanics.forces import Applied
 from tmm_cli.mechanics.groups import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
-    Kernel,
+    GroupSolver,
     Placement,
     Poses,
     Rate,
     Rates,
-    Wrapped,
+    WrappedSolver,
     Wrench,
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import Real, Vector, cross, square
+from tmm_cli.mechanics.numerics import Real, Vector, cross, squared_length
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class OwnMotion(Mistake):
     rate: Real
     gain: Real
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         links = family.linkage.links
         if any(name == self.link or self.point in links[name].points for name in kernel.group.links):
             return OwnGroup.around(kernel, self, family.linkage)
@@ -55,7 +55,7 @@ class OwnMotion(Mistake):
 
 
 @dataclass(frozen=True)
-class OwnGroup(Wrapped):
+class OwnGroup(WrappedSolver):
     """A group whose links move as the student's answer says; points that are known keep their motion."""
 
     own: OwnMotion
@@ -69,7 +69,7 @@ class OwnGroup(Wrapped):
                 return other, self.linkage.local(other, pair.point), self.linkage.local(link, pair.point)
         return None
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         found = super().rates(at, poses, rates, drives)
         if self.own.order != 1:
             return found
@@ -90,7 +90,7 @@ class OwnGroup(Wrapped):
             return Rate.through(value, right.w, place)
         known, there, here = hinge
         arm = place - here * z
-        w = cross(arm, value - rates[known].at(there * poses[known].z)) / square(arm)
+        w = cross(arm, value - rates[known].at(there * poses[known].z)) / squared_length(arm)
         return Rate.through(value, w, place)
 
     def _place(self, link: str) -> complex:
@@ -98,7 +98,7 @@ class OwnGroup(Wrapped):
         return own.points.get(self.own.point, own.centre)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         found = super().accelerations(at, poses, rates, accels, drives)
         if self.own.order != 2:
@@ -122,7 +122,7 @@ class OwnGroup(Wrapped):
             return Accel.through(value, right.e, w, place)
         known, there, here = hinge
         arm = place - here * z
-        e = cross(arm, value - accels[known].at(there * poses[known].z, rates[known].w)) / square(arm)
+        e = cross(arm, value - accels[known].at(there * poses[known].z, rates[known].w)) / squared_length(arm)
         return Accel.through(value, e, w, place)
 
 
@@ -161,13 +161,13 @@ class OwnReaction(Mistake):
     on: str
     given: Vector
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         pairs = (*kernel.group.outer, *kernel.group.inner)
         return OwnReactions.around(kernel, self) if any(pair.name == self.pair for pair in pairs) else kernel
 
 
 @dataclass(frozen=True)
-class OwnReactions(Wrapped):
+class OwnReactions(WrappedSolver):
     """A group one of whose reactions is the student's."""
 
     own: OwnReaction

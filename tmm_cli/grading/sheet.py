@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.batch import Asked, Family, changed, numbers
 from tmm_cli.grading.mistakes.base import Mistake, Solution, solve
 from tmm_cli.mechanics.analysis import Quantity
-from tmm_cli.mechanics.groups import Closed
+from tmm_cli.mechanics.groups import ClosedFormSolver
 from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
@@ -178,7 +178,7 @@ def _nearby(family: Family) -> Iterator[Family]:
         for link in family.linkage.links
     }
     links = [link for link, paths in of.items() if paths]
-    if all(not isinstance(kernel, Closed) or kernel.plain for kernel in family.kernels):
+    if all(not isinstance(kernel, ClosedFormSolver) or kernel.plain for kernel in family.kernels):
         which = np.repeat(np.arange(len(links) + 1), len(family))[:, None]
         parts = [(which, family.take(np.tile(np.arange(len(family)), len(links) + 1)))]
     else:

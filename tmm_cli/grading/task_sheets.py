@@ -18,13 +18,13 @@ from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.untrusted_tables import shown
 from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.quantities import KINDS, LENGTH, NUMBER, Dimension
+from tmm_cli.mechanics.quantities import DIMENSIONS, LENGTH, NUMBER, Dimension
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.reports import Table, folder_name, input_data_tables, table_of_words
 from tmm_cli.synthesis import structure_of
 
 FOR_TEACHERS = ("variants", "grading")
-MEASURES = (LENGTH, *(kind.dimension for kind in KINDS.values()))
+MEASURES = (LENGTH, *(kind.dimension for kind in DIMENSIONS.values()))
 PLAIN = re.compile(r"[\w.+\-*/^()° ]+")
 SIGNS = re.compile(r"([\\`*_\[\]|#~])")  # of markup
 MEANINGS = {  # of what is asked, by the name before ` of ` or `_`

@@ -123,7 +123,7 @@ class NotOnFrameError(LinkageError):
         self.link, self.allowed = link, allowed
 
 
-class SpeedsEndError(LinkageError):
+class SpeedTableError(LinkageError):
     """A table of the driver's speeds, from `first` to `last` (rad), does not reach a position.
 
     at: its place; None where the table just does not go all round the cycle.
@@ -160,7 +160,7 @@ class OutOfRangeError(LinkageError):
         self.start, self.end = start, end
 
 
-class BySpeedError(LinkageError):
+class SpeedDependentForceError(LinkageError):
     """A law of motion is wanted where what acts hangs on it in more than the inertia; path: of it in the file."""
 
     def __init__(self, path: tuple[str, ...]) -> None:
@@ -232,7 +232,7 @@ class NoFlywheelError(LinkageError):
         self.wanted, self.own = wanted, own
 
 
-class UnsettledError(LinkageError):
+class CounterweightError(LinkageError):
     """No counterweights of the radii that are told balance: their own masses, on pivots that move, want ever more."""
 
 

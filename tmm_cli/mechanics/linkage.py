@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from tmm_cli.mechanics.numerics import Table
+from tmm_cli.mechanics.numerics import InterpolationTable
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.groups import CamLaw
@@ -44,7 +44,7 @@ class Hinge:
     attached_to: str = ""
 
 
-def hinged(hinges: Iterable[Hinge], one: str, other: str) -> str | None:
+def common_hinge(hinges: Iterable[Hinge], one: str, other: str) -> str | None:
     """The point in which two links are hinged to one another."""
     return next((hinge.point for hinge in hinges if {one, other} <= set(hinge.links)), None)
 
@@ -76,8 +76,8 @@ class SpeedTable:
     Where `squares` close, they go round the whole cycle.
     """
 
-    squares: Table
-    accelerations: Table | None = None
+    squares: InterpolationTable
+    accelerations: InterpolationTable | None = None
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ class Friction:
 
 
 @dataclass(frozen=True)
-class LoadTable(Table):
+class LoadTable(InterpolationTable):
     """A load's size, tabulated.
 
     shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles. stroke_link: the link whose
@@ -296,7 +296,7 @@ class Linkage:
 
     def shared(self, one: str, other: str) -> str | None:
         """The point in which two links are hinged to one another."""
-        return hinged(self.hinges, one, other)
+        return common_hinge(self.hinges, one, other)
 
     @property
     def moving(self) -> tuple[str, ...]:

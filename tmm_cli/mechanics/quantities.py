@@ -59,12 +59,12 @@ class Dimension:
     @property
     def name(self) -> str | None:
         """`length`, `moment of force`, ...; None for a dimension that has no name here."""
-        return next((name for name, kind in KINDS.items() if kind.dimension == self), None)
+        return next((name for name, kind in DIMENSIONS.items() if kind.dimension == self), None)
 
     def __str__(self) -> str:
         """With its article: `a length`, `an angle`."""
         if name := self.name:
-            return _(ARTICLED[name])
+            return _(NAMES_WITH_ARTICLE[name])
         bases = {"m": self.length, "kg": self.mass, "s": self.time, "rad": self.angle}
         return _("a quantity in {unit}").format(unit=product_text(bases))
 
@@ -73,17 +73,19 @@ class Dimension:
         """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
         name = self.name
         return (
-            _("{kind}, e.g. {example}").format(kind=self, example=_either(KINDS[name].example)) if name else str(self)
+            _("{kind}, e.g. {example}").format(kind=self, example=_translate_example(DIMENSIONS[name].example))
+            if name
+            else str(self)
         )
 
 
-def _either(examples: str) -> str:
+def _translate_example(examples: str) -> str:
     """An example, or two of them."""
     one, __, other = examples.partition(" or ")
     return _("{one} or {other}").format(one=one, other=other) if other else one
 
 
-class Kind(NamedTuple):
+class NamedDimension(NamedTuple):
     """A dimension with a name: the unit of bare numbers unless the file says otherwise, and an example."""
 
     dimension: Dimension
@@ -111,29 +113,29 @@ TORSION: Final = Dimension(2, 1, -2, -1)
 DAMPING: Final = Dimension(0, 1, -1)
 TORSION_DAMPING: Final = Dimension(2, 1, -1, -1)
 
-KINDS: Final[Mapping[str, Kind]] = {
-    "number": Kind(NUMBER, "", "0.5 or 50 %"),
-    "length": Kind(LENGTH, "mm", "110 mm or 0.11 m"),
-    "angle": Kind(ANGLE, "deg", "30 deg or 0.5 rad"),
-    "time": Kind(TIME, "s", "0.5 s"),
-    "mass": Kind(MASS, "kg", "22 kg"),
-    "force": Kind(FORCE, "N", "1500 N or 1.5 kN"),
-    "moment of force": Kind(MOMENT, "N*m", "20 N*m"),
-    "moment of inertia": Kind(INERTIA, "kg*m^2", "1.1 kg*m^2"),
-    "speed": Kind(SPEED, "m/s", "0.2 m/s"),
-    "acceleration": Kind(ACCELERATION, "m/s^2", "3 m/s^2"),
-    "angular speed": Kind(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
-    "angular acceleration": Kind(ANGULAR_ACCELERATION, "rad/s^2", "5 rad/s^2"),
-    "stiffness": Kind(STIFFNESS, "N/m", "800 N/m"),
-    "torsional stiffness": Kind(TORSION, "N*m/rad", "2 N*m/rad"),
-    "damping": Kind(DAMPING, "N*s/m", "50 N*s/m"),
-    "torsional damping": Kind(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
-    "pressure": Kind(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
-    "density": Kind(DENSITY, "kg/m^3", "7800 kg/m^3"),
+DIMENSIONS: Final[Mapping[str, NamedDimension]] = {
+    "number": NamedDimension(NUMBER, "", "0.5 or 50 %"),
+    "length": NamedDimension(LENGTH, "mm", "110 mm or 0.11 m"),
+    "angle": NamedDimension(ANGLE, "deg", "30 deg or 0.5 rad"),
+    "time": NamedDimension(TIME, "s", "0.5 s"),
+    "mass": NamedDimension(MASS, "kg", "22 kg"),
+    "force": NamedDimension(FORCE, "N", "1500 N or 1.5 kN"),
+    "moment of force": NamedDimension(MOMENT, "N*m", "20 N*m"),
+    "moment of inertia": NamedDimension(INERTIA, "kg*m^2", "1.1 kg*m^2"),
+    "speed": NamedDimension(SPEED, "m/s", "0.2 m/s"),
+    "acceleration": NamedDimension(ACCELERATION, "m/s^2", "3 m/s^2"),
+    "angular speed": NamedDimension(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
+    "angular acceleration": NamedDimension(ANGULAR_ACCELERATION, "rad/s^2", "5 rad/s^2"),
+    "stiffness": NamedDimension(STIFFNESS, "N/m", "800 N/m"),
+    "torsional stiffness": NamedDimension(TORSION, "N*m/rad", "2 N*m/rad"),
+    "damping": NamedDimension(DAMPING, "N*s/m", "50 N*s/m"),
+    "torsional damping": NamedDimension(TORSION_DAMPING, "N*m*s/rad", "0.1 N*m*s/rad"),
+    "pressure": NamedDimension(PRESSURE, "MPa", "1.2 MPa or 12 bar"),
+    "density": NamedDimension(DENSITY, "kg/m^3", "7800 kg/m^3"),
 }
 
 
-ARTICLED: Final[Mapping[str, str]] = {
+NAMES_WITH_ARTICLE: Final[Mapping[str, str]] = {
     "number": N_("a number"),
     "length": N_("a length"),
     "angle": N_("an angle"),
@@ -212,12 +214,12 @@ class Quantity:
             yield header, part, self.measures(slider)
 
 
-def columns(quantities: Iterable[Quantity], record: Any, slider: bool = False) -> list[NamedValues]:
+def quantity_columns(quantities: Iterable[Quantity], record: Any, slider: bool = False) -> list[NamedValues]:
     """All columns of a thing's quantities."""
     return [column for quantity in quantities for column in quantity.columns(record, slider)]
 
 
-def place_dimension(kind: str) -> Dimension:
+def coordinate_dimension(kind: str) -> Dimension:
     """What the place of a driver, or of an output, measures that turns ("turn", "swing") or slides ("slide")."""
     return LENGTH if kind == "slide" else ANGLE
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol, subscript
-from tmm_cli.mechanics.kinematics import Centre, Links
+from tmm_cli.mechanics.kinematics import InstantCentre, LinkPair
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, Heading, said
@@ -66,7 +66,7 @@ def _speeds(subject: Subject) -> Iterable[Block]:
             text = _("Position {number}:")
 
 
-def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Iterable[Found]:
+def _of_position(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentre]) -> Iterable[Found]:
     motion = subject.motion
     driver = motion.linkage.driver.link
     own = abs(subject.rate(k))
@@ -88,7 +88,7 @@ def _of_position(subject: Subject, k: int, found: Mapping[Links, Centre]) -> Ite
                 yield Found(Symbol("ω", link), reached / other, turning, _("rad/s"))
 
 
-def _distance(one: Centre, other: Centre) -> Leaf:
+def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:
     """Between two centres, m."""
     assert one.place is not None and other.place is not None
     letters = "".join("P" + subscript(name(centre.links)[1:]) for centre in (one, other))

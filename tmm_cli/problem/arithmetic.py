@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, KINDS, NUMBER, Dimension
+from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, DIMENSIONS, NUMBER, Dimension
 from tmm_cli.problem.errors import Path, ProblemError, WrittenNumber, prefix_errors, quote, unknown_name_error
 from tmm_cli.problem.scalars import decimal_comma_error
 from tmm_cli.problem.units import (
@@ -341,7 +341,7 @@ def _missing_unit_error(
     bare = [name for name in used if parameters[name].dimension is None]
     if len(bare) == len(used):
         return None
-    for kind in KINDS.values():
+    for kind in DIMENSIONS.values():
         for name in bare if kind.dimension != NUMBER else ():
             value = PhysicalValue(units.si(parameters[name].value, kind.dimension), kind.dimension)
             try:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.mechanics.quantities import ANGLE
-from tmm_cli.mechanics.structure import KINDS, SpatialChain, SpatialPair, reached
+from tmm_cli.mechanics.structure import PAIR_FREEDOMS, SpatialChain, SpatialPair, links_joined_to_frame
 from tmm_cli.problem import schema
 from tmm_cli.problem.arithmetic import resolve_parameters
 from tmm_cli.problem.blocks.drivers import build_cycle, build_drivers, build_request, build_sketch
@@ -291,9 +291,11 @@ def _build_spatial_chain(spatial: schema.Spatial) -> SpatialChain:
         check_name(name, part.path, "pair")
         i, j = part.two_links((FRAME, *links))
         part.one_of("kind", "freedoms")
-        pairs.append(SpatialPair(name, i, j, KINDS[pair.kind] if pair.kind else pair.freedoms or 0, pair.kind or ""))
+        pairs.append(
+            SpatialPair(name, i, j, PAIR_FREEDOMS[pair.kind] if pair.kind else pair.freedoms or 0, pair.kind or "")
+        )
     chain = SpatialChain(links, tuple(pairs))
-    there = reached(chain.pairs)
+    there = links_joined_to_frame(chain.pairs)
     if apart := [link for link in links if link not in there]:  # W would count a chain of its own
         message = _("no pairs join link {link} to the frame").format(link=apart[0])
         raise ProblemError(message, path=(*SPATIAL, "pairs"), key=True)

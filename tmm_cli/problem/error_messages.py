@@ -11,8 +11,8 @@ from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.errors import (
     AmbiguousSketchError,
     AssemblyError,
-    BySpeedError,
     ChangePointSearchError,
+    CounterweightError,
     GroupTooLargeError,
     LinkageError,
     LongRunError,
@@ -28,16 +28,16 @@ from tmm_cli.mechanics.errors import (
     RunawayError,
     SettingError,
     SketchMismatchError,
-    SpeedsEndError,
+    SpeedDependentForceError,
+    SpeedTableError,
     StandstillError,
     TableBeyondCycleError,
     UnknownNameError,
     UnknownPositionError,
-    UnsettledError,
     WeakMotorError,
 )
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, place_dimension
+from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, coordinate_dimension
 from tmm_cli.mechanics.structure import Structure
 from tmm_cli.problem.errors import ProblemError, quote, unknown_name_error, unknown_position_error
 from tmm_cli.problem.problems import Problem
@@ -65,7 +65,7 @@ MAX_CHOICES = 4  # points and angles that would tell two assemblies apart are ma
 
 def _driver_at(problem: Problem) -> str:
     """Where the driver stands in the sketch."""
-    return problem.units.format_value(problem.linkage.sketch.at, place_dimension(problem.linkage.driver.kind))
+    return problem.units.format_value(problem.linkage.sketch.at, coordinate_dimension(problem.linkage.driver.kind))
 
 
 @problem_error.register
@@ -233,7 +233,7 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
 
 
 @problem_error.register
-def _speeds_end(error: SpeedsEndError, problem: Problem) -> ProblemError:
+def _speeds_end(error: SpeedTableError, problem: Problem) -> ProblemError:
     first, last, end = (
         format_coordinate(x, problem.units) for x in (error.first, error.last, error.first + error.cycle)
     )
@@ -300,7 +300,7 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
 
 
 @problem_error.register
-def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
+def _unsettled(error: CounterweightError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
         path=("balancing", "counterweights"),
@@ -310,7 +310,7 @@ def _unsettled(error: UnsettledError, problem: Problem) -> ProblemError:
 
 
 @problem_error.register
-def _by_speed(error: BySpeedError, problem: Problem) -> ProblemError:
+def _by_speed(error: SpeedDependentForceError, problem: Problem) -> ProblemError:
     return ProblemError(
         _("a law of motion is not found where forces hang on reactions or on speeds"),
         path=error.path,

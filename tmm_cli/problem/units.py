@@ -17,8 +17,8 @@ from tmm_cli.mechanics.numerics import PI, DoubleDouble
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,
+    DIMENSIONS,
     FORCE,
-    KINDS,
     LENGTH,
     MASS,
     MOMENT,
@@ -199,7 +199,7 @@ def dotted_unit_error(text: str) -> UnitError:
 def _is_known_kind(text: str) -> bool:
     """Whether this is a unit of something that a file may give."""
     try:
-        return parse_unit(text).dimension in {kind.dimension for kind in KINDS.values()}
+        return parse_unit(text).dimension in {kind.dimension for kind in DIMENSIONS.values()}
     except UnitError:
         return False
 
@@ -212,14 +212,14 @@ class UnitSystem:
 
         Raises ProblemError, its path the key, on an unknown kind, an unknown unit or a unit of another kind.
         """
-        self._names = {kind.dimension: kind.default for kind in KINDS.values()}
+        self._names = {kind.dimension: kind.default for kind in DIMENSIONS.values()}
         for key, name in (names or {}).items():
             full = _LONG.get(key, key.replace("_", " "))
-            if full not in KINDS or full == "number":
+            if full not in DIMENSIONS or full == "number":
                 short = {long: short for short, long in _LONG.items()}
-                keys = [short.get(kind, kind) for kind in KINDS if kind != "number"]
+                keys = [short.get(kind, kind) for kind in DIMENSIONS if kind != "number"]
                 raise unknown_name_error(key, keys, _("unknown key"), path=(key,), key=True)
-            kind = KINDS[full]
+            kind = DIMENSIONS[full]
             with prefix_errors(key):
                 found = parse_unit(name).dimension
                 if not found.fits(kind.dimension):

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.language import N_, Phrase, _
 from tmm_cli.mechanics.analysis import Results, links as chosen_links, moving_centres, moving_points
 from tmm_cli.mechanics.forces import power
-from tmm_cli.mechanics.kinematics import Centre, Motion, Turning, output_run
+from tmm_cli.mechanics.kinematics import InstantCentre, LinkMotion, Motion, output_run
 from tmm_cli.mechanics.linkage import Driver, Linkage
 from tmm_cli.mechanics.numerics import Real, pi
 from tmm_cli.mechanics.quantities import (
@@ -25,8 +25,8 @@ from tmm_cli.mechanics.quantities import (
     SLIDE,
     Dimension,
     NamedValues,
-    columns,
-    place_dimension,
+    coordinate_dimension,
+    quantity_columns,
 )
 from tmm_cli.reports.table import Column, Table
 
@@ -66,7 +66,7 @@ def driver_columns(results: Results) -> list[Column]:
 def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
     """A driver's places, within a turn where it turns round and round, or within the turns of a cycle of loads."""
     full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
-    return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, place_dimension(driver.kind))
+    return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, coordinate_dimension(driver.kind))
 
 
 def cycle_tables(results: Results) -> Iterable[Table]:
@@ -199,16 +199,16 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
     if of:
         points = {name: points[name] for name in of if name in points}
     if points:
-        values = [columns(POINT, point) for point in points.values()]
+        values = [quantity_columns(POINT, point) for point in points.values()]
         yield long_table(results, "points", _("Points and centres of mass"), {N_("point"): list(points)}, values)
     links = chosen_links(linkage, of)
     if links:
-        values = [columns(LINK, _half_turned(motion.link(name))) for name in links]
+        values = [quantity_columns(LINK, _half_turned(motion.link(name))) for name in links]
         table = long_table(results, "link-motion", _("Motion of links"), {N_("link"): links}, values, signs(linkage))
         yield _with_turns(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
     slides = () if of else linkage.slides
     if slides:
-        values = [columns(SLIDE, motion.slide(slide)) for slide in slides]
+        values = [quantity_columns(SLIDE, motion.slide(slide)) for slide in slides]
         title = _("Sliding pairs: motion of the runner along the guide")
         yield long_table(results, "slides", title, {N_("pair"): [slide.name for slide in slides]}, values)
 
@@ -220,7 +220,7 @@ def _with_turns(table: Table) -> Table:
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 
 
-def _half_turned(turning: Turning) -> Turning:
+def _half_turned(turning: LinkMotion) -> LinkMotion:
     """With the angle in -180 to 180 deg, the driver's too."""
     half = pi(turning.angle)
     turns = np.ceil((turning.angle - half) / (2 * half))
@@ -239,7 +239,7 @@ def extremes_tables(results: Results) -> Iterable[Table]:
     if not found:
         return
     driver, units = results.linkage.driver, results.problem.units
-    place, full = place_dimension(driver.kind), results.turns > 0
+    place, full = coordinate_dimension(driver.kind), results.turns > 0
     words = {
         "x": _("x of {name}"),
         "y": _("y of {name}"),
@@ -302,7 +302,7 @@ def centres_tables(results: Results) -> Iterable[Table]:
     yield from _advantage(results)
 
 
-def _way(centre: Centre) -> str:
+def _way(centre: InstantCentre) -> str:
     if centre.pair:
         return _("pair {pair}").format(pair=centre.pair)
     if centre.place is None and centre.direction is None:

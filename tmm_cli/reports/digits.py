@@ -24,9 +24,9 @@ from tmm_cli.mechanics.accuracy import (
     sizes,
 )
 from tmm_cli.mechanics.analysis import Results, at_positions, near_dead
-from tmm_cli.mechanics.kinematics import FIXED
+from tmm_cli.mechanics.kinematics import FIELDS_WITHOUT_POSITIONS
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import ROUNDOFF, Real, Record, mapped
+from tmm_cli.mechanics.numerics import ROUNDOFF, Real, Record, map_record
 from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.reports.register import REPORTS, tables_of
@@ -186,7 +186,13 @@ def _percent(results: Results, table: str, power: float, sizes: Mapping[Dimensio
 
 
 DENSE = 361  # places of a trajectory
-WHOLE = (*FIXED - {"where"}, "mechanism", "problem", "inputs", "structure")  # fields that hold no array over positions
+WHOLE = (
+    *FIELDS_WITHOUT_POSITIONS - {"where"},
+    "mechanism",
+    "problem",
+    "inputs",
+    "structure",
+)  # fields that hold no array over positions
 LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
 PARTS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
 
@@ -284,7 +290,7 @@ def taken(record: Record, chosen: Real, count: int) -> Record:
     def of_chosen(path: str, leaf: Any) -> Any:
         return leaf[..., chosen] if isinstance(leaf, np.ndarray) and leaf.shape[-1:] == (count,) else leaf
 
-    return mapped(of_chosen, record, skip=WHOLE)
+    return map_record(of_chosen, record, skip=WHOLE)
 
 
 def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:

@@ -25,7 +25,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     TIME,
     Dimension,
-    place_dimension,
+    coordinate_dimension,
 )
 from tmm_cli.reports.cycle_tables import driver_columns
 from tmm_cli.reports.quality_tables import Row, of_rows
@@ -228,7 +228,7 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
     """Strokes, sums over a cycle, and the course of each wheel close together."""
     wheels = results.wheels
     assert wheels is not None
-    place = place_dimension(results.linkage.driver.kind)
+    place = coordinate_dimension(results.linkage.driver.kind)
     yield _strokes(wheels, place, back=not results.turns)
     rows = [row for wheel in wheels for row in _cycle(wheel, place)]
     notes = [note for wheel in wheels for note in _notes_of_wheels(wheel)]

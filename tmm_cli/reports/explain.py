@@ -10,10 +10,10 @@ import numpy as np
 
 from tmm_cli.language import _, printed
 from tmm_cli.mechanics.analysis import CYCLE, Results
-from tmm_cli.mechanics.groups import Closed, Kernel, towards
+from tmm_cli.mechanics.groups import ClosedFormSolver, GroupSolver, solvers_towards
 from tmm_cli.mechanics.kinematics import SCAN
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.structure import DENSE, Group, Pair, Structure
+from tmm_cli.mechanics.structure import POSITIONS_PER_TURN, Group, Pair, Structure
 from tmm_cli.problem import Problem
 from tmm_cli.reports.file_summary import motion
 from tmm_cli.reports.input_load_tables import heavy
@@ -182,20 +182,20 @@ def _neighbours(group: Group) -> str:
     return "; ".join(told)
 
 
-def _assembly(kernel: Kernel | None) -> str:
+def _assembly(kernel: GroupSolver | None) -> str:
     """Which of its assemblies a group has."""
     if kernel is None:
         return _("not decided: see tmm kinematics")
-    if not isinstance(kernel, Closed):
+    if not isinstance(kernel, ClosedFormSolver):
         return _("that of the sketch, followed")
     if kernel.assemblies == 1:
         return _("the only one")
     return _("sign {sign} of two, from the sketch").format(sign=f"{kernel.sign:+d}")
 
 
-def _how(kernel: Kernel) -> str:
+def _how(kernel: GroupSolver) -> str:
     """How a group is solved."""
-    if isinstance(kernel, Closed):
+    if isinstance(kernel, ClosedFormSolver):
         return _("in closed form") if kernel.winding is None else _("in closed form, turns followed")
     return _("by Newton") if kernel.followed is None else _("by Newton, followed")
 
@@ -227,7 +227,13 @@ def describe_stages(results: Results) -> Iterable[Row]:
             yield what, every, str(SCAN + 1), velocities, note
             continue
         note = _("position 0 hangs on it") if request.start == "working stroke" and not request.places else ""
-        yield what, _titles(towards(kernels, [linkage.output_carrier(link)]), kernels), str(scan + 1), velocities, note
+        yield (
+            what,
+            _titles(solvers_towards(kernels, [linkage.output_carrier(link)]), kernels),
+            str(scan + 1),
+            velocities,
+            note,
+        )
     yield _("dead positions"), every, str(scan), places, ""
     yield _("pressure angles"), every, str(scan), places, _("from statics")
     if results.inputs.dynamics is not None:
@@ -243,8 +249,8 @@ def describe_stages(results: Results) -> Iterable[Row]:
     if linkage.friction:
         yield _("losses by friction"), every, str(CYCLE + 1), accelerations, _("over the whole cycle")
     drawn = _("only where drawings are asked for")
-    yield _("trajectories"), every, str(DENSE), places, drawn
-    diagrams = min((DENSE - 1) * driver_range.turns, SCAN) + 1
+    yield _("trajectories"), every, str(POSITIONS_PER_TURN), places, drawn
+    diagrams = min((POSITIONS_PER_TURN - 1) * driver_range.turns, SCAN) + 1
     yield _("diagrams"), every, str(diagrams), accelerations, drawn
 
 
@@ -258,7 +264,7 @@ def _acting(linkage: Linkage) -> str:
     return _("loads {loads}").format(loads=loads) if loads else _("no loads")
 
 
-def _titles(groups: Sequence[Kernel], every: Sequence[Kernel]) -> str:
+def _titles(groups: Sequence[GroupSolver], every: Sequence[GroupSolver]) -> str:
     if len(groups) == len(every) > 1:
         return _("all {count}").format(count=len(every))
     return " ".join(kernel.group.title for kernel in groups) or "-"

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.linkage import FRAME, Driver, Link, SpeedTable
-from tmm_cli.mechanics.numerics import PARALLEL, rounded
+from tmm_cli.mechanics.numerics import PARALLEL, to_float
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_SPEED,
@@ -85,7 +85,7 @@ def _ranges(problem: Problem) -> Iterator[str]:
         (PRESSURE, _("pressures"), [(pressure, str(path[1])) for path, pressure in _pressures(problem)]),
     )
     for dimension, title, values in every:
-        present = sorted((float(rounded(value)), name) for value, name in values if value)
+        present = sorted((float(to_float(value)), name) for value, name in values if value)
         if present:
             yield f"{title} {_range(problem, present, dimension)}"
 
@@ -111,7 +111,7 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
         blocks.append((("dynamics", "run", "drive"), drive))
     for path, block in blocks:
         rows = [row[1] for row in block["table"]] if block.get("table") else [block["size"]]
-        yield path, max(abs(float(rounded(problem.values.number(row, PRESSURE, path)))) for row in rows)
+        yield path, max(abs(float(to_float(problem.values.number(row, PRESSURE, path)))) for row in rows)
 
 
 def bare_units(units: UnitSystem) -> str:
@@ -131,7 +131,7 @@ def motion(driver: Driver) -> str:
         text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
         if driver.sense < 0:
             text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, clockwise; {between}")
-        speeds = np.sqrt([float(rounded(square)) for square in driver.law.squares.values])
+        speeds = np.sqrt([float(to_float(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
             low=_short(low),
@@ -244,7 +244,7 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
         scalar = value is not None and not isinstance(value, dict)
         if not scalar or units.factor(base) == 1 or kind in named or not values.is_bare(value):
             continue
-        speed = float(rounded(values.number(value, dimension, path)))
+        speed = float(to_float(values.number(value, dimension, path)))
         if not speed:  # rest is rest in any unit
             continue
         text = _(
@@ -267,11 +267,11 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
 
 def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
     """A mean speed of the law of motion beside another speed of the driver."""
-    task, speed = problem.dynamics, float(rounded(problem.linkage.driver.rate))
+    task, speed = problem.dynamics, float(to_float(problem.linkage.driver.rate))
     mean = getattr(task, "mean", None)
     if mean is None or not speed or not {"mean speed", "mean_speed"} & set(data.get("dynamics") or {}):
         return
-    mean = float(rounded(mean))
+    mean = float(to_float(mean))
     if abs(mean / speed - 1) > SAME_SPEED:
         yield _(
             "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
@@ -289,7 +289,7 @@ def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
     written = (data.get("dynamics") or {}).get("delta")
     if written is None:
         return
-    delta = float(rounded(values.number(written, NUMBER, ("dynamics", "delta"))))
+    delta = float(to_float(values.number(written, NUMBER, ("dynamics", "delta"))))
     if delta < UNIFORM:
         yield _(
             "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "

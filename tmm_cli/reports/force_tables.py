@@ -11,7 +11,7 @@ from tmm_cli.language import N_, Phrase, _, numeral, printed, symbol
 from tmm_cli.mechanics.analysis import Results, detailed_positions
 from tmm_cli.mechanics.forces import Item, find_transmitted_forces, load_names
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import NO_DIFFERENCE, SAME_PLACE, SAME_RATIO
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, SAME_DRIVER_POSITION, SAME_RATIO
 from tmm_cli.mechanics.plans import drawn_check, sheets
 from tmm_cli.mechanics.quantities import (
     ANGLE,
@@ -27,8 +27,8 @@ from tmm_cli.mechanics.quantities import (
     REACTION,
     TRANSMITTED,
     NamedValues,
-    columns,
-    place_dimension,
+    coordinate_dimension,
+    quantity_columns,
 )
 from tmm_cli.reports.cycle_tables import driver_columns, long_table, signs
 from tmm_cli.reports.structure_tables import indeterminate
@@ -51,7 +51,7 @@ def forces_tables(results: Results) -> Iterable[Table]:
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
     note = " ".join([note, *indeterminate(results.structure)])
-    values = [columns(REACTION, reaction) for reaction in reactions.directed]
+    values = [quantity_columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
     pins = reactions.pins(results.linkage)
     if pins:
@@ -65,14 +65,14 @@ def forces_tables(results: Results) -> Iterable[Table]:
             "The link named with all pairs, to which the others are attached, bears the force of the whole pin; the "
             "forces on all links add up to zero."
         )
-        yield long_table(results, "pins", title, words, [columns(LOAD[:1], pin) for pin in pins], note)
+        yield long_table(results, "pins", title, words, [quantity_columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
         words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
         title = _("Loads: weights {G}, inertia forces {U} and couples {M}, and those of the task").format(
             G=symbol("G"), U=symbol("U"), M=symbol("M")
         )
-        yield long_table(results, "loads", title, words, [columns(LOAD, load) for load in loads])
+        yield long_table(results, "loads", title, words, [quantity_columns(LOAD, load) for load in loads])
     yield from _transmitted(results)
     yield _balances(results)
 
@@ -85,7 +85,8 @@ def _transmitted(results: Results) -> Iterable[Table]:
         angles = {(p.group, p.link): p.angles for p in results.pressure}
         words = {N_("driven link"): [f.link for f in found], N_("driven in pair"): [f.pair for f in found]}
         things = [
-            [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *columns(TRANSMITTED, f)] for f in found
+            [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *quantity_columns(TRANSMITTED, f)]
+            for f in found
         ]
         note = _(
             "P: reaction of the pair in which the link is driven; Q: its component along the velocity of its point. "
@@ -142,8 +143,8 @@ def lever_tables(results: Results) -> Iterable[Table]:
 def _columns(item: Item, slider: bool) -> list[NamedValues]:
     force, couple = (item, None) if item.end is not None else (None, item)
     return [
-        *columns(LEVER_FORCE, force, slider),
-        *columns(LEVER_COUPLE, couple, slider),
+        *quantity_columns(LEVER_FORCE, force, slider),
+        *quantity_columns(LEVER_COUPLE, couple, slider),
         *LEVER_MOMENT.columns(item, slider),
     ]
 
@@ -187,7 +188,7 @@ def energy_tables(results: Results) -> Iterable[Table]:
     found = results.energy
     assert found is not None
     quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
-    columns_of = columns(quantities, found, results.linkage.driver.kind == "slide")
+    columns_of = quantity_columns(quantities, found, results.linkage.driver.kind == "slide")
     table = [
         *driver_columns(results),
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
@@ -225,16 +226,16 @@ def _friction(results: Results) -> Table:
 
 def locked_ranges(results: Results) -> list[str]:
     """Ranges of the driver in which friction locks the mechanism, with the positions in them and the pair."""
-    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     cycle, found = 2 * np.pi * results.turns, []
     for locked in results.losses.ranges if results.losses is not None else ():
         ends = np.array([locked.start, locked.end])
         asked = results.asked[list(results.numbers)]
         if cycle:
             whole = ends[1] - ends[0] > cycle * (1 - SAME_RATIO)
-            asked = locked.start + np.mod(asked - locked.start + SAME_PLACE, cycle) - SAME_PLACE
+            asked = locked.start + np.mod(asked - locked.start + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
             ends = ends - ends[0] if whole else np.mod(ends, cycle)
-        inside = (asked > locked.start - SAME_PLACE) & (asked < locked.end + SAME_PLACE)
+        inside = (asked > locked.start - SAME_DRIVER_POSITION) & (asked < locked.end + SAME_DRIVER_POSITION)
         numbers = [str(number) for number, here in zip(results.numbers, inside, strict=True) if here]
         start, end = (numeral(float(units.from_si(q, measure)), ".5g") for q in ends)
         pair = results.structure.pair(locked.pair)

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.forces import (
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
-from tmm_cli.mechanics.numerics import NO_WORK, SAME_PLACE, SAME_RATIO, Real, dot
+from tmm_cli.mechanics.numerics import NO_WORK, SAME_DRIVER_POSITION, SAME_RATIO, Real, dot
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.force_tables import locked_ranges
@@ -89,7 +89,7 @@ def springs_of_no_length(results: Results) -> Iterable[str]:
 def _in_cycle(results: Results, q: float) -> str:
     """A driver coordinate; an angle of a driver that turns fully is counted within its cycle."""
     cycle = 2 * np.pi * results.turns
-    return driver_place(results, float(np.mod(q + SAME_PLACE, cycle) - SAME_PLACE) if cycle else q)
+    return driver_place(results, float(np.mod(q + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION) if cycle else q)
 
 
 def driving_loads(results: Results) -> Iterable[str]:
@@ -266,7 +266,7 @@ def _short(results: Results, load: Load, table: LoadTable) -> bool:
 def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
     """Whether a table against the crank, between whose rows one goes evenly, ends otherwise than it begins."""
     rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
-    whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_PLACE
+    whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_DRIVER_POSITION
     jump = abs(float(table.values[-1]) - float(table.values[0]))
     largest = max(abs(float(value)) for value in table.values)
     return table.against != "stroke" and table.between == "linear" and whole and jump > SAME_RATIO * largest

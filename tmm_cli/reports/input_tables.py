@@ -10,7 +10,7 @@ import numpy as np
 from tmm_cli.language import _, numeral, spelt
 from tmm_cli.mechanics.dynamics import Kloss, Linear, Motor, Profile, RunTask, SteadyTask
 from tmm_cli.mechanics.linkage import FRAME, Driver, Mesh, SpeedTable, Spring
-from tmm_cli.mechanics.numerics import rounded
+from tmm_cli.mechanics.numerics import to_float
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ANGULAR_ACCELERATION,
@@ -28,7 +28,7 @@ from tmm_cli.mechanics.quantities import (
     TORSION,
     TORSION_DAMPING,
     Dimension,
-    place_dimension,
+    coordinate_dimension,
 )
 from tmm_cli.problem import Problem
 from tmm_cli.reports.file_summary import between_rows
@@ -97,7 +97,7 @@ def _slides(problem: Problem) -> Table:
 
 def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage, units = problem.linkage, problem.units
-    driver, measure = linkage.driver, place_dimension(linkage.driver.kind)
+    driver, measure = linkage.driver, coordinate_dimension(linkage.driver.kind)
     dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
     yield _("bare numbers are in"), ", ".join(units.spelt(dimension) for dimension in dimensions)
     yield _("a bare speed is in"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
@@ -194,7 +194,7 @@ def speed(driver: Driver) -> str:
 def speeds(problem: Problem, law: SpeedTable) -> Table:
     """The rows of a table of speeds, with the accelerations that follow from them, or are given."""
     squares = law.squares
-    places = np.array([float(rounded(row)) for row in squares.arguments])
+    places = np.array([float(to_float(row)) for row in squares.arguments])
     after = squares.slope(places) / 2 * problem.linkage.driver.sense
     gains = after if law.accelerations is None else law.accelerations(places)
     speeds = np.sqrt(squares(places))
@@ -290,7 +290,7 @@ def _driver(problem: Problem, driver: Driver) -> tuple[str, ...]:
         _("turns") if driver.kind == "turn" else _("slides"),
         speed(driver),
         senses[driver.kind][driver.sense > 0],
-        show(problem, at, place_dimension(driver.kind)),
+        show(problem, at, coordinate_dimension(driver.kind)),
     )
 
 

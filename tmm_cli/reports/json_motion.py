@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_cli.mechanics.analysis import Results, links, moving_centres, moving_points
-from tmm_cli.mechanics.kinematics import Sliding
+from tmm_cli.mechanics.kinematics import SlidingMotion
 from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.quantities import BALANCE, ENERGY, LEVER_MOMENT, LINK, LOAD, POINT, REACTION, SLIDE
@@ -168,7 +168,7 @@ class SlideMotion(NamedTuple):
     """A sliding pair and how it moves."""
 
     slide: Slide
-    motion: Sliding
+    motion: SlidingMotion
 
 
 def _slides(results: Results) -> dict[str, SlideMotion]:

@@ -10,9 +10,9 @@ import numpy as np
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.assembly import sketch_deviations
-from tmm_cli.mechanics.groups import Closed, DriverMotion
-from tmm_cli.mechanics.kinematics import move
-from tmm_cli.mechanics.quantities import ANGLE, LENGTH, SPEED, place_dimension
+from tmm_cli.mechanics.groups import ClosedFormSolver, DriverMotion
+from tmm_cli.mechanics.kinematics import compute_motion
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, SPEED, coordinate_dimension
 from tmm_cli.reports.table import with_unit
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ SKETCH = 0.15  # a sketched point farther off than this share of the linkage's s
 
 def driver_place(results: Results, q: float) -> str:
     """A place of the driver."""
-    units, measure = results.problem.units, place_dimension(results.linkage.driver.kind)
+    units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
 
 
@@ -61,7 +61,7 @@ def limited(results: Results) -> Iterable[str]:
 def far_from_sketch(results: Results) -> Iterable[str]:
     """Points that are sketched far from where they are."""
     linkage = results.linkage
-    there = move(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
+    there = compute_motion(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
     for point, off in sketch_deviations(linkage, there.poses).items():
         if off > SKETCH:
             yield _(
@@ -72,7 +72,7 @@ def far_from_sketch(results: Results) -> Iterable[str]:
 
 def dead_positions(results: Results) -> Iterable[str]:
     """Dead positions and change points inside the range of the driver."""
-    closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, Closed)}
+    closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, ClosedFormSolver)}
     for dead in results.dead:
         text = (
             _(
@@ -178,7 +178,7 @@ def short_drive(results: Results) -> Iterable[str]:
     by_time = drive.against == "time"
     reached = float(single.run.time[-1]) if by_time else float(single.run.way[-1])
     first, last = drive.arguments[0], drive.arguments[-1]
-    measure = place_dimension(results.linkage.driver.kind)
+    measure = coordinate_dimension(results.linkage.driver.kind)
 
     def argument(value: float) -> str:
         return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)

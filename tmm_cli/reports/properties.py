@@ -21,10 +21,10 @@ from tmm_cli.mechanics.analysis import (
     quantities,
     relative_angles,
 )
-from tmm_cli.mechanics.groups import spread
-from tmm_cli.mechanics.numerics import Real, find_roots, greatest
-from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
-from tmm_cli.mechanics.structure import ChainResults, analyse
+from tmm_cli.mechanics.groups import link_extent
+from tmm_cli.mechanics.numerics import Real, find_roots, greatest_values
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, coordinate_dimension
+from tmm_cli.mechanics.structure import ChainResults, analyse_structure
 from tmm_cli.problem import (
     Path,
     Problem,
@@ -131,7 +131,7 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
     if not ratio and abs(value) <= ROUNDING * _scale(dimension, results):
         value = 0.0
     if task.within is not None:
-        dimension = place_dimension(results.linkage.driver.kind)
+        dimension = coordinate_dimension(results.linkage.driver.kind)
     if task.per is not None:
         if by is None:
             value /= values.positive(task.per, dimension, ("per",))
@@ -147,7 +147,7 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
 def _scale(dimension: Dimension, results: Results) -> float:
     """What an angle or a length is small against, SI; of other kinds nothing is called small."""
     if dimension == LENGTH:
-        return max(float(spread(results.linkage, link)) for link in results.linkage.links)
+        return max(float(link_extent(results.linkage, link)) for link in results.linkage.links)
     return 1.0 if dimension == ANGLE else 0.0
 
 
@@ -193,7 +193,9 @@ def _broken(hinge: str, results: Results) -> Results:
     linkage = results.linkage
     results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
     left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
-    return replace(results, inputs=replace(results.inputs, linkage=left), structure=analyse(left), motion=None)
+    return replace(
+        results, inputs=replace(results.inputs, linkage=left), structure=analyse_structure(left), motion=None
+    )
 
 
 def _one(quantity: Quantity, task: ShownKeys, results: Results, per: Quantity | None = None) -> float:
@@ -258,7 +260,7 @@ def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool
         def curve(_rows: Real, places: Real) -> Real:
             return sign * read(places.ravel()).reshape(places.shape)
 
-        return sign * float(greatest(curve, q, sign * values, turns=turns)[0])
+        return sign * float(greatest_values(curve, q, sign * values, turns=turns)[0])
 
     if over == "range":
         return extreme(1.0) - extreme(-1.0)

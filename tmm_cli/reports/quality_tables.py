@@ -10,11 +10,11 @@ import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral
 from tmm_cli.mechanics.analysis import Check, Results, run_checks
-from tmm_cli.mechanics.assembly import Assemblies, GroupAssemblies, listed
-from tmm_cli.mechanics.kinematics import SCAN, OutputCurve, Stroke, Strokes, Travel
+from tmm_cli.mechanics.assembly import Assemblies, GroupAssemblies, name_assembly_files
+from tmm_cli.mechanics.kinematics import SCAN, OutputCurve, OutputTravel, Stroke, Strokes
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import CAME_BACK, NO_PRESSURE, SAME_PLACE, SEAM_OF_EXTREMES
-from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.numerics import CAME_BACK, NO_PRESSURE, SAME_DRIVER_POSITION, SEAM_OF_EXTREMES
+from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, coordinate_dimension
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import Problem
 from tmm_cli.reports.properties import properties_shown
@@ -29,7 +29,7 @@ def quality_tables(results: Results) -> Iterable[Table]:
     """One row a fact; values keep their own dimension."""
     driver_range = results.driver_range
     assert driver_range is not None
-    place = place_dimension(results.linkage.driver.kind)
+    place = coordinate_dimension(results.linkage.driver.kind)
     rows: list[Row] = []
     if driver_range.turns > 1:
         rows.append((_("turns of the driver in a cycle"), driver_range.turns, NUMBER))
@@ -54,7 +54,7 @@ def quality_tables(results: Results) -> Iterable[Table]:
 def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[Row]:
     """Strokes of an output that goes there and back as the driver turns."""
     linkage = results.linkage
-    link, run = strokes.link, place_dimension(strokes.kind)
+    link, run = strokes.link, coordinate_dimension(strokes.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name = _("swing psi of link {link}") if guide is None else _("stroke H of link {link}")
     if point is not None:
@@ -117,9 +117,9 @@ def _turned(results: Results, strokes: Strokes) -> float:
     return whole if abs(turned - whole) < CAME_BACK else turned
 
 
-def _travel(linkage: Linkage, travel: Travel, place: Dimension) -> Iterable[Row]:
+def _travel(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterable[Row]:
     """How far an output goes over the positions asked."""
-    link, run = travel.link, place_dimension(travel.kind)
+    link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name, extremes = _("swing psi of link {link} over the positions asked"), _("extreme position of link {link}")
     if point is not None:
@@ -173,9 +173,9 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("it"), [_("slides") if p.slides else _("turns") for p in found]),
             Column(N_("driven in pair"), [p.pair for p in found]),
             Column(N_("largest"), [p.largest for p in found], ANGLE),
-            Column(N_("driver there at"), places, place_dimension(driver.kind)),
+            Column(N_("driver there at"), places, coordinate_dimension(driver.kind)),
             Column(N_("other extreme"), [p.other for p in found], ANGLE),
-            Column(N_("driver then at"), others, place_dimension(driver.kind)),
+            Column(N_("driver then at"), others, coordinate_dimension(driver.kind)),
             Column(N_("least transmission angle"), [p.transmission for p in found], ANGLE),
             Column(N_("force increase"), [p.gain for p in found], NUMBER),
             Column(N_("allowed"), [p.allowed for p in found], ANGLE),
@@ -221,8 +221,8 @@ def checks_tables(results: Results) -> Iterable[Table]:
 def _place(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
-    at = check.at if abs(check.at) > SAME_PLACE else 0.0
-    units, dimension = results.problem.units, place_dimension(results.linkage.driver.kind)
+    at = check.at if abs(check.at) > SAME_DRIVER_POSITION else 0.0
+    units, dimension = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     place, none = (with_unit(units, each, dimension, 4) for each in (at, 0.0))
     again = with_unit(units, 2 * math.pi * results.turns, dimension, 4) if results.turns else ""
     return none if place == again else place
@@ -269,14 +269,14 @@ def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
 
 def assemblies_tables(results: Results) -> Iterable[Table]:
     """In solving order of the groups, at each place that was asked for."""
-    for stem, here, group in listed(results.assemblies or ()):
+    for stem, here, group in name_assembly_files(results.assemblies or ()):
         yield _table(stem, here, group, results)
 
 
 def place(problem: Problem, q: float, number: int | None) -> str:
     """Which position it is and where the driver stands (rad or m), which at the sketch has no number."""
     crank = problem.linkage.driver.kind == "turn"
-    measure = place_dimension(problem.linkage.driver.kind)
+    measure = coordinate_dimension(problem.linkage.driver.kind)
     value = problem.units.from_si(q % math.tau if crank else q, measure)
     at = f"{numeral(round(value, 9) + 0.0, '.6g')} {problem.units.spelt(measure)}"
     if number is None:

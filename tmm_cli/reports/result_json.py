@@ -16,11 +16,11 @@ from tmm_cli.mechanics.linkage import Link
 from tmm_cli.mechanics.structure import (
     ChainResults,
     basic_schemes,
-    classification,
-    contours,
+    classify_linkage,
+    count_in_space,
+    find_contours,
     is_dependent,
     six_bar_schemes,
-    space,
 )
 from tmm_cli.problem import UnitSystem
 from tmm_cli.reports.file_summary import doubts
@@ -151,13 +151,13 @@ STRUCTURE = record(
         "classification",
         NAMES,
         "closed or open; elementary, simple, complex; of one type or several",
-        lambda results: classification(results.structure),
+        lambda results: classify_linkage(results.structure),
     ),
     Field(
         "dependent_contours",
         NUMBER,
         "contours closed by redundant links or pairs",
-        lambda r: sum(is_dependent(c, r.structure) for c in contours(r.structure.pairs, r.structure.links)),
+        lambda r: sum(is_dependent(c, r.structure) for c in find_contours(r.structure.pairs, r.structure.links)),
         lambda r: bool(r.structure.reduction),
     ),
     Field(
@@ -220,7 +220,7 @@ SPACE = record(
         "contours",
         list_of(CONTOUR),
         "independent contours",
-        lambda space: contours(space.chain.pairs, space.chain.links),
+        lambda space: find_contours(space.chain.pairs, space.chain.links),
     ),
     Field(
         "replacements", optional(list_of(REPLACEMENT)), "pairs to give more freedoms, so that q = 0; null: none found"
@@ -305,7 +305,7 @@ def _synthesis(results: Results) -> dict[str, Any]:
 
 FIRST = (
     Field("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
-    Field("space", SPACE, "the planar linkage counted in space", lambda r: space(r.linkage, r.structure)),
+    Field("space", SPACE, "the planar linkage counted in space", lambda r: count_in_space(r.linkage, r.structure)),
     Field(
         "synthesis",
         JsonType({"type": "object"}),

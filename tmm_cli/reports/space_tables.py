@@ -11,17 +11,17 @@ from tmm_cli.language import N_, _, printed
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import NUMBER
 from tmm_cli.mechanics.structure import (
-    AXLES,
-    CONTACTS,
+    AXLE_FREEDOMS,
+    CONTACT_PAIRS,
     ROMAN,
+    ChainCount,
     ChainResults,
     Contour,
-    Findings,
     LocalFreedom,
     Structure,
-    contours,
+    count_in_space,
+    find_contours,
     is_dependent,
-    space,
 )
 from tmm_cli.reports.structure_tables import left_out
 from tmm_cli.reports.table import Column, Table, table_of_words
@@ -31,8 +31,8 @@ from tmm_cli.synthesis import GROUP_TYPES, KinematicChain, Scheme
 def space_tables(results: Results) -> Iterable[Table]:
     """Three small tables."""
     structure = results.structure
-    yield contour_table(contours(structure.pairs, structure.links), structure)
-    found = space(results.linkage, structure)
+    yield contour_table(find_contours(structure.pairs, structure.links), structure)
+    found = count_in_space(results.linkage, structure)
     facts = [
         (_("W by Somov-Malyshev"), found.chain.count),
         (
@@ -117,7 +117,7 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
         )
 
 
-def _facts(found: Findings) -> Iterable[tuple[str, str]]:
+def _facts(found: ChainCount) -> Iterable[tuple[str, str]]:
     chain = found.chain
     yield _("moving links n"), str(len(chain.links))
     yield _("pairs with 1 to 5 freedoms"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
@@ -133,13 +133,13 @@ def _facts(found: Findings) -> Iterable[tuple[str, str]]:
         yield _("manoeuvrability m: W with link {link} held").format(link=found.output), chain.held(found.output).count
 
 
-def _form(found: Findings) -> str:
+def _form(found: ChainCount) -> str:
     if found.form == "mixed":
         return _("closed, with open branches (links {links})").format(links=", ".join(found.branches))
     return _("open") if found.form == "open" else _("closed: every link lies in a contour")
 
 
-def _notes(found: Findings) -> Iterable[str]:
+def _notes(found: ChainCount) -> Iterable[str]:
     seen = sum(x.freedoms for x in found.local)
     if found.given_local is not None and found.given_local < seen:
         yield _("{given} local freedoms are given, the pairs show {found}.").format(given=found.given_local, found=seen)
@@ -165,7 +165,7 @@ def _notes(found: Findings) -> Iterable[str]:
 
 def _how(part: LocalFreedom) -> str:
     kinds = part.kinds
-    if kinds & CONTACTS and kinds & {*AXLES}:
+    if kinds & CONTACT_PAIRS and kinds & {*AXLE_FREEDOMS}:
         return _("rotates about its own axis as a roller")
     if part.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
         return _("rotates about its own axis if the ball lies on it")

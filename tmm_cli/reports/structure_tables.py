@@ -13,8 +13,8 @@ from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import (
     Structure,
     basic_schemes,
-    classification,
-    contours,
+    classify_linkage,
+    find_contours,
     is_dependent,
     is_parallelogram_coupler,
     link_motion,
@@ -267,12 +267,12 @@ def schemes_in_words(structure: Structure) -> str:
 
 def kind_in_words(structure: Structure) -> str:
     """Return the kind of the chain and of the structure: closed, complex: the driver and several groups."""
-    return ", ".join(_(CLASSES[word]) for word in classification(structure))
+    return ", ".join(_(CLASSES[word]) for word in classify_linkage(structure))
 
 
 def contours_in_words(structure: Structure) -> str:
     """Return K = p - n and how many of these contours only repeat another one."""
-    dependent = sum(is_dependent(contour, structure) for contour in contours(structure.pairs, structure.links))
+    dependent = sum(is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links))
     if not dependent:
         return str(structure.contours)
     return _("{count}, of which dependent: {dependent}").format(count=structure.contours, dependent=dependent)

@@ -11,12 +11,12 @@ from typing import Any
 
 from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.mechanics.quantities import KINDS
+from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.problem import Synthesised, UnitSystem
 from tmm_cli.reports.table import Column, Table, plain
 from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, NamedValue, measure_problem
 
-NUMERIC = (*KINDS, "share")
+NUMERIC = (*DIMENSIONS, "share")
 ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
 DIGITS = 10  # on a terminal; files have 15
 # columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
@@ -120,8 +120,8 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
     columns = []
     for k, (__, header, kind) in enumerate(listing.columns):
         values, dimension = [row[k] for row in listing.rows], None
-        if kind in KINDS:
-            dimension = KINDS[kind].dimension
+        if kind in DIMENSIONS:
+            dimension = DIMENSIONS[kind].dimension
         elif kind == "mixed":
             values = [_shown(v, own, units, digits) for v, own in zip(values, _kinds(listing), strict=True)]
         elif kind == "unit":
@@ -158,8 +158,10 @@ def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
     if value is None or kind == "word":
         return "" if value is None else translated(value)
     number = float(value)
-    return _("none") if math.isnan(number) else numeral(units.from_si(number, KINDS[kind].dimension), f".{digits}g")
+    return (
+        _("none") if math.isnan(number) else numeral(units.from_si(number, DIMENSIONS[kind].dimension), f".{digits}g")
+    )
 
 
 def _unit(kind: Kind, units: UnitSystem) -> str:
-    return units.spelt(KINDS[kind].dimension) if kind in KINDS else ""
+    return units.spelt(DIMENSIONS[kind].dimension) if kind in DIMENSIONS else ""

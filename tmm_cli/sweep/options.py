@@ -12,7 +12,7 @@ import numpy as np
 from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity, Solved
-from tmm_cli.mechanics.numerics import Real, greatest
+from tmm_cli.mechanics.numerics import Real, greatest_values
 from tmm_cli.mechanics.quantities import ANGLE, Dimension
 from tmm_cli.problem import ProblemError, quote, unknown_name_error
 
@@ -156,12 +156,12 @@ class Shown:
         curves, q, values: see `roots.greatest`.
         """
         if not self.ranges:
-            return greatest(curves, q, values)
+            return greatest_values(curves, q, values)
         assert self.quantity is not None
         turns = self.quantity.against == "angle"
         values = np.unwrap(values, axis=1) if turns else values
-        high = greatest(curves, q, values, turns=turns)
-        return high + greatest(lambda rows, at: -curves(rows, at), q, -values, turns=turns)
+        high = greatest_values(curves, q, values, turns=turns)
+        return high + greatest_values(lambda rows, at: -curves(rows, at), q, -values, turns=turns)
 
 
 def known(task: Task) -> Mapping[str, Shown]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.numerics import Real
-from tmm_cli.mechanics.quantities import KINDS, NUMBER, product_text
+from tmm_cli.mechanics.quantities import DIMENSIONS, NUMBER, product_text
 from tmm_cli.problem import Problem
 from tmm_cli.reports import Column, Table
 from tmm_cli.sweep.options import Axis, Shown
@@ -151,5 +151,5 @@ def _kind(one: Any) -> str:
 def _unit(dimension: Any) -> str:
     """The SI unit."""
     bases = {"m": dimension.length, "kg": dimension.mass, "s": dimension.time, "rad": dimension.angle}
-    named = {KINDS["force"].dimension: "N", KINDS["moment of force"].dimension: "N*m"}
+    named = {DIMENSIONS["force"].dimension: "N", DIMENSIONS["moment of force"].dimension: "N*m"}
     return named.get(dimension, product_text(bases))

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tmm_cli.batch import Variant, each, named_strokes
-from tmm_cli.mechanics.kinematics import Strokes, resisted
-from tmm_cli.mechanics.numerics import Real, find_roots, least
+from tmm_cli.mechanics.kinematics import Strokes, resisted_direction
+from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 from tmm_cli.sweep.traced_stages import FINELY, Closely, Turning, near_peaks, peaks_between, turned
 
 SCAN = 72  # places in a turn of the driver
@@ -116,7 +116,7 @@ class _View:
             if rows.size:
                 close = Closely(self.turning.part(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
-                place, value = least(_negative(close, name), q - self.step, q + self.step)
+                place, value = find_minima(_negative(close, name), q - self.step, q + self.step)
                 does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = SCAN_STOPS
         return does, ~doubtful
 
@@ -167,7 +167,7 @@ def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant)
     for k, link in enumerate(turning.stroke_links):
         curve = _Output(link, turning.linkage.output_swings(link), _curve(turning, f"place{k}", columns))
         if turning.strokes[k]:
-            resists = resisted(varied.linkage, link)
+            resists = resisted_direction(varied.linkage, link)
             every.append(named_strokes(turning.linkage, curve, looked.ends[:, k], resists))
         else:
             every.append(Strokes(link, curve.kind, (), ""))

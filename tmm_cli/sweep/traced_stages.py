@@ -23,11 +23,19 @@ from tmm_cli.batch import (
     stands,
     stood_for,
 )
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.forces import Reactions
-from tmm_cli.mechanics.groups import Closed, link_states
-from tmm_cli.mechanics.kinematics import Motion, Stroke, Strokes, angle, followers, output_place, output_slope
-from tmm_cli.mechanics.numerics import END_OF_SLOT, SIDE, Real, peak
+from tmm_cli.mechanics.groups import ClosedFormSolver, link_states
+from tmm_cli.mechanics.kinematics import (
+    Motion,
+    Stroke,
+    Strokes,
+    driven_links,
+    output_coordinate,
+    output_slope,
+    pressure_angle,
+)
+from tmm_cli.mechanics.numerics import END_OF_SLOT, WINDOW_SIDE, Real, window_peak
 from tmm_cli.mechanics.structure import output_link, turns_of_cycle
 
 WINDOW, SHARE = 17, 30  # places about a peak, and how many steps of them are one of the scan
@@ -61,11 +69,11 @@ def peaks_between(curve: Callable[[Real], Real], q: Real, step: float, values: t
     for _ in range(SHIFTS):
         there = curve(middle[:, None] + window)
         top = np.argmax(there, axis=1)
-        edge = (top < SIDE) | (top >= WINDOW - SIDE)
+        edge = (top < WINDOW_SIDE) | (top >= WINDOW - WINDOW_SIDE)
         if not np.any(edge):
             break
         middle = np.where(edge, middle + window[top], middle)
-    return np.maximum(here, peak(there))
+    return np.maximum(here, window_peak(there))
 
 
 # The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
@@ -107,12 +115,12 @@ class Turning:
         turns = driver.kind == "turn" and driver.stroke is None and turns_of_cycle(linkage) == linkage.turns == 1
         if not turns or driver.law is not None or linkage.others or linkage.meshes or linkage.friction:
             raise NoTapeError
-        self.structure = mobile(linkage)
+        self.structure = analyse_mobile_structure(linkage)
         self.kernels = assemble(linkage, self.structure)
-        if not all(isinstance(kernel, Closed) and kernel.plain for kernel in self.kernels):
+        if not all(isinstance(kernel, ClosedFormSolver) and kernel.plain for kernel in self.kernels):
             raise NoTapeError
         self.single = [k for k, kernel in enumerate(self.kernels) if getattr(kernel, "assemblies", 0) == 1]
-        leads = [lead for kernel in self.kernels for lead in followers(kernel.group)]
+        leads = [lead for kernel in self.kernels for lead in driven_links(kernel.group)]
         self.slots = [slide for slide in linkage.slides if slide.ends is not None]
         self.limited = (
             *(Limited(f"angle{n}", "pressure", lead[0], lead[1].kind == "P") for n, lead in enumerate(leads)),
@@ -164,10 +172,10 @@ class Turning:
         for k, at in enumerate(states.placements):
             found |= {f"gap{k}": at.residual - at.slack, f"slack{k}": at.slack, f"det{k}": at.det}
         for k, link in enumerate(self.stroke_links):
-            found |= {f"slope{k}": output_slope(states, link), f"place{k}": output_place(states, link)}
-        leads = [(k, lead) for k, kernel in enumerate(kernels) for lead in followers(kernel.group)]
+            found |= {f"slope{k}": output_slope(states, link), f"place{k}": output_coordinate(states, link)}
+        leads = [(k, lead) for k, kernel in enumerate(kernels) for lead in driven_links(kernel.group)]
         for n, (k, lead) in enumerate(leads):
-            found[f"angle{n}"] = angle(states, kernels[k], states.placements[k], lead)
+            found[f"angle{n}"] = pressure_angle(states, kernels[k], states.placements[k], lead)
         for n, slide in enumerate(self.slots):
             own = linkage.slide(slide.name)
             first, last = (linkage.local(own.carrier, name) for name in own.ends)

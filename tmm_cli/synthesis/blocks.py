@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, Field, ValidationError, WithJso
 from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, KINDS, LENGTH, NUMBER, SPEED, Dimension
+from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, DIMENSIONS, LENGTH, NUMBER, SPEED, Dimension
 from tmm_cli.problem import (
     VALUE,
     FileHead,
@@ -88,7 +88,7 @@ def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
 def read_numbers(shape: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
     """The values in SI of those of these quantities, by their keys, that are given. Raises ProblemError."""
     given = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
-    return {key: values.number(value, KINDS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
+    return {key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
 
 
 class TriedFileError(Exception):

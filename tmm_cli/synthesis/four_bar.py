@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import SAME_RATIO
 
@@ -155,7 +155,7 @@ def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | Non
         return None
     frame, crank = linkage.links[FRAME].points, linkage.links[linkage.driver.link].points
     base = np.angle(frame[loop.d] - frame[loop.a]) - np.angle(crank[loop.b] - crank[loop.a])
-    motion = move(linkage, results.kernels, np.atleast_1d(phi) + base, POSITIONS_ONLY, 0)
+    motion = compute_motion(linkage, results.kernels, np.atleast_1d(phi) + base, POSITIONS_ONLY, 0)
     return frame[loop.a], motion.spot(loop.b), motion.spot(loop.c), frame[loop.d]
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.kinematics import DriverRange, find_pressure, find_travel, output_slope
 from tmm_cli.mechanics.linkage import FRAME, Output
-from tmm_cli.mechanics.numerics import MET, NO_DEMAND, SURE_SIGN, Real, bisect
+from tmm_cli.mechanics.numerics import DEMAND_MET, NO_DEMAND, SURE_SIGN, Real, bisect
 from tmm_cli.synthesis.record import Demand, SynthesisOutcome
 
 
@@ -182,7 +182,7 @@ class MeasuredDemand:
 
     @property
     def met(self) -> bool:
-        return self.difference <= max(MET, self.open)
+        return self.difference <= max(DEMAND_MET, self.open)
 
 
 @lru_cache(maxsize=1)
@@ -200,7 +200,7 @@ def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[Measur
     for demand in outcome.demands:
         value = _without_rounding(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
-        found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > MET else 0.0))
+        found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > DEMAND_MET else 0.0))
     return tuple(found)
 
 

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 
 from tmm_cli.language import N_, _, translated
 from tmm_cli.mechanics.numerics import bisect
-from tmm_cli.mechanics.quantities import ANGLE, KINDS, NUMBER, Dimension
+from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, NUMBER, Dimension
 from tmm_cli.problem import (
     Parser,
     Path,
@@ -64,7 +64,7 @@ def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: st
     told = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
         value, kind, side = error.nearest
-        dimension = KINDS[kind].dimension
+        dimension = DIMENSIONS[kind].dimension
         told = _nearest_message(error.path, round_to_side(units, value, dimension, side), dimension, units)
     for step in error.path:
         inside = isinstance(given, list) or (isinstance(given, dict) and step in given)
@@ -236,7 +236,9 @@ class TaskFile:
     def stand_ins(self) -> Parameters:
         """Values in place of those to be found, no two in a simple ratio. A search does not tell its kinds before."""
         return {
-            name: PhysicalValue(1 + k * GOLDEN_RATIO % 1, None if self.searches else KINDS[self.kinds[own]].dimension)
+            name: PhysicalValue(
+                1 + k * GOLDEN_RATIO % 1, None if self.searches else DIMENSIONS[self.kinds[own]].dimension
+            )
             for k, (own, name) in enumerate(self.names.items())
         }
 
@@ -338,7 +340,7 @@ class TaskFile:
     def values(self, outcome: SynthesisOutcome) -> Parameters:
         """The parameters that were found, under the names that the file gives them."""
         return {
-            self.names[name]: PhysicalValue(_plain_number(value.value), KINDS[value.kind].dimension)
+            self.names[name]: PhysicalValue(_plain_number(value.value), DIMENSIONS[value.kind].dimension)
             for name, value in outcome.parameters.items()
             if name in self.names
         }

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics import DEAD_SWING, settled, unit
+from tmm_cli.mechanics.numerics import DEAD_SWING, unit, zero_within_rounding
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError, Value as FileValue, ValueReader, Vector
 from tmm_cli.synthesis.blocks import Range, TaskBlock, choose_key_set, read_numbers
@@ -207,9 +207,9 @@ def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
     else:
         frame = np.asarray(task.within[0])
     size = lever + frame + np.abs(c)
-    along, c = settled(along, 1.0), settled(c, size)
+    along, c = zero_within_rounding(along, 1.0), zero_within_rounding(c, size)
     return SlottedLeverSolution(
-        frame * sine, frame, lever, settled(c + frame * along, size), c, psi1, psi2, theta, longest
+        frame * sine, frame, lever, zero_within_rounding(c + frame * along, size), c, psi1, psi2, theta, longest
     )
 
 

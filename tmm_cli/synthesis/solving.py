@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 from tmm_cli.mechanics.analysis import Inputs, Results, pipeline, redriven
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.structure import ChainResults, examine
+from tmm_cli.mechanics.structure import ChainResults, count_chain
 from tmm_cli.problem import (
     ChainProblem,
     Problem,
@@ -97,7 +97,7 @@ class ExtendedInputs:
 
 def count(problem: ChainProblem) -> ChainResults:
     """Count the chain of a problem that gives it by pairs alone."""
-    return ChainResults(problem, examine(problem.chain, problem.output, problem.local, problem.wanted))
+    return ChainResults(problem, count_chain(problem.chain, problem.output, problem.local, problem.wanted))
 
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:

@@ -13,9 +13,9 @@ import numpy as np
 from tmm_cli.animation.gallery.moving_picture import Turning, scheme, turning
 from tmm_cli.language import N_, _, signed, typeset
 from tmm_cli.mechanics.analysis import Results, at_positions
-from tmm_cli.mechanics.kinematics import Strokes, Travel, output_run
+from tmm_cli.mechanics.kinematics import OutputTravel, Strokes, output_run
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, place_dimension
+from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, coordinate_dimension
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import Tree, UnitSystem, build_any_problem, build_chain, is_chain, read_file
 from tmm_cli.reports import MET, properties_shown, with_unit
@@ -190,15 +190,15 @@ def _facts(results: Results) -> Iterator[Value]:
     if structure.redundant:
         yield _("passive constraints"), float(structure.redundant), NUMBER
     for one in results.swinging:
-        yield _stroke(linkage, one), one.travel, place_dimension(one.kind)
+        yield _stroke(linkage, one), one.travel, coordinate_dimension(one.kind)
         yield _("coefficient of change of mean speed k"), one.k, NUMBER
     for travel in results.travels:
-        yield _stroke(linkage, travel), travel.high - travel.low, place_dimension(travel.kind)
+        yield _stroke(linkage, travel), travel.high - travel.low, coordinate_dimension(travel.kind)
     if results.pressure:
         yield _("largest pressure angle"), max(one.largest for one in results.pressure), ANGLE
 
 
-def _stroke(linkage: Linkage, found: Strokes | Travel) -> str:
+def _stroke(linkage: Linkage, found: Strokes | OutputTravel) -> str:
     link = found.link
     if linkage.output_point(link) is not None:
         return _("travel of {link}").format(link=link)

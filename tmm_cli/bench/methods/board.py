@@ -26,13 +26,13 @@ from tmm_cli.mechanics.groups import (
     Poses,
     Rate,
     Rates,
-    Wrapped,
+    WrappedSolver,
     Wrench,
     driven_state,
     drives_at,
     frame_state,
 )
-from tmm_cli.mechanics.kinematics import Motion, move
+from tmm_cli.mechanics.kinematics import Motion, compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 from tmm_cli.mechanics.plans import Plan, acceleration_plan, force_plans, sheet_scale, velocity_plan
@@ -74,7 +74,7 @@ def _scale(plan: Plan) -> float:
 
 
 @dataclass(frozen=True)
-class Polygon(Wrapped):
+class Polygon(WrappedSolver):
     """A group whose forces are read off its polygon; grid in N."""
 
     grid: Real
@@ -221,7 +221,7 @@ def prepare(millimetres: float, case: Case) -> Callable[[Real], Answers]:
     """The board on which points are read to so many millimetres."""
 
     def at(q: Real) -> Answers:
-        exact = move(case.linkage, case.kernels, q, case.law)
+        exact = compute_motion(case.linkage, case.kernels, q, case.law)
         scales = Scales.of(case, exact, react(exact, case.structure, case.loads(exact)))
         x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
         speed = np.abs(exact.rate)

@@ -11,11 +11,11 @@ import numpy as np
 
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.forces import Applied, Reactions, applied
-from tmm_cli.mechanics.groups import Accel, DriverMotion, Kernel, Pose, Rate, Wrench, drives_at, spread
+from tmm_cli.mechanics.groups import Accel, DriverMotion, GroupSolver, Pose, Rate, Wrench, drives_at, link_extent
 from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real, Vector, cross
-from tmm_cli.mechanics.structure import Structure, analyse
+from tmm_cli.mechanics.structure import Structure, analyse_structure
 
 Compared = Literal["positions", "velocities", "accelerations", "reactions", "balancing"]
 QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")
@@ -35,14 +35,14 @@ class Case:
     name: str
     linkage: Linkage
     structure: Structure
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     start: float = 0.0
     strokes: Strokes | None = None
 
     @classmethod
     def of(cls, linkage: Linkage, name: str = "", start: float = 0.0, strokes: Strokes | None = None) -> Case:
         """A linkage assembled as its sketch shows it. Raises what assembly raises."""
-        structure = analyse(linkage)
+        structure = analyse_structure(linkage)
         return cls(name, linkage, structure, assemble(linkage, structure), start, strokes)
 
     @property
@@ -53,7 +53,7 @@ class Case:
     @cached_property
     def size(self) -> float:
         """The farthest two points of one link, m: what gaps of length are measured against."""
-        return max(spread(self.linkage, link) for link in self.linkage.links) or 1.0
+        return max(link_extent(self.linkage, link) for link in self.linkage.links) or 1.0
 
     def motion(
         self, q: Real, poses: Mapping[str, Pose], first: Mapping[str, Rate], second: Mapping[str, Accel]

@@ -14,7 +14,7 @@ import numpy as np
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
 from tmm_cli.mechanics.forces import react
 from tmm_cli.mechanics.groups import Accel, Rate
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import Real
 
 
@@ -24,7 +24,9 @@ def prepare(step: float, case: Case) -> Callable[[Real], Answers]:
 
     def answer(q: Real) -> Answers:
         back, on = q - h, q + h
-        here, less, more = (move(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on))
+        here, less, more = (
+            compute_motion(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on)
+        )
         half = (on - back) / 2  # as it was rounded
         first, second = {}, {}
         for name, pose in here.poses.items():

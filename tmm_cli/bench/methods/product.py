@@ -15,9 +15,9 @@ from tmm_cli.batch import Batch, prepare_batch as batch_of
 from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
 from tmm_cli.mechanics.accuracy import widened
 from tmm_cli.mechanics.forces import Reactions, react
-from tmm_cli.mechanics.groups import Kernel, Newton, Wrapped
-from tmm_cli.mechanics.kinematics import Motion, move
-from tmm_cli.mechanics.numerics import DoubleDouble, Real, exactly, mapped
+from tmm_cli.mechanics.groups import GroupSolver, NewtonSolver, WrappedSolver
+from tmm_cli.mechanics.kinematics import Motion, compute_motion
+from tmm_cli.mechanics.numerics import DoubleDouble, Real, map_record, to_double_double
 from tmm_cli.mechanics.structure import Group, Pair
 
 
@@ -44,7 +44,7 @@ def recast(value: Any, real: type) -> Any:
 
 
 @dataclass(frozen=True)
-class Recast(Wrapped):
+class Recast(WrappedSolver):
     """A group whose work is done in another precision, whatever it is given."""
 
     real: type
@@ -65,9 +65,9 @@ def single(case: Case) -> Callable[[Real], Answers]:
     return _at(replace(case, linkage=linkage, kernels=kernels), np.float32)
 
 
-def _started(kernel: Kernel) -> Kernel:
+def _started(kernel: GroupSolver) -> GroupSolver:
     """A group of a higher class starts from rounded places too."""
-    if isinstance(kernel, Newton):
+    if isinstance(kernel, NewtonSolver):
         return replace(kernel, start=recast(kernel.start, np.float32), trace=recast(kernel.trace, np.float32))
     return kernel
 
@@ -75,8 +75,8 @@ def _started(kernel: Kernel) -> Kernel:
 def extended(case: Case) -> Callable[[Real], Answers]:
     """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
     linkage = widened(case.linkage)
-    wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), exactly)
-    return lambda q: mapped(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
+    wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double)
+    return lambda q: map_record(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
 
 
 def _longdouble(value: DoubleDouble) -> Any:
@@ -86,7 +86,7 @@ def _longdouble(value: DoubleDouble) -> Any:
 
 def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
     def at(q: Real) -> Answers:
-        motion = move(case.linkage, case.kernels, real(q), case.law)
+        motion = compute_motion(case.linkage, case.kernels, real(q), case.law)
         motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
         return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from tmm_cli.bench.methods import board, differences, loops, multibody, product as precision, product as taped
+from tmm_cli.bench.methods import board, differences, product
 from tmm_cli.bench.methods.case import Answers, Case, Method
+from tmm_cli.bench.methods.constraint_equations import prepare_loops, prepare_multibody
 from tmm_cli.mechanics.numerics import Real
 
 
@@ -21,16 +22,16 @@ def family(
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 
 
-CLOSED_FORM = Method("closed", "closed", precision.double)
-TAPED = Method("taped", "taped", taped.prepare)
+CLOSED_FORM = Method("closed", "closed", product.double)
+TAPED = Method("taped", "taped", product.prepare)
 METHODS: tuple[Method, ...] = (
     CLOSED_FORM,
     TAPED,
-    *family("newton", loops.prepare, {f"{k}": 10.0**-k for k in range(2, 16)}),
-    Method("multibody", "multibody", multibody.prepare),
+    *family("newton", prepare_loops, {f"{k}": 10.0**-k for k in range(2, 16)}),
+    Method("multibody", "multibody", prepare_multibody),
     *family("differences", differences.prepare, {f"{k}": 10.0**-k for k in range(1, 9)}),
-    Method("single", "single", precision.single),
-    Method("extended", "extended", precision.extended),
+    Method("single", "single", product.single),
+    Method("extended", "extended", product.extended),
     *family("board", board.prepare, {f"{mm:.2f}": mm for mm in (0.25, 0.5)}, timed=False),
 )
 LEFT_OUT = ("newton-3", "newton-5", "newton-7", "newton-9", "newton-11", "newton-13", "differences-5", "differences-7")

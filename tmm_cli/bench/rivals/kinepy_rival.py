@@ -12,7 +12,7 @@ import kinepy
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
@@ -84,7 +84,7 @@ class _Model:
         """The assemblies that the sketch shows."""
         case = self.case
         q = case.start + STEP * np.arange(5)
-        true = move(case.linkage, case.kernels, q, case.law)
+        true = compute_motion(case.linkage, case.kernels, q, case.law)
         for signs in product((1, -1), repeat=len(self.system._object.signs)):
             if signs:
                 self.system.change_signs(signs)
@@ -105,7 +105,7 @@ class _Model:
             self._times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # places between two that are asked for
             step /= self._times
             self._grid = q[0] + step * np.arange(-1, (len(q) - 1) * self._times + 2)
-            motion = move(self.case.linkage, self.case.kernels, self._grid, self.case.law)  # loads are data
+            motion = compute_motion(self.case.linkage, self.case.kernels, self._grid, self.case.law)  # loads are data
             self.load([(a.link, a.at, a.force, a.moment) for a in self.case.loads(motion) if a.kind == "load"])
             self._dt = step / (self.case.law.sense * self.case.law.rate)
             self._loaded = key

@@ -13,7 +13,7 @@ from pylinkage.simulation import Linkage
 from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
 from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, unit
 from tmm_cli.mechanics.structure import Group, Pair
@@ -45,7 +45,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
         raise Unable("a crank is the only driver")
-    start = move(case.linkage, case.kernels, np.array([case.start]), case.law)
+    start = compute_motion(case.linkage, case.kernels, np.array([case.start]), case.law)
     places = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
     for point, place in case.linkage.links[FRAME].points.items():
@@ -65,7 +65,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
 
     def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
         """Joints one step before the first place, and what else its solver is given."""
-        before = move(case.linkage, case.kernels, np.array([first - step]), case.law)
+        before = compute_motion(case.linkage, case.kernels, np.array([first - step]), case.law)
         for name in set(case.linkage.moving_points) & set(parts):
             at = complex(before.named(name).x[0])
             parts[name].x, parts[name].y = at.real, at.imag

@@ -9,7 +9,7 @@ import numpy as np
 from contourpy import contour_generator
 from numpy.typing import NDArray
 
-from tmm_cli.mechanics.numerics import SAME_PLACES
+from tmm_cli.mechanics.numerics import SAME_POINTS
 
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
 BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
@@ -65,7 +65,7 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
     for k, own in spans.items():
         last: list[float] = []
         for start, end in sorted(own):
-            if last and start <= last[1] + SAME_PLACES * pitch:
+            if last and start <= last[1] + SAME_POINTS * pitch:
                 last[1] = max(last[1], end)
                 continue
             if last:

@@ -30,7 +30,7 @@ from tmm_cli.drawing.symbols import (
 )
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.mechanics.assembly import Assemblies, Assembly, GroupAssemblies, listed
+from tmm_cli.mechanics.assembly import Assemblies, Assembly, GroupAssemblies, name_assembly_files
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import DEAD
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
@@ -46,7 +46,7 @@ LEAST_SYMBOLS = 0.7  # size of symbols: smaller ones cannot be read
 
 def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
     """The sheets with the stems of their files, more than one of a group with many; none without a real assembly."""
-    for stem, here, group in listed(results.assemblies or ()):
+    for stem, here, group in name_assembly_files(results.assemblies or ()):
         every = list(enumerate(group.assemblies, 1))
         for first in range(0, len(every), ASSEMBLIES_PER_SHEET):
             name = stem if first == 0 else f"{stem}-sheet-{first // ASSEMBLIES_PER_SHEET + 1}"

@@ -20,7 +20,7 @@ from tmm_cli.drawing.symbols import MechanismScene, frame_pivots, points_to_scal
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.mechanics.kinematics import Centre, Line, Links
+from tmm_cli.mechanics.kinematics import CentreLine, InstantCentre, LinkPair
 from tmm_cli.mechanics.numerics import dot
 from tmm_cli.reports import name
 
@@ -41,7 +41,7 @@ def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
         )
 
 
-def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[Centre]) -> Drawing:
+def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[InstantCentre]) -> Drawing:
     linkage = here.results.linkage
     places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     size = max(abs(p - places[0]) for p in places)
@@ -63,7 +63,7 @@ def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[C
     return sheet.finish()
 
 
-def _centre_names(links: Iterable[Links]) -> tuple[Symbol | str, ...]:
+def _centre_names(links: Iterable[LinkPair]) -> tuple[Symbol | str, ...]:
     told: list[Symbol | str] = []
     for pair in links:
         told += [", "] * bool(told) + [Symbol("P", name(pair)[1:])]
@@ -71,7 +71,11 @@ def _centre_names(links: Iterable[Links]) -> tuple[Symbol | str, ...]:
 
 
 def _draw_kennedy_line(
-    sheet: DrawingSheet, line: Line, centre: Centre, known: Mapping[Links, Centre], near: Mapping[Links, complex]
+    sheet: DrawingSheet,
+    line: CentreLine,
+    centre: InstantCentre,
+    known: Mapping[LinkPair, InstantCentre],
+    near: Mapping[LinkPair, complex],
 ) -> None:
     """Through two centres and the one that they show, or to the border where one of them is beyond it."""
     through = [known[links] for links in line]
@@ -90,7 +94,7 @@ def _draw_kennedy_line(
         sheet.line([low, high], INERTIA_COLOUR, 0.7, "-.", 1.5, faint=True)
 
 
-def _line_direction(through: Sequence[Centre]) -> complex:
+def _line_direction(through: Sequence[InstantCentre]) -> complex:
     one, other = through
     if one.place is not None and other.place is not None:
         way = other.place - one.place
@@ -98,7 +102,7 @@ def _line_direction(through: Sequence[Centre]) -> complex:
     return complex(one.direction or other.direction or 1)
 
 
-def _distant_centre_notes(found: Sequence[Centre], near: Mapping[Links, complex]) -> Iterator[str]:
+def _distant_centre_notes(found: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
     """Centres that are not on the sheet."""
     for centre in found:
         symbol = Symbol("P", name(centre.links)[1:]).name

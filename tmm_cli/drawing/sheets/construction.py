@@ -26,7 +26,7 @@ from tmm_cli.drawing.symbols import GUIDE_EXTENSION, MEASURED, Segment, draw_box
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.plans import sheet_scale
-from tmm_cli.mechanics.quantities import KINDS
+from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.problem import UnitSystem
 from tmm_cli.synthesis import (
     CHAIN_LETTERS,
@@ -302,7 +302,7 @@ def _draw_size(sheet: DrawingSheet, size: DimensionLine, units: UnitSystem) -> N
 
 def _equation_text(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
     """H = 120 mm."""
-    measure = KINDS[kind].dimension
+    measure = DIMENSIONS[kind].dimension
     number = float(units.from_si(value, measure))
     text = numeral(number, ".0f" if "e+" in f"{number:.4g}" else ".4g")
     unit = units.spelt(measure) if symbol else ""
@@ -317,6 +317,6 @@ def _write_notes(
     for k in range(0, len(values), 3):
         sheet.note(", ".join(values[k : k + 3]))
     if drawn.sizes:
-        sheet.note(_("sizes in {unit}").format(unit=units.spelt(KINDS["length"].dimension)))
+        sheet.note(_("sizes in {unit}").format(unit=units.spelt(DIMENSIONS["length"].dimension)))
     for key in drawn.notes:
         sheet.note(translated(key).format(**letters))

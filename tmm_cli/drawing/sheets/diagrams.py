@@ -40,7 +40,7 @@ from tmm_cli.mechanics.analysis import Results, at_places
 from tmm_cli.mechanics.forces import table_jumps
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
-from tmm_cli.mechanics.structure import DENSE
+from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 from tmm_cli.problem import UnitSystem, typeset_unit
 
 MOST_POINTS = 1440  # of a curve over a cycle
@@ -112,7 +112,7 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
     """Places of the driver close together, and after which of them a stroke ends or a table of a load jumps."""
     turns, sense = results.turns, results.linkage.driver.sense
-    places = results.closely(min((DENSE - 1) * (turns or 1), MOST_POINTS) + 1)
+    places = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
         return places, []
     gone, end = sense * (places - results.start), 2 * np.pi * turns

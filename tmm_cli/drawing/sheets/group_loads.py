@@ -22,7 +22,7 @@ from tmm_cli.drawing.sheets.mechanism import Position, draw_measured
 from tmm_cli.drawing.symbols import MechanismScene
 from tmm_cli.language import _, filled, half_up, numeral, spelt
 from tmm_cli.mechanics.forces import Acting, ForceSum, LoadedPart, MomentEquation, Part, Symbol, Term, loaded_parts
-from tmm_cli.mechanics.numerics import NO_MOMENT, SAME_PLACES
+from tmm_cli.mechanics.numerics import NO_MOMENT, SAME_POINTS
 from tmm_cli.mechanics.plans import extent as extent_of
 from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem import UnitSystem
@@ -213,7 +213,7 @@ def _group_sheets(
         return DrawingCaption(lines, (forces_table(shown), arms_table(equations, units, mu)))
 
     sized = [*((place, 0j) for place in places), *arrow_extent(shown)]
-    if extent_of([place for place, __ in sized])[0] <= SAME_PLACES * here.motion.largest.size:  # but for rounding one
+    if extent_of([place for place, __ in sized])[0] <= SAME_POINTS * here.motion.largest.size:  # but for rounding one
         places, sized = places[:1], [(places[0], along) for __, along in sized]
     sheet, text = captioned_sheets(here, title, sized, beneath, links=", ".join(part.links))
     draw_measured(sheet, scene, links=part.links)

@@ -25,7 +25,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, at_places
 from tmm_cli.mechanics.forces import Reaction, reaction_symbol
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import NO_FORCE, SAME_PLACE, Vector
+from tmm_cli.mechanics.numerics import NO_FORCE, SAME_DRIVER_POSITION, Vector
 from tmm_cli.mechanics.quantities import FORCE
 
 AXIS_OVERHANG = 8.0  # mm of the axes beyond the curves
@@ -86,7 +86,7 @@ def _turned_hodographs(
     assert results.motion is not None and whole.motion is not None
     pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
     for link in (here.by, here.on):
-        if link != FRAME and np.ptp(angles := whole.motion.angle(link)) > SAME_PLACE:
+        if link != FRAME and np.ptp(angles := whole.motion.angle(link)) > SAME_DRIVER_POSITION:
             title = _("Hodograph of the reaction {name} in pair {pair}, in axes that turn with link {link}")
             own = np.exp(-1j * angles), np.exp(-1j * results.motion.angle(link))
             one = Hodograph("", cycle.force * own[0], here.force * own[1], REACTION_COLOUR, leaps=leaps)

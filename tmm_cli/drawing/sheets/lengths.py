@@ -12,9 +12,9 @@ from tmm_cli.drawing.paper import TableRow, Words
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.mechanics.groups import axis
+from tmm_cli.mechanics.groups import carrier_axis
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import SAME_PLACES, cross, unit
+from tmm_cli.mechanics.numerics import SAME_POINTS, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, Dimension
 
 TableSize = tuple[Words, str, float, Dimension]
@@ -53,7 +53,7 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
     for mesh in teeth:
         radii = {mesh.i: abs(mesh.ratio)}  # of one that rolls on a rack
         if mesh.kind == "gear":
-            apart = abs(axis(linkage, mesh.j, mesh.carrier) - axis(linkage, mesh.i, mesh.carrier))
+            apart = abs(carrier_axis(linkage, mesh.j, mesh.carrier) - carrier_axis(linkage, mesh.i, mesh.carrier))
             turn = float(apart) / abs(1 - mesh.ratio)
             radii = {mesh.i: turn * abs(mesh.ratio), mesh.j: turn}
         for link, radius in radii.items():
@@ -76,7 +76,7 @@ def _coordinate_parameter(results: Results, written: Any, place: complex, size: 
         return ""
     both = zip(written, (place.real, place.imag), strict=False)
     found = [
-        _renaming_parameter(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_PLACES * size
+        _renaming_parameter(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_POINTS * size
     ]
     return next((parameter for parameter in found if parameter), "")
 
@@ -103,7 +103,7 @@ def _frame_sizes(results: Results) -> Iterator[TableSize]:
     start, origin = next(iter(pivots.items()), ("", 0j))
     for name, place in list(pivots.items())[1:]:
         off, both = place - origin, start + name
-        if min(abs(off.real), abs(off.imag)) < SAME_PLACES * abs(off):
+        if min(abs(off.real), abs(off.imag)) < SAME_POINTS * abs(off):
             parameter = _coordinate_parameter(results, _file_value(results, "points", name), place, abs(off), both)
             yield both, parameter, abs(off), LENGTH
         else:
@@ -112,7 +112,7 @@ def _frame_sizes(results: Results) -> Iterator[TableSize]:
         if slide.carrier == FRAME:
             along, through = complex(unit(slide.direction)), complex(slide.through)
             far = abs(float(cross(along, origin - through)))
-            far = far if far > SAME_PLACES * abs(through) else 0.0
+            far = far if far > SAME_POINTS * abs(through) else 0.0
             written = _file_value(results, "guides", slide.name, "through")
             parameter = _coordinate_parameter(results, written, through, far, "") if far else ""
             title = _("guide {name} from {point}").format(name=slide.name, point=start or "0")

@@ -40,7 +40,7 @@ from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Vector, dot
 from tmm_cli.mechanics.plans import massive
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.mechanics.structure import DENSE
+from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 
 POSITION_MARGIN = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 SAME_LINE = 0.1  # mm between lines that look like one
@@ -143,7 +143,7 @@ def draw_skeleton(
 
 def point_paths(results: Results) -> list[Vector]:
     """Paths of all moving points over the cycle, and of centres of mass that are none of them, m."""
-    linkage, whole = results.linkage, at_positions(results, results.closely(DENSE), 0)
+    linkage, whole = results.linkage, at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
     found = [whole.spot(name) for name in linkage.moving_points]
     for link in massive(linkage):
         own = linkage.links[link]

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.language import _, translated
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import balance_symbol, reaction_symbol
-from tmm_cli.mechanics.kinematics import Motion, angle, followers, named
+from tmm_cli.mechanics.kinematics import Motion, driven_links, driving_pair_names, pressure_angle
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
@@ -155,9 +155,9 @@ def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
     """Pressure angles of all driven links, those that slide and those that turn apart: different ones are allowed."""
     with np.errstate(all="ignore"):
         curves = {
-            (kernel.group.title, lead[0], named(lead)): angle(motion, kernel, at, lead)
+            (kernel.group.title, lead[0], driving_pair_names(lead)): pressure_angle(motion, kernel, at, lead)
             for kernel, at in zip(motion.kernels, motion.placements, strict=True)
-            for lead in followers(kernel.group)
+            for lead in driven_links(kernel.group)
         }
     found = []
     for slides in (True, False):

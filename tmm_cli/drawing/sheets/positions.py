@@ -39,7 +39,7 @@ from tmm_cli.mechanics.forces import subscript
 from tmm_cli.mechanics.groups import LinkStates
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import SAME_PLACE, Vector, unit
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, Vector, unit
 from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 
@@ -78,7 +78,7 @@ def output_extremes(results: Results) -> list[OutputExtreme]:
         last = strokes.strokes[-1]
         if len(ends) == 1:
             ends.append(last.start + results.linkage.driver.sense * last.length)
-    elif travels and travels[0].high - travels[0].low > SAME_PLACE:
+    elif travels and travels[0].high - travels[0].low > SAME_DRIVER_POSITION:
         cycle, ends = np.inf, [travels[0].low_at, travels[0].high_at]
     else:
         return []
@@ -87,7 +87,7 @@ def output_extremes(results: Results) -> list[OutputExtreme]:
     for q in ends:
         off = np.abs(asked - q) if np.isinf(cycle) else np.abs((asked - q + cycle / 2) % cycle - cycle / 2)
         here = int(np.argmin(off))
-        found.append(OutputExtreme(float(q), str(results.numbers[here]) if off[here] < SAME_PLACE else ""))
+        found.append(OutputExtreme(float(q), str(results.numbers[here]) if off[here] < SAME_DRIVER_POSITION else ""))
     between = [extreme for extreme in found if not extreme.mark]
     for number, extreme in enumerate(between, 1):
         mark = "k" + ("" if len(between) == 1 else "′" * (number - 1) if len(between) == 2 else subscript(str(number)))

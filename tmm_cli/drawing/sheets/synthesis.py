@@ -41,7 +41,7 @@ from tmm_cli.drawing.symbols import (
 from tmm_cli.language import _, translated
 from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.plans import LANDSCAPE
-from tmm_cli.mechanics.quantities import ANGLE, KINDS, Dimension
+from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, Dimension
 from tmm_cli.problem import UnitSystem
 from tmm_cli.synthesis import Diagram, DiagramLine, SynthesisOutcome
 
@@ -80,7 +80,7 @@ def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
     """Curves over one quantity, in the units of the file."""
     sheet = DrawingSheet(title, translated(drawn.title), paper=LANDSCAPE)
     words, kind = drawn.x
-    wide = KINDS[kind].dimension
+    wide = DIMENSIONS[kind].dimension
     over = finite_limits(
         [np.asarray(line.x, dtype=float) / units.factor(wide) for line in (*drawn.lines, *drawn.lower)]
     )
@@ -97,7 +97,7 @@ def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
 def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> PlotContent:
     """Curves of a panel, those behind the others first."""
     words, kind = y
-    high = KINDS[kind].dimension
+    high = DIMENSIONS[kind].dimension
     colours = cycle((DARK_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR))
     curves = [
         ChartCurve(

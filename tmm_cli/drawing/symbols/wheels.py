@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import axis
+from tmm_cli.mechanics.groups import carrier_axis
 from tmm_cli.mechanics.linkage import Mesh
 from tmm_cli.mechanics.numerics import Vector, dot, unit
 
@@ -84,7 +84,7 @@ def higher_pair_outline(scene: MechanismScene, mesh: Mesh) -> HigherPairOutline:
 
 def _axis_point(scene: MechanismScene, mesh: Mesh, link: str) -> complex:
     """Where the axis of a wheel or cam is, m."""
-    return scene.place(mesh.carrier, axis(scene.linkage, link, mesh.carrier))
+    return scene.place(mesh.carrier, carrier_axis(scene.linkage, link, mesh.carrier))
 
 
 def _cam_angle(scene: MechanismScene, mesh: Mesh) -> float:

@@ -12,8 +12,8 @@ from tmm_cli.batch import Family
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Quantity
 from tmm_cli.mechanics.forces import Applied, Reactions, applied, react, solve_friction
-from tmm_cli.mechanics.groups import DriverMotion, Kernel
-from tmm_cli.mechanics.kinematics import Motion, Strokes, move
+from tmm_cli.mechanics.groups import DriverMotion, GroupSolver
+from tmm_cli.mechanics.kinematics import Motion, Strokes, compute_motion
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 
@@ -45,7 +45,7 @@ def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
     kernels = family.kernels
     for mistake in mistakes:
         kernels = tuple(mistake.kernel(kernel, family) for kernel in kernels)
-    motion = move(family.linkage, kernels, family.q, law)
+    motion = compute_motion(family.linkage, kernels, family.q, law)
     for mistake in mistakes:
         motion = mistake.motion(motion)
     with np.errstate(all="ignore"):
@@ -89,7 +89,7 @@ class Mistake:
         """The variants as the student took them."""
         return family
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         """A group as the student solved it."""
         return kernel
 

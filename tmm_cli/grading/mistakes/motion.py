@@ -12,19 +12,19 @@ from tmm_cli.language import N_
 from tmm_cli.mechanics.groups import (
     Accel,
     Accels,
-    Closed,
-    Constraint,
-    Drives,
-    Guided,
-    Kernel,
-    Newton,
+    ClosedFormSolver,
+    DriverStates,
+    GroupSolver,
+    GuideGeometry,
+    NewtonSolver,
+    PairConstraint,
     Placement,
     Poses,
     Rates,
-    Sliding,
-    Wrapped,
+    SlideConstraint,
+    WrappedSolver,
 )
-from tmm_cli.mechanics.kinematics import Motion, Point
+from tmm_cli.mechanics.kinematics import Motion, PointMotion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import Real, cross
 
@@ -41,11 +41,11 @@ class Mirror(Mistake):
     @classmethod
     def cases(cls, family: Family) -> Iterable[Self]:
         for kernel in family.kernels:
-            if isinstance(kernel, Closed) and kernel.assemblies == 2:
+            if isinstance(kernel, ClosedFormSolver) and kernel.assemblies == 2:
                 yield cls(", ".join(kernel.group.links))
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
-        if isinstance(kernel, Closed) and ", ".join(kernel.group.links) == self.links:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+        if isinstance(kernel, ClosedFormSolver) and ", ".join(kernel.group.links) == self.links:
             return replace(kernel, sign=-kernel.sign)
         return kernel
 
@@ -53,11 +53,11 @@ class Mirror(Mistake):
 # Groups whose accelerations follow from other velocity terms; places, velocities and reactions are right.
 
 
-Terms = Callable[[Constraint, Poses, Rates], Any]  # the velocity terms of a pair as the student has them
+Terms = Callable[[PairConstraint, Poses, Rates], Any]  # the velocity terms of a pair as the student has them
 
 
 @dataclass(frozen=True)
-class Equations(Newton):
+class Equations(NewtonSolver):
     """A group as equations, one a row of a pair, with other velocity terms."""
 
     terms: Terms = field(kw_only=True)
@@ -67,20 +67,20 @@ class Equations(Newton):
 
 
 @dataclass(frozen=True)
-class OtherTerms(Wrapped):
+class OtherTerms(WrappedSolver):
     """Accelerations from equations with other velocity terms."""
 
     equations: Equations
 
     @classmethod
-    def of(cls, right: Kernel, linkage: Linkage, terms: Terms) -> OtherTerms:
+    def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> OtherTerms:
         """The group with its numbers."""
-        plain = Newton.of(right.group.rebind(linkage), linkage)
+        plain = NewtonSolver.of(right.group.rebind(linkage), linkage)
         own = {f.name: getattr(plain, f.name) for f in fields(plain)}
         return cls.around(right, Equations(**own, terms=terms))
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         return self.equations.accelerations(at, poses, rates, accels, drives)
 
@@ -102,16 +102,16 @@ class Normal(Mistake):
         linkage = family.linkage
         yield from (cls(link) for link in linkage.moving if not linkage.slides_on_frame(link))
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         if self.link in kernel.group.links:
             return OtherTerms.of(kernel, family.linkage, self._terms)
         return Unturned.around(kernel, self.link)
 
-    def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
+    def _terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
         still = without(rates, self.link)
-        if not isinstance(pair, Sliding):
+        if not isinstance(pair, SlideConstraint):
             return pair.velocity_terms(poses, still)
-        here, (turned, across) = Guided.at(pair.slide, poses), pair.velocity_terms(poses, rates)
+        here, (turned, across) = GuideGeometry.at(pair.slide, poses), pair.velocity_terms(poses, rates)
         return turned, across + cross(here.u, here.bend(pair.slide, still) - here.bend(pair.slide, rates))
 
     def motion(self, motion: Motion) -> Motion:
@@ -124,13 +124,13 @@ def without(rates: Rates, link: str) -> Rates:
 
 
 @dataclass(frozen=True)
-class Unturned(Wrapped):
+class Unturned(WrappedSolver):
     """A group that hangs on the link."""
 
     link: str
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         known = without(rates, self.link) if self.link in self.group.known and self.link in rates else rates
         return self.inner.accelerations(at, poses, known, accels, drives)
@@ -142,7 +142,7 @@ class UnturnedMotion(Motion):
 
     link_without: str
 
-    def _point(self, link: str, local: complex) -> Point:
+    def _point(self, link: str, local: complex) -> PointMotion:
         found = super()._point(link, local)
         if link != self.link_without:
             return found
@@ -170,7 +170,7 @@ class Tangential(Mistake):
                 if pair.kind == "R":
                     yield cls(kernel.group.own(pair))
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         if self.link not in kernel.group.links:
             return kernel
         pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
@@ -180,7 +180,7 @@ class Tangential(Mistake):
 
 
 @dataclass(frozen=True)
-class NotTurningFaster(Wrapped):
+class NotTurningFaster(WrappedSolver):
     """A group one of whose links has no angular acceleration."""
 
     link: str
@@ -189,7 +189,7 @@ class NotTurningFaster(Wrapped):
     here: complex
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         found = dict(zip(self.group.links, self.inner.accelerations(at, poses, rates, accels, drives), strict=True))
         hinge = accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
@@ -218,16 +218,16 @@ class Coriolis(Mistake):
             if FRAME not in (slide.carrier, slide.runner):
                 yield from (cls(slide.runner, slide.carrier, sense) for sense in (0, -1))
 
-    def kernel(self, kernel: Kernel, family: Family) -> Kernel:
+    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
         slides = [pair.slide for pair in (*kernel.group.inner, *kernel.group.outer) if pair.slide is not None]
         if all(slide.runner != self.runner for slide in slides):
             return kernel
         return OtherTerms.of(kernel, family.linkage, self._terms)
 
-    def _terms(self, pair: Constraint, poses: Poses, rates: Rates) -> Any:
+    def _terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
         found = pair.velocity_terms(poses, rates)
-        if not (isinstance(pair, Sliding) and pair.links == (self.carrier, self.runner)):
+        if not (isinstance(pair, SlideConstraint) and pair.links == (self.carrier, self.runner)):
             return found
         turned, across = found
-        coriolis = 2 * rates[self.carrier].w * Guided.at(pair.slide, poses).sliding(pair.slide, rates)
+        coriolis = 2 * rates[self.carrier].w * GuideGeometry.at(pair.slide, poses).sliding(pair.slide, rates)
         return turned, across + (1 - self.sense) * coriolis

@@ -11,9 +11,9 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.groups import LinkStates, link_states
-from tmm_cli.mechanics.kinematics import DriverRange, Pressure, Strokes, output_place, pressure_at
+from tmm_cli.mechanics.kinematics import DriverRange, PressureAngle, Strokes, output_coordinate, pressure_at
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, exactly, mapped
+from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, map_record, to_double_double
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def all_changed(linkage: Linkage, changes: Iterable[tuple[Length, Any]]) -> Link
     for length, by in changes:
         for path in length.paths:
             more[path] = more.get(path, 0.0) + length.along * by
-    return mapped(lambda path, value: value + more[path] if path in more else value, linkage)
+    return map_record(lambda path, value: value + more[path] if path in more else value, linkage)
 
 
 def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
@@ -84,9 +84,9 @@ def widened(record: Record) -> Record:
     """The same record with every float and complex number as a double-double, as it stands."""
 
     def wide(path: str, value: Any) -> Any:
-        return exactly(value) if isinstance(value, float | complex) else value
+        return to_double_double(value) if isinstance(value, float | complex) else value
 
-    return mapped(wide, record)
+    return map_record(wide, record)
 
 
 # How far what was searched for goes with each length, without a search: from its function beside where it was found.
@@ -220,7 +220,7 @@ class _Beside:
         inner = (np.min(asked) < places) & (places < np.max(asked))
         return np.where(inner[:, None], moved, edges), rates
 
-    def pressure(self, pressure: Pressure) -> tuple[Real, Real]:
+    def pressure(self, pressure: PressureAngle) -> tuple[Real, Real]:
         """Of the place of a largest pressure angle, and of that angle, each (lengths,).
 
         At an end where a group stops the driver and it is a right angle it stays one, whatever the lengths.
@@ -252,10 +252,10 @@ def _coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
 
 
 def _output(link: str) -> Function:
-    return lambda states: output_place(states, link)
+    return lambda states: output_coordinate(states, link)
 
 
-def _angle(pressure: Pressure) -> Function:
+def _angle(pressure: PressureAngle) -> Function:
     return lambda states: pressure_at(states, pressure.group, pressure.link)
 
 

@@ -29,10 +29,10 @@ from tmm_cli.mechanics.analysis import (
     values as leading_values,
     with_forces,
 )
-from tmm_cli.mechanics.groups import DriverMotion, Kernel, spread
-from tmm_cli.mechanics.kinematics import DriverRange, Strokes, move, output_place
+from tmm_cli.mechanics.groups import DriverMotion, GroupSolver, link_extent
+from tmm_cli.mechanics.kinematics import DriverRange, Strokes, compute_motion, output_coordinate
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import EPS, KNOWN_LAW, LIMIT_AGREES, ROUNDOFF, Real, array, exactly, rounded
+from tmm_cli.mechanics.numerics import EPS, KNOWN_LAW, LIMIT_AGREES, ROUNDOFF, Real, array, to_double_double, to_float
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -108,13 +108,13 @@ def is_angle(key: Hashable) -> bool:
     return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
-def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[Kernel, ...]) -> Results:
+def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSolver, ...]) -> Results:
     """Motion and reactions of a linkage without a file, at places q of its driver (position 0 first)."""
     law = driver_motion(linkage, float(q[0]))
-    motion = move(linkage, kernels, q, law)
+    motion = compute_motion(linkage, kernels, q, law)
     where = near_dead(motion)
     if bool(np.any(where)):
-        motion = refined(motion, widened(linkage), exactly(q[where]), law, where)
+        motion = refined(motion, widened(linkage), to_double_double(q[where]), law, where)
     inputs = Inputs(linkage)
     mechanism = Mechanism(inputs, structure).known(
         kernels=kernels,
@@ -163,7 +163,7 @@ class _Judge:
         """Bounds and both sensitivities at the chosen positions, all of which are near a dead one or none is."""
         results, motion = self.results, self.results.motion
         assert motion is not None
-        q, first, blur = exactly(motion.q[chosen]), results.start, self.blur[chosen]
+        q, first, blur = to_double_double(motion.q[chosen]), results.start, self.blur[chosen]
         if results.inputs.extended is not None and results.inputs.request.places:
             places = np.stack(results.inputs.extended().request.places)
             first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
@@ -173,7 +173,7 @@ class _Judge:
             share, paper, by_q = self.responses(wide.linkage, q, first, chosen, true, _step(wide))
         else:
             share, paper, by_q = self.responses(results.linkage, motion.q[chosen], results.start, chosen, values, STEP)
-        bound = rounded(self.gap(values, true)) + ROUNDOFF * np.abs(values)
+        bound = to_float(self.gap(values, true)) + ROUNDOFF * np.abs(values)
         if results.running is not None:
             bound = bound + KNOWN_LAW * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
         bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
@@ -193,7 +193,7 @@ class _Judge:
         changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
         places = q[there] + np.where(number == 0, by[0], 0.0)
         other = at(self.results, all_changed(linkage, changes), places, first, chosen[there])
-        gaps = rounded(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
+        gaps = to_float(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
         slopes = gaps / by[:, None]
         values = np.array([abs(length.value) for length in data])
         return SHARE * np.tensordot(slopes[:, 1:], values, (1, 0)), PAPER * slopes[:, 1:].sum(1), slopes[:, 0]
@@ -233,7 +233,7 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     assert results.motion is not None
     kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
     # a law of motion that was found for the machine is taken as it is
-    moved = move(linkage, kernels, q, results.running or driver_motion(linkage, first))
+    moved = compute_motion(linkage, kernels, q, results.running or driver_motion(linkage, first))
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
@@ -253,18 +253,19 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     return replace(found, lever=found.lever.with_rows_of(results.lever, moved))
 
 
-def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Strokes:
+def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
     """Strokes whose output begins and ends where it really is there: tables against the stroke are counted from there,
     and in shares of its run."""
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
     lows: list[Any] = [
-        output_place(move(linkage, kernels, still + s.start, law, 0), strokes.link) for s in strokes.strokes
+        output_coordinate(compute_motion(linkage, kernels, still + s.start, law, 0), strokes.link)
+        for s in strokes.strokes
     ]
     swings = linkage.output_swings(strokes.link)
     begun = []
     for k, (stroke, low) in enumerate(zip(strokes.strokes, lows, strict=True)):
         more = lows[(k + 1) % len(lows)] - low - stroke.run
-        run = stroke.run + (more - 2 * np.pi * np.round(rounded(more) / (2 * np.pi)) if swings else more)
+        run = stroke.run + (more - 2 * np.pi * np.round(to_float(more) / (2 * np.pi)) if swings else more)
         begun.append(replace(stroke, low=low, run=run))
     others = tuple(_begun(other, linkage, kernels, q) for other in strokes.others)
     return replace(strokes, strokes=tuple(begun), others=others)
@@ -320,7 +321,7 @@ def growth(results: Results) -> Real:
 
 def slenderness(results: Results) -> float:
     """The size of the mechanism over its shortest link: errors of places turn that by so much more."""
-    short = [spread(results.linkage, link) for link in results.linkage.moving]
+    short = [link_extent(results.linkage, link) for link in results.linkage.moving]
     return _longest(results) / min((size for size in short if size > 0), default=1.0)
 
 
@@ -360,7 +361,7 @@ def _longest(results: Results) -> float:
     """How far points of the links, and what acts on them, are from one another and from the origin, m."""
     assert results.motion is not None
     linkage = results.linkage
-    spreads = (spread(linkage, link) for link in linkage.links)
+    spreads = (link_extent(linkage, link) for link in linkage.links)
     acted_on = _most([*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)])
     longest: float = max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
     return longest

@@ -14,9 +14,16 @@ import numpy as np
 from tmm_cli.mechanics.accuracy.length_sensitivity import ends, list_lengths, outputs, responses
 from tmm_cli.mechanics.accuracy.rounding_bounds import PAPER, SHARE, Digits, exact, growth, slenderness
 from tmm_cli.mechanics.analysis import CYCLE, Results, cycle_losses
-from tmm_cli.mechanics.groups import Closed, LinkStates, link_states, towards
-from tmm_cli.mechanics.kinematics import DriverRange, Strokes, Travel, output_place, output_slope, pressure_at
-from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble, Real, mapped, rounded
+from tmm_cli.mechanics.groups import ClosedFormSolver, LinkStates, link_states, solvers_towards
+from tmm_cli.mechanics.kinematics import (
+    DriverRange,
+    OutputTravel,
+    Strokes,
+    output_coordinate,
+    output_slope,
+    pressure_at,
+)
+from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble, Real, map_record, to_float
 
 FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
 AROUND = 65  # places over the driver's way that tell how large a function is
@@ -43,7 +50,7 @@ class Wide:
 
     def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
         """Some links there, and those they hang on."""
-        kernels = towards(self.kernels, links)
+        kernels = solvers_towards(self.kernels, links)
         return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, places: Real) -> tuple[Real, Real]:
@@ -65,7 +72,7 @@ class Wide:
         way = np.linspace(driver_range.start, driver_range.end, AROUND)
         with np.errstate(all="ignore"):
             states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
-            there, values, along = np.split(rounded(of(states)), [len(places), len(places) + both.size])
+            there, values, along = np.split(to_float(of(states)), [len(places), len(places) + both.size])
         size = float(np.nanmax(np.abs(along))) if size is None else size
         below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
         distance = _first((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
@@ -79,7 +86,7 @@ class Wide:
         carrier = self.linkage.output_carrier(link)
         bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
         bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(places))
-        off = np.abs(rounded(output_place(states, link)[: len(places)] - runs))
+        off = np.abs(to_float(output_coordinate(states, link)[: len(places)] - runs))
         if self.linkage.output_swings(link):
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
         off = np.nan_to_num(off) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
@@ -92,7 +99,7 @@ class Wide:
             self.known[strokes.link] = self.turns(places, lows, strokes.link)
         return self.known[strokes.link]
 
-    def travel(self, travel: Travel) -> tuple[Real, Real]:
+    def travel(self, travel: OutputTravel) -> tuple[Real, Real]:
         """Of the driver's places at the least and the largest run of an output, and of these runs."""
         places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(asked) < places) & (places < np.max(asked))
@@ -101,7 +108,7 @@ class Wide:
     def end(self, place: float, towards: int, group: str, span: float) -> float:
         """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
         kernel = next((k for k in self.kernels if k.group.title == group), None)
-        if not isinstance(kernel, Closed):
+        if not isinstance(kernel, ClosedFormSolver):
             return LEAST * span + 4 * ROUNDOFF * abs(place)
         steps, both = self.sides(np.array([place]))
         inside, outside = self.at(both.ravel(), kernel.group.links).placed.reshape(both.shape)[::towards]
@@ -111,7 +118,7 @@ class Wide:
     def dead(self, place: float, group: str, span: float) -> float:
         """Of a dead position inside the way: there the gap of the group stops growing."""
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
-        if not isinstance(kernel, Closed):
+        if not isinstance(kernel, ClosedFormSolver):
             return GUESS * span
 
         def closing(states: LinkStates) -> Real:
@@ -266,7 +273,7 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
         rough = cycle_losses(results, CYCLE // 2, ranges=False)
 
         def towards(by: float) -> Results:
-            losses = mapped(
+            losses = map_record(
                 lambda __, fine, half: fine + by * (half - fine), results.losses, rough, skip=("locked", "ranges")
             )
             return replace(results, losses=losses)
@@ -301,7 +308,9 @@ def _shifted(results: Results, by: Mapping[str, float]) -> Results:
     """
 
     def moved(part: str) -> Any:
-        return mapped(lambda path, value: value + by[path] if path in by else value, getattr(results, part), path=part)
+        return map_record(
+            lambda path, value: value + by[path] if path in by else value, getattr(results, part), path=part
+        )
 
     parts = {path.partition(".")[0].partition("[")[0] for path in by}
     return replace(results, mechanism=results.mechanism.changed(**{part: moved(part) for part in parts | {"pressure"}}))

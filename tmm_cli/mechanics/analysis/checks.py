@@ -14,10 +14,10 @@ import numpy as np
 
 from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
 from tmm_cli.mechanics.forces import given_loads
-from tmm_cli.mechanics.groups import Kernel, LinkStates, link_states, towards
+from tmm_cli.mechanics.groups import GroupSolver, LinkStates, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics import SCAN, Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES, Real, dot, least
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES, Real, dot, find_minima
 
 Kind = Literal["slot", "pressure", "load", "near dead", "lever"]
 
@@ -113,15 +113,15 @@ def _near_dead(results: Results, motion: LinkStates) -> Iterable[Check]:
         if not bool(np.any(np.isfinite(margin))):
             continue
         k = int(np.argmin(margin))
-        upto = towards(motion.kernels, kernel.group.links)
-        found = [least(partial(_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)]
+        upto = solvers_towards(motion.kernels, kernel.group.links)
+        found = [find_minima(partial(_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)]
         found += [(float(motion.q[k]), float(margin[k]))]
         found += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
         place, value = min(found, key=lambda pair: pair[1])
         yield Check("near dead", title, place, value, kernel.near, value >= kernel.near)
 
 
-def _margin(results: Results, upto: tuple[Kernel, ...], q: Real) -> Real:
+def _margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
     """Of the last group."""
     there = link_states(results.linkage, upto, q, 0)
     return np.where(there.placed, there.placements[-1].margin, np.inf)

@@ -12,7 +12,7 @@ from tmm_cli.mechanics.analysis.selection import mass_centres, named_points
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import Real, rounded
+from tmm_cli.mechanics.numerics import Real, to_float
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, LENGTH, MOMENT, Dimension
 
 STEPS = 720  # in a turn, or over the driver's way
@@ -123,7 +123,7 @@ def extremes(sample: Callable[[Real], Sequence[Course]], q: Real, *, cyclic: boo
 
 def _rows(courses: Iterable[Course], q: Real) -> Real:
     """Their values, a row a quantity."""
-    return np.stack([np.broadcast_to(rounded(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
+    return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 
 
 def _unwrapped(rows: Real) -> Real:

@@ -12,12 +12,21 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.assembly import mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import LinkageError, MissingStrokesError, NoCycleError, SettingError
-from tmm_cli.mechanics.groups import DriverMotion, Kernel, LawOfMotion, towards
-from tmm_cli.mechanics.kinematics import SCAN, DriverRange, OutputCurve, Strokes, Turning, find_strokes, move, runs_of
+from tmm_cli.mechanics.groups import DriverMotion, GroupSolver, LawOfMotion, solvers_towards
+from tmm_cli.mechanics.kinematics import (
+    SCAN,
+    DriverRange,
+    LinkMotion,
+    OutputCurve,
+    Strokes,
+    compute_motion,
+    find_strokes,
+    measure_runs,
+)
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import SAME_PLACE, SHOCKLESS, WHOLE_TURNS, Real, find_roots, least
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SHOCKLESS, WHOLE_TURNS, Real, find_minima, find_roots
 
 When = Literal["forward", "backward", "working stroke", "idle stroke"]
 
@@ -172,7 +181,9 @@ def rides_of_turns(task: WheelTask, strokes: Strokes, sense: int, start: float) 
         chosen = [s.working == (task.when == "working stroke") for s in strokes.strokes]
     found = []
     for stroke, driven in zip(strokes.strokes, chosen, strict=True):
-        gone = float(np.mod(sense * (stroke.start - start) + SAME_PLACE, strokes.cycle)) - SAME_PLACE
+        gone = (
+            float(np.mod(sense * (stroke.start - start) + SAME_DRIVER_POSITION, strokes.cycle)) - SAME_DRIVER_POSITION
+        )
         first = start + sense * gone
         found.append(Ride(first, stroke.length, sense, driven))
         if stroke.rest:
@@ -181,22 +192,22 @@ def rides_of_turns(task: WheelTask, strokes: Strokes, sense: int, start: float) 
 
 
 def rides_there_and_back(
-    linkage: Linkage, kernels: Sequence[Kernel], task: WheelTask, driver_range: DriverRange
+    linkage: Linkage, kernels: Sequence[GroupSolver], task: WheelTask, driver_range: DriverRange
 ) -> list[Ride]:
     """Over the stroke of a driver, forth in its sense and back: cut where the link turns back."""
-    sense, curve = linkage.driver.sense, OutputCurve(linkage, towards(kernels, [task.link]), task.link)
+    sense, curve = linkage.driver.sense, OutputCurve(linkage, solvers_towards(kernels, [task.link]), task.link)
     q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
     slope = curve.slope(q)
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
     low, high = moves[:-1][back], moves[1:][back]
     turns = find_roots(curve.slope, q[low], q[high]) if low.size else q[:0]
-    inside = (turns - q[0] > SAME_PLACE) & (q[-1] - turns > SAME_PLACE)
+    inside = (turns - q[0] > SAME_DRIVER_POSITION) & (q[-1] - turns > SAME_DRIVER_POSITION)
     ends = np.concatenate([q[:1], turns[inside], q[-1:]])[::sense]
     wanted = 1 if task.when == "forward" else -1
     found = []
     for way, places in ((sense, ends), (-sense, ends[::-1])):
-        __, runs = runs_of(curve, places[:-1], np.diff(places))
+        __, runs = measure_runs(curve, places[:-1], np.diff(places))
         lengths = np.abs(np.diff(places))
         found += [
             Ride(float(first), float(length), way, bool(run * wanted > 0))
@@ -207,7 +218,7 @@ def rides_there_and_back(
 
 def parts_of(
     linkage: Linkage,
-    kernels: Sequence[Kernel],
+    kernels: Sequence[GroupSolver],
     link: str,
     rides: Sequence[Ride],
     law: LawOfMotion,
@@ -220,10 +231,10 @@ def parts_of(
     """
     way, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
     rate = law.rate if isinstance(law, DriverMotion) and law.acceleration == 0 else float("nan")
-    upto, sense = towards(kernels, [link]), linkage.driver.sense
+    upto, sense = solvers_towards(kernels, [link]), linkage.driver.sense
 
-    def turning(q: Real) -> Turning:
-        return move(linkage, upto, q, law).link(link)
+    def turning(q: Real) -> LinkMotion:
+        return compute_motion(linkage, upto, q, law).link(link)
 
     found = []
     for ride in rides:
@@ -259,7 +270,7 @@ def _largest(size: Callable[[Real], Real], places: Real) -> float:
         return float("nan")
     best = int(np.argmax(values))
     low, high = sorted((places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]))
-    return max(float(values[best]), -float(least(lambda q: -size(q), low, high)[1]))
+    return max(float(values[best]), -float(find_minima(lambda q: -size(q), low, high)[1]))
 
 
 # Intermittent motion: each wheel over the cycles of all its settings.
@@ -281,7 +292,7 @@ def _wheel(mechanism: Mechanism, task: WheelTask, start: float, law_of: LawOf) -
         own, linkage = mechanism, setting.linkage
         try:
             if linkage is not None:
-                own = Mechanism(Inputs(linkage), mobile(linkage))
+                own = Mechanism(Inputs(linkage), analyse_mobile_structure(linkage))
             rides = _rides(own, task, start)
             parts += parts_of(own.linkage, own.kernels, task.link, rides, law_of(own.linkage), number, parts)
         except LinkageError as error:

@@ -15,27 +15,27 @@ import numpy as np
 
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.errors import LinkageError, NotOnFrameError
-from tmm_cli.mechanics.groups import DriverMotion, Kernel, link_states, towards
+from tmm_cli.mechanics.groups import DriverMotion, GroupSolver, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics import (
     DeadPosition,
     DriverRange,
-    Excess,
-    Pressure,
+    OutputTravel,
+    PressureAngle,
+    SlotExcess,
     Strokes,
-    Travel,
-    find_dead,
+    compute_motion,
+    driver_positions,
+    find_dead_positions,
     find_pressure,
     find_range,
-    find_slots,
+    find_slot_excess,
     find_strokes,
     find_travel,
-    move,
-    places,
-    resisted,
+    resisted_direction,
 )
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Request, Sketch
 from tmm_cli.mechanics.numerics import Real
-from tmm_cli.mechanics.structure import Structure, analyse, output_link, roles
+from tmm_cli.mechanics.structure import Structure, analyse_structure, link_roles, output_link
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import WheelTask
@@ -92,7 +92,7 @@ class Mechanism:
         return self.known(**{name: getattr(self, name) for name in PARTS} | parts)
 
     @cached_property
-    def kernels(self) -> tuple[Kernel, ...]:
+    def kernels(self) -> tuple[GroupSolver, ...]:
         """The groups in the assemblies of the sketch, in solving order."""
         return assemble(self.linkage, self.structure)
 
@@ -114,7 +114,7 @@ class Mechanism:
     @cached_property
     def dead(self) -> tuple[DeadPosition, ...]:
         """Dead positions inside that range."""
-        return find_dead(self.linkage, self.kernels, self.driver_range)
+        return find_dead_positions(self.linkage, self.kernels, self.driver_range)
 
     @cached_property
     def output(self) -> str | None:
@@ -136,7 +136,7 @@ class Mechanism:
         return replace(main, others=tuple(strokes for strokes in others if strokes is not None))
 
     def _strokes_of(self, link: str) -> Strokes | None:
-        return find_strokes(self.linkage, self.kernels, self.driver_range, resisted(self.linkage, link), link)
+        return find_strokes(self.linkage, self.kernels, self.driver_range, resisted_direction(self.linkage, link), link)
 
     @cached_property
     def further(self) -> tuple[Strokes, ...]:
@@ -151,10 +151,10 @@ class Mechanism:
         """The driver's places of all positions that are asked for, whether they are computed or not (rad or m)."""
         request = self.inputs.request
         strokes = self.strokes if request.start == "working stroke" else None
-        return places(request, self.driver_range, strokes, self.linkage.driver.sense)
+        return driver_positions(request, self.driver_range, strokes, self.linkage.driver.sense)
 
     @cached_property
-    def travels(self) -> tuple[Travel, ...]:
+    def travels(self) -> tuple[OutputTravel, ...]:
         """How far the outputs go between the ends of what is asked for, where the driver does not turn fully."""
         if self.driver_range.full:
             return ()
@@ -162,14 +162,14 @@ class Mechanism:
         return tuple(t for t in found if t is not None)
 
     @cached_property
-    def pressure(self) -> tuple[Pressure, ...]:
+    def pressure(self) -> tuple[PressureAngle, ...]:
         """Largest pressure angles of the driven links."""
         return find_pressure(self.linkage, self.kernels, self.driver_range, self.inputs.pressure_limits)
 
     @cached_property
-    def slots(self) -> tuple[Excess, ...]:
+    def slots(self) -> tuple[SlotExcess, ...]:
         """How stones come to the ends of their guides, and beyond."""
-        return find_slots(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
+        return find_slot_excess(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
     def roles(self) -> dict[str, str]:
@@ -181,7 +181,7 @@ class Mechanism:
                 return link == self.linkage.driver.link and self.linkage.driver.kind == "turn"
             return self._turning.get(link, False)
 
-        return roles(self.linkage, turns)
+        return link_roles(self.linkage, turns)
 
     @property
     def turned(self) -> bool:
@@ -197,8 +197,8 @@ class Mechanism:
         hung = [g for g in groups if any(linkage.hinged_to_frame(link) for link in g.links)]
         if hung and driver_range.full:
             q = np.linspace(driver_range.start, driver_range.end, 720 * driver_range.turns + 1)
-            kernels = towards(self.kernels, [link for group in hung for link in group.links])
-            motion = move(linkage, kernels, q, DriverMotion(driver_range.start, 1.0, 0.0, 1), 0)
+            kernels = solvers_towards(self.kernels, [link for group in hung for link in group.links])
+            motion = compute_motion(linkage, kernels, q, DriverMotion(driver_range.start, 1.0, 0.0, 1), 0)
             for link in (link for group in hung for link in group.links):
                 angle = np.unwrap(np.angle(motion.poses[link].z))
                 turned[link] = bool(abs(angle[-1] - angle[0]) > np.pi)
@@ -225,7 +225,7 @@ def redriven(linkage: Linkage, link: str) -> Linkage:
 
 def _sketch(linkage: Linkage, driver: Driver) -> Sketch:
     try:
-        kernels = assemble(linkage, analyse(linkage))
+        kernels = assemble(linkage, analyse_structure(linkage))
     except LinkageError:
         return linkage.sketch
     motion = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)

@@ -24,7 +24,7 @@ from tmm_cli.mechanics.quantities import (
     NUMBER,
     SPEED,
     Dimension,
-    place_dimension,
+    coordinate_dimension,
 )
 from tmm_cli.mechanics.structure import Structure, output_link
 
@@ -194,7 +194,7 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
                 Quantity(
                     f"s of {link}",
                     "places",
-                    place_dimension("slide" if slides else "turn"),
+                    coordinate_dimension("slide" if slides else "turn"),
                     partial(_run, link),
                     against="range" if slides else "angle",
                     thing=link,

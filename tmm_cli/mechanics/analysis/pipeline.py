@@ -17,11 +17,11 @@ import numpy as np
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
 from tmm_cli.mechanics.analysis.optional_stages import balancing, driver_motion, intermittent, law_of_motion
 from tmm_cli.mechanics.analysis.selection import carriers, check
-from tmm_cli.mechanics.assembly import mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import (
     MissingStrokesError,
     NoTurnError,
-    SpeedsEndError,
+    SpeedTableError,
     TableBeyondCycleError,
     UnknownPositionError,
 )
@@ -41,22 +41,22 @@ from tmm_cli.mechanics.forces import (
     react,
     solve_friction,
 )
-from tmm_cli.mechanics.groups import Kernel, LawOfMotion, towards
+from tmm_cli.mechanics.groups import GroupSolver, LawOfMotion, solvers_towards
 from tmm_cli.mechanics.kinematics import (
     DeadPosition,
     DriverRange,
-    Excess,
     Motion,
-    Pressure,
+    OutputTravel,
+    PressureAngle,
+    SlotExcess,
     Strokes,
-    Travel,
-    move,
+    compute_motion,
+    fill_in_limits,
     pressure_at,
-    spliced,
-    with_limits,
+    splice_positions,
 )
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import SAME_PLACE, Real, exactly, rounded
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, Real, to_double_double, to_float
 from tmm_cli.mechanics.structure import Structure
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis.intermittent import Intermittent
     from tmm_cli.mechanics.assembly import Assemblies
     from tmm_cli.mechanics.dynamics import Balancing, Running, SingleRun
-    from tmm_cli.mechanics.kinematics import Centre
+    from tmm_cli.mechanics.kinematics import InstantCentre
 
 
 def near_dead(motion: Motion) -> Real:
@@ -80,10 +80,10 @@ def refined(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: 
 
     q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.
     """
-    closer = move(linkage, tuple(kernel.rebind(linkage) for kernel in motion.kernels), q, law)
+    closer = compute_motion(linkage, tuple(kernel.rebind(linkage) for kernel in motion.kernels), q, law)
     if not bool(np.all(closer.moving)):
         return motion
-    return replace(spliced(motion, closer, where), finer=closer, where=where)
+    return replace(splice_positions(motion, closer, where), finer=closer, where=where)
 
 
 # What loads, positions and tables of a file rest on: refused where it is not there, not quietly done without.
@@ -128,7 +128,7 @@ def _need_rows(mechanism: Mechanism) -> None:
         strokes = mechanism.strokes if load.table.against == "crank turn" else None
         cycle = 2 * np.pi * turns if strokes is None else strokes.cycle
         for row, argument in enumerate(load.table.arguments):
-            if not -SAME_PLACE <= argument <= cycle + SAME_PLACE:
+            if not -SAME_DRIVER_POSITION <= argument <= cycle + SAME_DRIVER_POSITION:
                 path = ("loads", load.name, load.table.key, "table", row, 0)
                 raise TableBeyondCycleError(path, float(argument), cycle)
 
@@ -141,9 +141,11 @@ def _need_speeds(mechanism: Mechanism) -> None:
     unknown = ~np.isfinite(driver_motion(mechanism.linkage, float(asked[0])).speed(asked))
     goes_round = mechanism.driver_range.full and not mechanism.inputs.request.places
     if np.any(unknown) or (goes_round and not law.squares.closed):
-        first = float(rounded(law.squares.arguments[0]))
+        first = float(to_float(law.squares.arguments[0]))
         at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
-        raise SpeedsEndError(at, first, float(rounded(law.squares.arguments[-1])), 2 * np.pi * mechanism.linkage.turns)
+        raise SpeedTableError(
+            at, first, float(to_float(law.squares.arguments[-1])), 2 * np.pi * mechanism.linkage.turns
+        )
 
 
 # Which stage needs which: structure -> assembly -> range and strokes -> motion -> forces -> lever.
@@ -181,7 +183,7 @@ class Results:
     balancing: Balancing | None = None
     wheels: tuple[Intermittent, ...] | None = None
     assemblies: tuple[Assemblies, ...] | None = None
-    centres: Mapping[int, Sequence[Centre]] | None = None
+    centres: Mapping[int, Sequence[InstantCentre]] | None = None
     extremes: tuple[Extreme, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
@@ -195,7 +197,7 @@ class Results:
         return self.mechanism.roles
 
     @property
-    def kernels(self) -> tuple[Kernel, ...]:
+    def kernels(self) -> tuple[GroupSolver, ...]:
         """All groups in solving order; none where the sketch cannot be assembled."""
         return self.mechanism.kernels if self.mechanism.assembles else ()
 
@@ -221,15 +223,15 @@ class Results:
         return tuple(one for one in (self.strokes, *self.further) if one is not None and one.strokes)
 
     @property
-    def travels(self) -> tuple[Travel, ...]:
+    def travels(self) -> tuple[OutputTravel, ...]:
         return () if self.of else self.mechanism.travels
 
     @property
-    def slots(self) -> tuple[Excess, ...]:
+    def slots(self) -> tuple[SlotExcess, ...]:
         return () if self.of else self.mechanism.slots
 
     @cached_property
-    def pressure(self) -> tuple[Pressure, ...]:
+    def pressure(self) -> tuple[PressureAngle, ...]:
         """Pressure angles of the driven links: the largest, and those at the positions."""
         if self.of or self.motion is None:
             return ()
@@ -311,14 +313,14 @@ def solve(
     Raises LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and what assembly
     raises.
     """
-    structure = mobile(inputs.linkage)
+    structure = analyse_mobile_structure(inputs.linkage)
     results = Results(inputs, structure, Mechanism(inputs, structure), of=tuple(of), problem=problem)
     if stage == "structure":
         return results
     kernels = results.mechanism.kernels
     if of:
         check(inputs.linkage, of)
-        kernels = towards(kernels, carriers(inputs.linkage, kernels, of))
+        kernels = solvers_towards(kernels, carriers(inputs.linkage, kernels, of))
     refuse_unmet(results.mechanism)
     if inputs.dynamics is not None:
         results = replace(results, running=law_of_motion(results.mechanism, inputs.dynamics))
@@ -337,17 +339,17 @@ def solve(
     return replace(results, balancing=balancing(results.mechanism, results.motion.q, inputs.balancing))
 
 
-def _moved(results: Results, kernels: tuple[Kernel, ...], numbers: tuple[int, ...]) -> Motion:
+def _moved(results: Results, kernels: tuple[GroupSolver, ...], numbers: tuple[int, ...]) -> Motion:
     """The motion, its positions near dead ones in extended precision where the machine has it."""
     law = results.law
-    motion = move(results.linkage, kernels, results.asked[list(numbers)], law)
+    motion = compute_motion(results.linkage, kernels, results.asked[list(numbers)], law)
     where = near_dead(motion)
     if results.inputs.extended is None or not np.any(where):
-        return with_limits(motion)
+        return fill_in_limits(motion)
     exact = results.inputs.extended()
     asked: Any = exact.request.places
-    asked = np.stack(asked) if asked else exactly(results.asked)
-    return with_limits(refined(motion, exact.linkage, asked[list(numbers)][where], law, where))
+    asked = np.stack(asked) if asked else to_double_double(results.asked)
+    return fill_in_limits(refined(motion, exact.linkage, asked[list(numbers)][where], law, where))
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
@@ -362,8 +364,8 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     if motion.finer is not None and motion.where is not None:
         exact = applied(motion.finer, strokes)
         structure = results.structure.rebind(motion.finer.linkage)
-        loads = spliced(loads, exact, motion.where)
-        reactions = spliced(reactions, react(motion.finer, structure, exact), motion.where)
+        loads = splice_positions(loads, exact, motion.where)
+        reactions = splice_positions(reactions, react(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
         rubbed = solve_friction(bare, results.structure, loads, reactions)
@@ -407,7 +409,7 @@ def _friction_at(results: Results, motion: Motion) -> FrictionSolution:
 
 def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
-    return with_limits(move(results.linkage, results.kernels, q, results.law, order))
+    return fill_in_limits(compute_motion(results.linkage, results.kernels, q, results.law, order))
 
 
 def at_places(results: Results, q: Real) -> Results:

@@ -9,8 +9,8 @@ import numpy as np
 
 from tmm_cli.mechanics.errors import UnknownNameError
 from tmm_cli.mechanics.forces import Reactions
-from tmm_cli.mechanics.groups import Kernel, towards
-from tmm_cli.mechanics.kinematics import Motion, Point
+from tmm_cli.mechanics.groups import GroupSolver, solvers_towards
+from tmm_cli.mechanics.kinematics import Motion, PointMotion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import BALANCING, LINK, POINT, REACTION, Quantity
 
@@ -41,7 +41,7 @@ def check(linkage: Linkage, names: Sequence[str]) -> None:
             raise UnknownNameError(name, tuple(known))
 
 
-def places(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) -> Mapping[str, Place]:
+def places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, Place]:
     """The points and centres of mass among the names; a point on the link that takes the fewest groups to reach."""
     points, centres = named_points(linkage), mass_centres(linkage)
     found: dict[str, Place] = {}
@@ -49,7 +49,7 @@ def places(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) ->
         if name in points:
             link = min(
                 (link for link in linkage.moving if name in linkage.links[link].points),
-                key=lambda link: (len(towards(kernels, [link])), link != points[name][0]),
+                key=lambda link: (len(solvers_towards(kernels, [link])), link != points[name][0]),
             )
             found[name] = link, linkage.local(link, name)
         elif name in centres:
@@ -57,13 +57,13 @@ def places(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) ->
     return found
 
 
-def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, Point]:
+def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
     """Motion of all named points, or of those among the names."""
     known = named_points(linkage)
     return {name: motion.named(name) for name in (dict.fromkeys(names) if names else known) if name in known}
 
 
-def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, Point]:
+def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
     """Motion of all centres of mass, or of those among the names."""
     known = mass_centres(linkage)
     points = named_points(linkage)
@@ -79,7 +79,7 @@ def links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(link for link in linkage.moving if link in names and link not in points)
 
 
-def carriers(linkage: Linkage, kernels: Sequence[Kernel], names: Sequence[str]) -> set[str]:
+def carriers(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
     """All links that must be placed for what is asked."""
     return {link for link, _ in places(linkage, kernels, names).values()} | set(links(linkage, names))
 

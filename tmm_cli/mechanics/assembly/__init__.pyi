@@ -1,17 +1,21 @@
 """Choosing the assembly of a sketch, following it, and finding all of them."""
 
-from . import choose as choose, search as search
-from .choose import assemble as assemble, pinned as pinned, slack as slack
-from .enumerate import (
+from . import assembling as assembling, sketch_matching as sketch_matching
+from .assembling import (
+    assemble as assemble,
+    assembly_reserve as assembly_reserve,
+    refine_dead_positions as refine_dead_positions,
+)
+from .enumeration import (
     Assemblies as Assemblies,
     Assembly as Assembly,
     GroupAssemblies as GroupAssemblies,
     find_assemblies as find_assemblies,
-    listed as listed,
+    name_assembly_files as name_assembly_files,
 )
-from .rank import mobile as mobile
-from .search import (
-    CLOSE as CLOSE,
+from .redundant_constraints import analyse_mobile_structure as analyse_mobile_structure
+from .sketch_matching import (
+    SKETCH_CLOSE as SKETCH_CLOSE,
     close_from_afar as close_from_afar,
     placed_by_angles as placed_by_angles,
     sketch_deviations as sketch_deviations,

@@ -12,9 +12,17 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.corrector import CORRECTION, PATIENCE, Corrector, Node, Source, joined, places_ahead
-from tmm_cli.mechanics.assembly.crossing import EDGE, Crossings, alive
-from tmm_cli.mechanics.groups import BranchTrace, LinkStates, Newton, Pose, State
+from tmm_cli.mechanics.assembly.corrector import (
+    CORRECTION,
+    PATIENCE,
+    BranchNode,
+    Corrector,
+    Source,
+    join_states,
+    places_ahead,
+)
+from tmm_cli.mechanics.assembly.crossing import EDGE, CrossingFinder, is_far_from_dead
+from tmm_cli.mechanics.groups import BranchTrace, GroupState, LinkStates, NewtonSolver, Pose
 from tmm_cli.mechanics.numerics import LAST_STEP, Real, solve
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
@@ -28,21 +36,21 @@ LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it 
 AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
 SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
 
-End = Literal["reached", "limit", "lost", "boundary"]
+TraceEnd = Literal["reached", "limit", "lost", "boundary"]
 
 
-class Walker:
+class BranchFollower:
     """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
 
-    def __init__(self, kernel: Newton, source: Source, scale: float = 1.0) -> None:
+    def __init__(self, kernel: NewtonSolver, source: Source, scale: float = 1.0) -> None:
         self.kernel, self.source, self.scale = kernel, source, scale
         self.corrector = Corrector(kernel, source)
         self.at = 0.0
-        self.crossings = Crossings(kernel, source, self.corrector.node, scale)
+        self.crossings = CrossingFinder(kernel, source, self.corrector.node, scale)
 
-    def trace(self, start: Node, end: float) -> tuple[list[Node], End]:
+    def trace(self, start: BranchNode, end: float) -> tuple[list[BranchNode], TraceEnd]:
         """Nodes from one on to the place `end`, and how it ended; a limit is the last node. boundary: `end` is dead."""
-        nodes: list[Node] = []
+        nodes: list[BranchNode] = []
         here, failures, largest = start, 0, 0.0
         way = end - start.q
         least = LEAST_STEP * abs(way)
@@ -83,11 +91,11 @@ class Walker:
                 return lost, "boundary" if abs(end - here.q) < EDGE * self.scale else "lost"
         return nodes, "reached"
 
-    def spins(self, here: Node) -> bool:
+    def spins(self, here: BranchNode) -> bool:
         """Whether it goes round so much faster than the driver that there is no following it."""
         return self.corrector.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
 
-    def beyond(self, last: Node) -> list[Node]:
+    def beyond(self, last: BranchNode) -> list[BranchNode]:
         """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
 
         Nothing where it does not go away.
@@ -104,11 +112,11 @@ class Walker:
             return [replace(last, q=last.q + float(wound[k] / last.first.unwrapped.ravel()[k]))]
         return []
 
-    def leads_to(self, here: Node, limit: Node) -> bool:
+    def leads_to(self, here: BranchNode, limit: BranchNode) -> bool:
         """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
         near = self.corrector.apart(here.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states go as the root of what is left of the way
-        starts = State(
+        starts = GroupState(
             *(
                 there + share * (one - there)
                 for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
@@ -122,7 +130,7 @@ class Walker:
             for k, one in enumerate(found)
         )
 
-    def limit(self, last: Node, sense: float) -> Node | None:
+    def limit(self, last: BranchNode, sense: float) -> BranchNode | None:
         """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
 
         With l the direction in which the group moves, F(X, q) = 0 and l (X - X0) = s give q(s), and q' = 0 is looked
@@ -132,20 +140,22 @@ class Walker:
         if kernel.passive:
             return None
         with np.errstate(all="ignore"):
-            direction = _flat(last.first, kernel.size) * sense * self.scale
+            direction = _unknowns_of(last.first, kernel.size) * sense * self.scale
             length = np.linalg.norm(direction)
             if not np.isfinite(length) or length == 0:
                 return None
             line = direction / length
 
-            def at(s: float, state: State, q: float) -> tuple[State, float, float] | None:
+            def at(s: float, state: GroupState, q: float) -> tuple[GroupState, float, float] | None:
                 for _ in range(15):
                     before = self.source(np.array([q]), 1)
                     if not before.placed[0]:
                         return None
                     everything = {**before.poses, **kernel.poses_of(state)}
                     matrix = self._bordered(everything, before, line)
-                    ahead = float(np.dot(line, _flat(state, kernel.size) - _flat(last.state, kernel.size)))
+                    ahead = float(
+                        np.dot(line, _unknowns_of(state, kernel.size) - _unknowns_of(last.state, kernel.size))
+                    )
                     right = np.concatenate([-kernel.residuals(everything, before.drives)[0], [s - ahead]])
                     step = solve(matrix, right)
                     if not np.all(np.isfinite(step)):
@@ -195,7 +205,7 @@ class Walker:
         state, q, _ = best
         if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
             return None
-        return Node(q, state, last.first, last.second, 0.0, last.side)
+        return BranchNode(q, state, last.first, last.second, 0.0, last.side)
 
     def _bordered(self, everything: dict[str, Pose], before: LinkStates, line: Real) -> Real:
         kernel = self.kernel
@@ -208,7 +218,7 @@ class Walker:
         matrix[n, :n] = line
         return matrix
 
-    def follow(self, at: float, state: State, half: float, turns: bool) -> BranchTrace | None:
+    def follow(self, at: float, state: GroupState, half: float, turns: bool) -> BranchTrace | None:
         """The group's trace about the driver's place `at`: `half` a way to both sides, and round when it turns.
 
         When all has come back to where it was after some turns, the trace is closed.
@@ -224,36 +234,38 @@ class Walker:
             down, below = self.trace(middle, first)
             whole = [*reversed(down), middle, *up]
             ends = [node for node, how in ((whole[0], below), (whole[-1], above)) if how == "reached"]
-            if "boundary" not in (above, below) and all(alive(end, whole) for end in ends):
+            if "boundary" not in (above, below) and all(is_far_from_dead(end, whole) for end in ends):
                 break
         nodes = whole
         if turns and above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
-            return _traced(nodes)
+            return _make_trace(nodes)
         for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
             if turns and above == "reached":
                 more, above = self.trace(nodes[-1], last + 2 * half * turn)
                 nodes += more
                 if above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
-                    return _traced(nodes)
+                    return _make_trace(nodes)
         for turn in range(1, TURNS):
             if turns and below == "reached" and above != "reached":
                 more, below = self.trace(nodes[0], first - 2 * half * turn)
                 nodes = [*reversed(more), *nodes]
-        return _traced(nodes, (below, above))
+        return _make_trace(nodes, (below, above))
 
 
-def _flat(state: State, size: float) -> Real:
+def _unknowns_of(state: GroupState, size: float) -> Real:
     """A state as the unknowns of the group's equations."""
     return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
 
 
-def _traced(nodes: list[Node], ends: tuple[End, End] | None = None) -> BranchTrace:
+def _make_trace(nodes: list[BranchNode], ends: tuple[TraceEnd, TraceEnd] | None = None) -> BranchTrace:
     """The trace of nodes in growing order; ends: how it ended below and above, None: it is closed."""
 
-    def ended(*ways: End) -> tuple[bool, bool]:
+    def ended(*ways: TraceEnd) -> tuple[bool, bool]:
         return (ends[0] in ways, ends[1] in ways) if ends else (False, False)
 
-    states, first, second = (joined(getattr(node, part) for node in nodes) for part in ("state", "first", "second"))
+    states, first, second = (
+        join_states(getattr(node, part) for node in nodes) for part in ("state", "first", "second")
+    )
     dead = np.array([n.q for n in nodes if n.dead])
     flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)
     return BranchTrace(

@@ -13,8 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from tmm_cli.mechanics.assembly.corrector import Node, Source, joined, parts_of, predicted, stated
-from tmm_cli.mechanics.groups import Newton, State
+from tmm_cli.mechanics.assembly.corrector import (
+    BranchNode,
+    Source,
+    join_states,
+    predict_state,
+    state_components,
+    states_from_components,
+)
+from tmm_cli.mechanics.groups import GroupState, NewtonSolver
 from tmm_cli.mechanics.numerics import (
     CROSSING_AGREES,
     CROSSING_FITTED,
@@ -24,8 +31,8 @@ from tmm_cli.mechanics.numerics import (
     NO_DETERMINANT,
     SAMPLES_ROUNDED,
     Real,
-    exactly,
-    rounded,
+    to_double_double,
+    to_float,
 )
 
 RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # of the samples about the place, in scales of the driver
@@ -41,8 +48,8 @@ CLOSER = 10  # times: a dead position that was not found is looked for again fro
 EDGE = 1e-3  # scales of the driver: this near to an end of the way a dead position is at it
 
 
-Correct = Callable[[float, State], "tuple[Node, float] | None"]
-Finest = Callable[[list[Node]], list[Node]]
+Correct = Callable[[float, GroupState], "tuple[BranchNode, float] | None"]
+Finest = Callable[[list[BranchNode]], list[BranchNode]]
 
 
 @dataclass(frozen=True)
@@ -54,21 +61,21 @@ class _Fit:
     parts: tuple[Chebyshev, ...]
     det: Chebyshev
 
-    def state(self, q: float, order: int = 0) -> State:
+    def state(self, q: float, order: int = 0) -> GroupState:
         """The state at q, or a derivative of it by q."""
         t = (q - self.middle) / self.radius
         found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
-        return stated(found[None, :])
+        return states_from_components(found[None, :])
 
 
-class Crossings:
+class CrossingFinder:
     """Looks for them on the way of one group: `source` gives the links it hangs on, `correct` the group itself."""
 
-    def __init__(self, kernel: Newton, source: Source, correct: Correct, scale: float) -> None:
+    def __init__(self, kernel: NewtonSolver, source: Source, correct: Correct, scale: float) -> None:
         self.kernel, self.source, self.correct, self.scale = kernel, source, correct, scale
         self.refused: list[tuple[float, float]] = []
 
-    def between(self, nodes: list[Node], beyond: Node, largest: float) -> Node | None:
+    def between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
         """A dead position between the last node and the next one that the group passes smoothly.
 
         largest: size of the determinant in one of the nodes.
@@ -81,29 +88,29 @@ class Crossings:
         middle, span = (here.q + beyond.q) / 2, abs(beyond.q - here.q)
         if any(abs(middle - q) < 2 * old and span > old / CLOSER for q, old in self.refused):
             return None
-        found = crossing(self.correct, self._finest, nodes, beyond, self.scale)
+        found = find_crossing(self.correct, self._finest, nodes, beyond, self.scale)
         if found is None or (found.q - here.q) * (beyond.q - here.q) <= 0:
             self.refused.append((middle, span))
             return None
         return found
 
-    def _finest(self, nodes: list[Node]) -> list[Node]:
+    def _finest(self, nodes: list[BranchNode]) -> list[BranchNode]:
         """The same nodes found in double-doubles, and rounded."""
         kernel = self.kernel
-        before = self.source(exactly([n.q for n in nodes]), 0)
-        states = joined(n.state for n in nodes)
+        before = self.source(to_double_double([n.q for n in nodes]), 0)
+        states = join_states(n.state for n in nodes)
         with np.errstate(all="ignore"):
             states, size = kernel.close(
-                State(exactly(states.x), exactly(states.unwrapped)), before.poses, before.drives
+                GroupState(to_double_double(states.x), to_double_double(states.unwrapped)), before.poses, before.drives
             )
-            det = np.linalg.det(rounded(kernel.matrix({**before.poses, **kernel.poses_of(states)})))
-        states = State(rounded(states.x), rounded(states.unwrapped))
+            det = np.linalg.det(to_float(kernel.matrix({**before.poses, **kernel.poses_of(states)})))
+        states = GroupState(to_float(states.x), to_float(states.unwrapped))
         return [
             replace(n, state=states.part(slice(k, k + 1)), det=float(det[k])) if size[k] < LAST_STEP else n
             for k, n in enumerate(nodes)
         ]
 
-    def _touches(self, here: Node, beyond: Node, largest: float) -> bool:
+    def _touches(self, here: BranchNode, beyond: BranchNode, largest: float) -> bool:
         """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.
 
         From both of them it is so at twice the way that the tangent leads to.
@@ -115,37 +122,39 @@ class Crossings:
             ends = [n.q - 2 * n.det / self._slope(n) for n in (here, beyond)]
         return all(abs(end - middle) < abs(way) for end in ends)
 
-    def _slope(self, node: Node) -> np.float64:
+    def _slope(self, node: BranchNode) -> np.float64:
         """Derivative of the determinant by q, roughly."""
         step = AHEAD * self.scale
-        before, state = self.source(np.array([node.q + step]), 0), predicted(node, node.q + step)
+        before, state = self.source(np.array([node.q + step]), 0), predict_state(node, node.q + step)
         moved = np.linalg.det(self.kernel.matrix({**before.poses, **self.kernel.poses_of(state)}))
         return np.float64(moved[0] - node.det) / step
 
 
-def alive(end: Node, nodes: list[Node]) -> bool:
+def is_far_from_dead(end: BranchNode, nodes: list[BranchNode]) -> bool:
     """Whether a node is not all but in a dead position."""
     return abs(end.det) > 2 * EDGE * max(abs(n.det) for n in nodes)
 
 
-def crossing(correct: Correct, finest: Finest, nodes: list[Node], beyond: Node, scale: float) -> Node | None:
+def find_crossing(
+    correct: Correct, finest: Finest, nodes: list[BranchNode], beyond: BranchNode, scale: float
+) -> BranchNode | None:
     """The dead position between the last node and one beyond it; None where the way does not go smoothly through one.
 
     correct: the group at a place, from a start, and how far it is from it. finest: nodes in extended precision. scale:
     what places are counted in.
     """
     flips = beyond.side != nodes[-1].side
-    about = _between(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
+    about = _bracket_crossing(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
     best, error = None, CROSSING_KNOWN * scale
     for radius in RADII:
-        found = _place(correct, finest, nodes, about, radius * scale, flips)
+        found = _fit_crossing(correct, finest, nodes, about, radius * scale, flips)
         if found is None:
             continue
         dead, known, fit = found
         known += scale * SAMPLES_ROUNDED / (MIDDLE * radius) ** (1 if flips else 2)
         if not known < error:
             continue
-        if not _smooth(correct, dead, fit, scale):
+        if not _is_passed_smoothly(correct, dead, fit, scale):
             return None
         best, error = dead, known
         if error < CROSSING_AGREES * scale:
@@ -153,12 +162,12 @@ def crossing(correct: Correct, finest: Finest, nodes: list[Node], beyond: Node, 
     return best
 
 
-def _between(correct: Correct, low: Node, high: Node) -> float:
+def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> float:
     """About where the determinant is zero, by false position as far as Newton's method goes."""
     for _ in range(ROUNDS):
         q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
         near = low if abs(q - low.q) < abs(high.q - q) else high
-        found = correct(q, predicted(near, q))
+        found = correct(q, predict_state(near, q))
         if found is None or found[1] > FOUND:
             return q
         if found[0].side == low.side:
@@ -168,15 +177,15 @@ def _between(correct: Correct, low: Node, high: Node) -> float:
     return low.q + (high.q - low.q) * low.det / (low.det - high.det)
 
 
-def _place(
-    correct: Correct, finest: Finest, nodes: list[Node], about: float, radius: float, flips: bool
-) -> tuple[Node, float, _Fit] | None:
+def _fit_crossing(
+    correct: Correct, finest: Finest, nodes: list[BranchNode], about: float, radius: float, flips: bool
+) -> tuple[BranchNode, float, _Fit] | None:
     """A dead position from samples at the distance `radius` about a place near it, how well it is known; the fit."""
     for _ in range(3):
-        samples = _samples(correct, nodes, about, radius, flips)
+        samples = _sample_branch(correct, nodes, about, radius, flips)
         if samples is None:
             return None
-        roots = [_root(_fitted(samples, about, radius, degree), flips) for degree in DEGREES]
+        roots = [_root(_fit_samples(samples, about, radius, degree), flips) for degree in DEGREES]
         if not all(abs(root) < 1 for root in roots):
             return None
         if abs(roots[-1]) < MIDDLE / 4:
@@ -185,17 +194,19 @@ def _place(
     else:
         return None
     samples = finest(samples)
-    fits = [_fitted(samples, about, radius, degree) for degree in DEGREES]
+    fits = [_fit_samples(samples, about, radius, degree) for degree in DEGREES]
     roots, fit = [_root(each, flips) for each in fits], fits[-1]
     if abs(fit.det(roots[-1])) > NO_DETERMINANT * max(abs(s.det) for s in samples):
         return None
     side = -nodes[-1].side if flips else nodes[-1].side
     q = about + radius * roots[-1]
     state, first, second = (fit.state(q, order) for order in range(3))
-    return Node(q, state, first, second, 0.0, side, True, flips), radius * abs(roots[0] - roots[1]), fit
+    return BranchNode(q, state, first, second, 0.0, side, True, flips), radius * abs(roots[0] - roots[1]), fit
 
 
-def _samples(correct: Correct, nodes: list[Node], about: float, radius: float, flips: bool) -> list[Node] | None:
+def _sample_branch(
+    correct: Correct, nodes: list[BranchNode], about: float, radius: float, flips: bool
+) -> list[BranchNode] | None:
     """Nodes on both sides of a place; the first ones beyond it start from what those before it lead to."""
     sense = np.sign(about - nodes[-1].q)
     places = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
@@ -205,33 +216,33 @@ def _samples(correct: Correct, nodes: list[Node], about: float, radius: float, f
     last = max((k for k, n in enumerate(nodes) if n.dead), default=0)
     far = [n for n in nodes[last:] if abs(n.q - about) > MIDDLE * radius]
     start = min(far or nodes[-1:], key=lambda n: abs(n.q - before[0]))
-    here = _along(correct, start, sorted(before, key=lambda q: abs(q - start.q)), nodes[-1].side)
+    here = _correct_along(correct, start, sorted(before, key=lambda q: abs(q - start.q)), nodes[-1].side)
     if here is None:
         return None
-    reaching = _fitted(here, about, radius, len(here) - 4)
+    reaching = _fit_samples(here, about, radius, len(here) - 4)
     first = correct(after[0], reaching.state(after[0]))
     side = -nodes[-1].side if flips else nodes[-1].side
     if first is None or first[1] > FOUND or first[0].side != side:
         return None
-    there = _along(correct, first[0], after[1:], side)
+    there = _correct_along(correct, first[0], after[1:], side)
     return None if there is None else sorted([*here, first[0], *there], key=lambda n: n.q)
 
 
-def _along(correct: Correct, start: Node, places: list[float], side: float) -> list[Node] | None:
-    found: list[Node] = []
+def _correct_along(correct: Correct, start: BranchNode, places: list[float], side: float) -> list[BranchNode] | None:
+    found: list[BranchNode] = []
     for q in places:
         known = [start, *found]
         near = known[int(np.argmin([abs(n.q - q) for n in known]))]
-        one = correct(q, predicted(near, q))
+        one = correct(q, predict_state(near, q))
         if one is None or one[1] > FOUND or one[0].side != side:
             return None
         found.append(one[0])
     return found
 
 
-def _fitted(samples: list[Node], about: float, radius: float, degree: int) -> _Fit:
+def _fit_samples(samples: list[BranchNode], about: float, radius: float, degree: int) -> _Fit:
     t = np.array([(n.q - about) / radius for n in samples])
-    parts = np.array([parts_of(n.state) for n in samples])
+    parts = np.array([state_components(n.state) for n in samples])
     dets = np.array([n.det for n in samples])
 
     def fit(values: Real) -> Chebyshev:
@@ -252,7 +263,7 @@ def _root(fit: _Fit, flips: bool) -> float:
     return t
 
 
-def _smooth(correct: Correct, dead: Node, fit: _Fit, scale: float) -> bool:
+def _is_passed_smoothly(correct: Correct, dead: BranchNode, fit: _Fit, scale: float) -> bool:
     """Whether the way goes through: beside the place, closer and closer, the group is where the polynomials say.
 
     Where it turns back before a gap however narrow (w), it is off by w^2/h at the distance h.

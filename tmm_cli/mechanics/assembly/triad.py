@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import Pose, SliderEnd, State, line, meet, slider_end
+from tmm_cli.mechanics.groups import GroupState, Pose, SliderEnd, guide_line, intersect_lines, slider_end
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import PARALLEL, VANISHED, Real, Vector, cross, dot, unit
 from tmm_cli.mechanics.structure import Group, Pair
@@ -36,7 +36,7 @@ NEAR = 0.03  # sizes of the group: what a place found from a root may leave of t
 
 
 @dataclass(frozen=True)
-class Joint:
+class LegJoint:
     """One end of a leg: the hinge's place on the other link and on the leg, or the sliding pair as the leg sees it."""
 
     there: complex = 0j
@@ -50,8 +50,8 @@ class Leg:
 
     link: str
     known: str
-    outer: Joint
-    inner: Joint
+    outer: LegJoint
+    inner: LegJoint
 
 
 @dataclass(frozen=True)
@@ -70,18 +70,18 @@ class Triad:
         if len(group.links) != 4 or len(pairs) != 6 or group.drivers or any(p.kind not in ("R", "P") for p in pairs):
             return None
         for middle in group.links:
-            legs = [_leg(link, middle, group, linkage) for link in group.links if link != middle]
+            legs = [_make_leg(link, middle, group, linkage) for link in group.links if link != middle]
             a, b, c = legs
             if a and b and c and size > 0:
                 return cls(middle, (a, b, c), group.links, size)
         return None
 
 
-def _leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
+def _make_leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
     """The link as a leg of the triad about the middle link; None when it is none."""
     # links of later groups may hang on a leg too: they hold nothing
-    outer = _joint(link, group.known, group.outer, linkage)
-    inner = _joint(link, (middle,), group.inner, linkage)
+    outer = _find_joint(link, group.known, group.outer, linkage)
+    inner = _find_joint(link, (middle,), group.inner, linkage)
     if outer is None or inner is None:
         return None
     both_turn = outer[1].run is None and inner[1].run is None
@@ -90,22 +90,24 @@ def _leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
     return Leg(link, outer[0], outer[1], inner[1])
 
 
-def _joint(link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage) -> tuple[str, Joint] | None:
+def _find_joint(
+    link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage
+) -> tuple[str, LegJoint] | None:
     """The one joint of a link with any of the others; a compound hinge counts for each two of its links."""
-    found: dict[str, tuple[str, Joint]] = {}
+    found: dict[str, tuple[str, LegJoint]] = {}
     for hinge in linkage.hinges:
         other = next((n for n in hinge.links if n in others), None)
         if link in hinge.links and other is not None:
-            joint = Joint(linkage.local(other, hinge.point), linkage.local(link, hinge.point))
+            joint = LegJoint(linkage.local(other, hinge.point), linkage.local(link, hinge.point))
             found[hinge.point] = (other, joint)
     for pair in pairs:
         if pair.kind == "P" and link in (pair.i, pair.j) and pair.other(link) in others:
-            found[pair.name] = (pair.other(link), Joint(run=slider_end(pair, link)))
+            found[pair.name] = (pair.other(link), LegJoint(run=slider_end(pair, link)))
     return next(iter(found.values())) if len(found) == 1 else None
 
 
 @dataclass(frozen=True)
-class Condition:
+class LegCondition:
     """What a leg asks of the middle link at directions z: lines Re(conj(n) x) = e, or circles |x + g| = r.
 
     Without dimension. z: the only direction that the leg allows.
@@ -127,37 +129,41 @@ class Condition:
         return off
 
 
-def starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[State, int] | None:
+def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, int] | None:
     """Starts for Newton's method (starts, links), one at least at every assembly, and how many there are at most.
 
     From all roots of the polynomial, real or nearly so. None when it vanishes: then it tells nothing.
     """
     known = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
-    fixed = next((c.z for c in conditions(triad, known, np.ones(1, complex)) if c.z is not None), None)
+    fixed = next((c.z for c in leg_conditions(triad, known, np.ones(1, complex)) if c.z is not None), None)
     if fixed is not None:
         lines_only = all(leg.outer.run or leg.inner.run for leg in triad.legs)
         directions, most = np.array([fixed]), 1 if lines_only else 2
     else:
-        coefficients = polynomial(triad, known)
+        coefficients = triad_polynomial(triad, known)
         size = np.abs(coefficients)
         if np.max(size) < VANISHED:
             return None
         most = 2 * max(k for k in range(DEGREE + 1) if size[DEGREE + k] > VANISHED * np.max(size))
         roots = np.roots(coefficients[::-1])
         directions = np.array([z / abs(z) for z in roots if ANNULUS < abs(z) < 1 / ANNULUS])
-    found = [(x * triad.size, z) for z in directions for x in _places(conditions(triad, known, np.array([z])))]
-    return _state(triad, known, found), most
+    found = [
+        (x * triad.size, z)
+        for z in directions
+        for x in _middle_link_origins(leg_conditions(triad, known, np.array([z])))
+    ]
+    return _make_state(triad, known, found), most
 
 
-def polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
+def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
     """Coefficients of z^-3 ... z^3 of the polynomial that vanishes where the triad closes (real for |z| = 1)."""
     z = unit(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
-    values = np.broadcast_to(closure(conditions(triad, poses, z)), z.shape)
+    values = np.broadcast_to(closing_value(leg_conditions(triad, poses, z)), z.shape)
     spectrum = np.fft.fft(values) / SAMPLES
     return np.array([spectrum[k] for k in range(-DEGREE, DEGREE + 1)])
 
 
-def closure(three: Sequence[Condition]) -> Real:
+def closing_value(three: Sequence[LegCondition]) -> Real:
     """What vanishes where three conditions meet in one x."""
     circles = [c for c in three if c.g is not None]
     lines = [c for c in three if c.g is None]
@@ -166,12 +172,12 @@ def closure(three: Sequence[Condition]) -> Real:
         left: Real = a.e * cross(b.n, c.n) + b.e * cross(c.n, a.n) + c.e * cross(a.n, b.n)
         return left
     first = circles[0]
-    (n2, e2), (n3, e3) = (_line(c, first) for c in (*circles[1:], *lines))
+    (n2, e2), (n3, e3) = (_as_line(c, first) for c in (*circles[1:], *lines))
     beyond: Real = np.abs(e3 * n2 - e2 * n3) ** 2 - (first.r * cross(n2, n3)) ** 2
     return beyond
 
 
-def _line(condition: Condition, circle: Condition) -> tuple[Vector, Real]:
+def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Real]:
     """A condition as a line for w = x + g, the place of the inner hinge about the centre of a circle |w| = r."""
     assert circle.g is not None
     if condition.g is None:
@@ -181,49 +187,49 @@ def _line(condition: Condition, circle: Condition) -> tuple[Vector, Real]:
     return 2 * h, condition.r**2 - circle.r**2 - np.abs(h) ** 2
 
 
-def conditions(triad: Triad, poses: Mapping[str, Pose], z: Vector) -> list[Condition]:
+def leg_conditions(triad: Triad, poses: Mapping[str, Pose], z: Vector) -> list[LegCondition]:
     """What each leg asks at the directions z of the middle link; lengths in the triad's size."""
-    return [_condition(leg, poses, z, triad.size) for leg in triad.legs]
+    return [_leg_condition(leg, poses, z, triad.size) for leg in triad.legs]
 
 
-def _condition(leg: Leg, poses: Mapping[str, Pose], z: Vector, size: float) -> Condition:
+def _leg_condition(leg: Leg, poses: Mapping[str, Pose], z: Vector, size: float) -> LegCondition:
     outer, inner = leg.outer, leg.inner
     if outer.run is None and inner.run is None:
         centre = poses[leg.known].at(outer.there)
-        return Condition(g=(inner.there * z - centre) / size, r=abs(inner.here - outer.here) / size)
+        return LegCondition(g=(inner.there * z - centre) / size, r=abs(inner.here - outer.here) / size)
     if outer.run is not None and inner.run is not None:
-        return Condition(z=complex(_direction(leg, poses) * np.conj(unit(inner.run.turned))))
+        return LegCondition(z=complex(_leg_direction(leg, poses) * np.conj(unit(inner.run.turned))))
     if outer.run is not None:
-        through, along = line(outer.run, poses)
-        through = through + (inner.here - outer.run.here) * _direction(leg, poses)
+        through, along = guide_line(outer.run, poses)
+        through = through + (inner.here - outer.run.here) * _leg_direction(leg, poses)
         n = np.broadcast_to(1j * along, np.shape(z))
-        return Condition(n=n, e=dot(n, through - inner.there * z) / size)
+        return LegCondition(n=n, e=dot(n, through - inner.there * z) / size)
     assert inner.run is not None
     centre = poses[leg.known].at(outer.there)
     n = 1j * unit(inner.run.direction) * z
     foot = inner.run.there - (inner.run.here - outer.here) * unit(inner.run.turned)
-    return Condition(n=n, e=dot(n, centre - foot * z) / size)
+    return LegCondition(n=n, e=dot(n, centre - foot * z) / size)
 
 
-def _direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
+def _leg_direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
     """Direction of a leg that a known link guides."""
     assert leg.outer.run is not None
     return poses[leg.known].z * unit(leg.outer.run.turned)
 
 
-def _places(three: Sequence[Condition]) -> list[complex]:
+def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
     """Places x (in sizes) at one direction at which any two conditions meet and the third nearly holds."""
     binding = [c for c in three if c.z is None]
     places = []
     for one, other in combinations(binding, 2):
         third = [c for c in binding if c is not one and c is not other]
-        for x in _meet(one, other):
+        for x in _meeting_points(one, other):
             if all(abs(complex(c.residual(x)[0])) < NEAR for c in third):
                 places.append(complex(x[0]))
     return places
 
 
-def _meet(one: Condition, other: Condition) -> list[Vector]:
+def _meeting_points(one: LegCondition, other: LegCondition) -> list[Vector]:
     """Places where two conditions meet, or are nearest when they just miss one another."""
     if one.g is None:
         one, other = other, one
@@ -231,7 +237,7 @@ def _meet(one: Condition, other: Condition) -> list[Vector]:
         assert one.n is not None and other.n is not None
         det = cross(one.n, other.n)
         return [] if abs(det[0]) < PARALLEL else [1j * (other.e * one.n - one.e * other.n) / det]
-    n, e = _line(other, one)
+    n, e = _as_line(other, one)
     if abs(n[0]) < PARALLEL:  # circles about one centre
         return []
     foot = n * (e / np.abs(n) ** 2)
@@ -241,21 +247,23 @@ def _meet(one: Condition, other: Condition) -> list[Vector]:
     return [foot + half - one.g, foot - half - one.g]
 
 
-def _state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> State:
+def _make_state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> GroupState:
     """Places of all links for places x (m) and directions z of the middle one."""
     x, z = (np.array([start[k] for start in starts], complex) for k in (0, 1))
     places = {triad.middle: (x, z)}
     for leg in triad.legs:
         outer, inner = leg.outer, leg.inner
         if outer.run is not None:
-            along = _direction(leg, poses) * np.ones(np.shape(z))
+            along = _leg_direction(leg, poses) * np.ones(np.shape(z))
             if inner.run is None:
                 places[leg.link] = (x + inner.there * z - inner.here * along, along)
                 continue
-            (foot, u), v = line(outer.run, poses), z * unit(inner.run.direction)
+            (foot, u), v = guide_line(outer.run, poses), z * unit(inner.run.direction)
             with np.errstate(all="ignore"):
                 places[leg.link] = (
-                    meet(foot - outer.run.here * along, u, x + inner.run.there * z - inner.run.here * along, v)[0],
+                    intersect_lines(
+                        foot - outer.run.here * along, u, x + inner.run.there * z - inner.run.here * along, v
+                    )[0],
                     along,
                 )
             continue
@@ -267,4 +275,4 @@ def _state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[compl
             along = arm / np.maximum(np.abs(arm), 1e-300)
         places[leg.link] = (centre - outer.here * along, along)
     ordered = [places[link] for link in triad.order]
-    return State(np.stack([p for p, _ in ordered], -1), np.stack([np.angle(d) for _, d in ordered], -1))
+    return GroupState(np.stack([p for p, _ in ordered], -1), np.stack([np.angle(d) for _, d in ordered], -1))

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.mechanics.errors import NoCycleError, UnsettledError
+from tmm_cli.mechanics.errors import CounterweightError, NoCycleError
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import Motion, move
+from tmm_cli.mechanics.kinematics import Motion, compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import AT_REST, Real, Vector, cross
 
@@ -185,7 +185,7 @@ def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanc
         if np.max(np.abs(found - last)) <= SETTLED * np.max(np.abs(found)):
             break
     else:
-        raise UnsettledError
+        raise CounterweightError
     weights = tuple(
         Counterweight(place, float(abs(c)), _direction(complex(c))) for place, c in zip(places, found, strict=True)
     )
@@ -265,7 +265,7 @@ def steadily(mechanism: Mechanism, q: Real) -> Motion:
     """The motion at constant speed of the driver."""
     driver = mechanism.linkage.driver
     law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)
-    return move(mechanism.linkage, mechanism.kernels, q, law)
+    return compute_motion(mechanism.linkage, mechanism.kernels, q, law)
 
 
 def _pivot(linkage: Linkage) -> str:

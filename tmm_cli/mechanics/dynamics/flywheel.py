@@ -25,7 +25,7 @@ from functools import partial
 import numpy as np
 
 from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
-from tmm_cli.mechanics.numerics import Real, find_roots, least
+from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 
 NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
 
@@ -155,5 +155,5 @@ def lowest(function: Callable[[Real], Real], places: Real) -> tuple[float, float
     """Place and value of the least of a function whose minima are farther apart than these places."""
     values = function(places)
     best = int(np.argmin(values))
-    x, value = least(function, float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)]))
+    x, value = find_minima(function, float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)]))
     return (x, value) if value < values[best] else (float(places[best]), float(values[best]))

@@ -18,7 +18,7 @@ from tmm_cli.mechanics.dynamics.motors import Motor
 from tmm_cli.mechanics.dynamics.reduced_model import FIT, NODES, SUMS, Curve, Reduced, fitted, nodes
 from tmm_cli.mechanics.errors import LinkageError, LostDigitsError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.linkage import SpeedTable
-from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, rounded
+from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, to_float
 
 
 @dataclass(frozen=True)
@@ -266,7 +266,7 @@ class LawByTable:
 
     def time(self, q: Real) -> Real:
         """s, since the start; nan where the table has a rest, or does not reach."""
-        (laps, inner), (first, begun) = self._passed(rounded(q)), self._passed(rounded(self.start) + np.zeros(1))
+        (laps, inner), (first, begun) = self._passed(to_float(q)), self._passed(to_float(self.start) + np.zeros(1))
         period = float(self._times(np.array([self._length]))[0]) if self.table.squares.closed else float("nan")
         return inner - begun + np.where(laps == first, 0.0, (laps - first) * period)
 
@@ -284,23 +284,23 @@ class LawByTable:
     @cached_property
     def _first(self) -> float:
         """The end of the table that the driver comes to first."""
-        return float(rounded(self.table.squares.arguments[0 if self.sense > 0 else -1]))
+        return float(to_float(self.table.squares.arguments[0 if self.sense > 0 else -1]))
 
     @cached_property
     def _length(self) -> float:
         arguments = self.table.squares.arguments
-        return float(rounded(arguments[-1] - arguments[0]))
+        return float(to_float(arguments[-1] - arguments[0]))
 
     @cached_property
     def _times(self) -> Curve:
         """Time by the way from the first end of the table on, s."""
         squares = self.table.squares
-        edges = [self.sense * (float(rounded(row)) - self._first) for row in squares.arguments]
+        edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
 
         def pace(x: Real) -> tuple[Real]:
-            return (1 / np.sqrt(rounded(squares(self._first + self.sense * x))),)
+            return (1 / np.sqrt(to_float(squares(self._first + self.sense * x))),)
 
-        rows = np.array([float(rounded(value)) for value in squares.values])
+        rows = np.array([float(to_float(value)) for value in squares.values])
         if np.min(rows) <= STANDS * np.max(rows):
             return Curve(np.array([0.0, self._length]), np.full((1, 1), np.nan))
         return fitted(pace, edges)[0].summed()

@@ -21,7 +21,7 @@ from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
 from tmm_cli.mechanics.dynamics.steady_running import reduced_between
 from tmm_cli.mechanics.dynamics.tasks import RunTask
 from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
-from tmm_cli.mechanics.numerics import ROUNDOFF, SAME_PLACE, SEAM, Real, find_roots, rounded
+from tmm_cli.mechanics.numerics import ROUNDOFF, SAME_DRIVER_POSITION, SEAM, Real, find_roots, to_float
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
@@ -250,10 +250,12 @@ class SingleRun:
 
     def way(self, q: Real) -> Real:
         """How far the driver has gone at its place q."""
-        gone: Real = self.sense * (rounded(q) - self.first)
-        again = gone if self.turn is None else np.mod(gone + SAME_PLACE, self.turn) - SAME_PLACE
-        gone = np.where((gone < -SAME_PLACE) | (gone > self.machine.length + SAME_PLACE), again, gone)
-        return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_PLACE, 0.0, gone)
+        gone: Real = self.sense * (to_float(q) - self.first)
+        again = gone if self.turn is None else np.mod(gone + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
+        gone = np.where(
+            (gone < -SAME_DRIVER_POSITION) | (gone > self.machine.length + SAME_DRIVER_POSITION), again, gone
+        )
+        return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_DRIVER_POSITION, 0.0, gone)
 
     def driving(self, way: Real, speed: Real, accelerated: Real) -> Real:
         """Moment (N m), or force, of what drives, where the driver moves like that on its way."""
@@ -297,7 +299,9 @@ def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> Sing
     """
     first, last = (float(asked[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
     whole = mechanism.driver_range
-    if not whole.full and not all(whole.start - SAME_PLACE <= end <= whole.end + SAME_PLACE for end in (first, last)):
+    if not whole.full and not all(
+        whole.start - SAME_DRIVER_POSITION <= end <= whole.end + SAME_DRIVER_POSITION for end in (first, last)
+    ):
         raise OutOfRangeError(whole.start, whole.end)
     sense = 1 if last > first else -1
     machine = reduced_between(mechanism, first, sense, abs(last - first))

@@ -24,17 +24,26 @@ from tmm_cli.mechanics.dynamics.motors import Motor
 from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced, fitted, reduce_machine
 from tmm_cli.mechanics.dynamics.tasks import SteadyTask
 from tmm_cli.mechanics.errors import (
-    BySpeedError,
     NoCycleError,
     NoFlywheelError,
     NoInertiaError,
     RunawayError,
+    SpeedDependentForceError,
     StandstillError,
 )
 from tmm_cli.mechanics.forces import applied, compute_energy, find_load_jumps, inertias
 from tmm_cli.mechanics.groups import DriverMotion
-from tmm_cli.mechanics.kinematics import move
-from tmm_cli.mechanics.numerics import CONSTANT_INERTIA, ROUNDOFF, SAME_PLACE, SEAM, Real, find_roots, least, rounded
+from tmm_cli.mechanics.kinematics import compute_motion
+from tmm_cli.mechanics.numerics import (
+    CONSTANT_INERTIA,
+    ROUNDOFF,
+    SAME_DRIVER_POSITION,
+    SEAM,
+    Real,
+    find_minima,
+    find_roots,
+    to_float,
+)
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
@@ -134,7 +143,7 @@ def extremes(law: Law) -> tuple[float, float]:
     values = law.speed(places)
     best = np.argmin(signs[:, None] * values, axis=1)
     low, high = (places[np.clip(best + side, 0, len(places) - 1)] for side in (-1, 1))
-    found = least(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
+    found = find_minima(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
     slowest, quickest = signs * np.minimum(found, signs * values[best])
     return float(slowest), float(quickest)
 
@@ -249,10 +258,10 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
     A link counts if its reduced inertia does not change: the crank, gears on the frame, links of parallelograms.
     """
     q = start + mechanism.linkage.driver.sense * np.linspace(0, length, CONSTANT_SAMPLES, endpoint=False)
-    motion = move(
+    motion = compute_motion(
         mechanism.linkage, mechanism.kernels, q, DriverMotion(start, 1.0, 0.0, mechanism.linkage.driver.sense)
     )
-    inertia = [np.broadcast_to(rounded(own), q.shape) for own, _ in inertias(motion).values()]
+    inertia = [np.broadcast_to(to_float(own), q.shape) for own, _ in inertias(motion).values()]
     return float(sum(np.mean(own) for own in inertia if np.ptp(own) <= CONSTANT_INERTIA * np.max(own)))
 
 
@@ -265,18 +274,20 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
     if linkage.others:
         raise NoCycleError
     if linkage.by_speed is not None:
-        raise BySpeedError(linkage.by_speed)
+        raise SpeedDependentForceError(linkage.by_speed)
     strokes = mechanism.strokes if linkage.by_strokes else None
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
-        motion = move(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
+        motion = compute_motion(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
         found = compute_energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
         return found.inertia, sense * found.slope, sense * found.moment
 
     places = np.array([*find_load_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
     inner = np.sort(np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns))
-    inner = inner[np.diff(inner, prepend=-1.0) > SAME_PLACE]
-    return reduce_machine(sample, [0.0, *inner[(inner > SAME_PLACE) & (inner < length - SAME_PLACE)], length])
+    inner = inner[np.diff(inner, prepend=-1.0) > SAME_DRIVER_POSITION]
+    return reduce_machine(
+        sample, [0.0, *inner[(inner > SAME_DRIVER_POSITION) & (inner < length - SAME_DRIVER_POSITION)], length]
+    )
 
 
 @dataclass(frozen=True)
@@ -293,7 +304,7 @@ class Running:
 
     def way(self, q: Real) -> Real:
         """How far the driver has gone in the cycle at its place q, rad."""
-        gone = np.mod(self.sense * (rounded(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
+        gone = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
         return np.asarray(np.maximum(gone, 0.0))
 
     def speed(self, q: Real) -> Real:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
 from tmm_cli.mechanics.kinematics import Motion
-from tmm_cli.mechanics.numerics import Real, dot, square
+from tmm_cli.mechanics.numerics import Real, dot, squared_length
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
         link = motion.linkage.links[name]
         centre, turning = motion.centre(name), motion.link(name)
         slope = 2 * (link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second)
-        found[name] = link.mass * square(centre.first) + link.inertia * turning.first**2, slope
+        found[name] = link.mass * squared_length(centre.first) + link.inertia * turning.first**2, slope
     return found
 
 

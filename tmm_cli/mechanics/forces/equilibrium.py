@@ -24,7 +24,7 @@ from tmm_cli.mechanics.forces.free_bodies import (
 from tmm_cli.mechanics.forces.reactions import GroupForces, Reaction, Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import NO_COORDINATE, NO_FORCE, SAME_PLACES, dot
+from tmm_cli.mechanics.numerics import NO_COORDINATE, NO_FORCE, SAME_POINTS, dot
 from tmm_cli.mechanics.structure import Group, Pair
 
 
@@ -330,7 +330,7 @@ def numbered(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
         for term in equation.terms:
             number = 0
             if not term.acting.couple:
-                arm, near = (equation.centre, term.foot), SAME_PLACES * term.arm
+                arm, near = (equation.centre, term.foot), SAME_POINTS * term.arm
                 same = [n for n, (c, f) in enumerate(feet, 1) if abs(c - arm[0]) < near and abs(f - arm[1]) < near]
                 feet += [] if same else [arm]
                 number = same[0] if same else len(feet)

@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
 from tmm_cli.mechanics.forces.reactions import Reaction, Reactions, power, react
-from tmm_cli.mechanics.kinematics import Motion, moving_parts
+from tmm_cli.mechanics.kinematics import Motion, zero_at_rest
 from tmm_cli.mechanics.linkage import FRAME, Friction
 from tmm_cli.mechanics.numerics import (
     FRICTION_AGREES,
@@ -206,9 +206,9 @@ def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     if pair.pair.slide is not None:
         slide = pair.pair.slide
         slip = motion.slide(slide).first * (1 if slide.runner == pair.on else -1)
-        moving = moving_parts(slip, largest.speed)
+        moving = zero_at_rest(slip, largest.speed)
     else:
-        moving = moving_parts(motion.first[pair.on].w - motion.first[pair.by].w, largest.speed / largest.size)
+        moving = zero_at_rest(motion.first[pair.on].w - motion.first[pair.by].w, largest.speed / largest.size)
     return np.sign(moving * motion.rate), np.abs(moving)
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.mechanics.forces.loads import motion_on_base, setting_off
-from tmm_cli.mechanics.groups import DriverMotion, towards
-from tmm_cli.mechanics.kinematics import SCAN, Motion, OutputCurve, move
+from tmm_cli.mechanics.groups import DriverMotion, solvers_towards
+from tmm_cli.mechanics.kinematics import SCAN, Motion, OutputCurve, compute_motion
 from tmm_cli.mechanics.linkage import Load, LoadTable
-from tmm_cli.mechanics.numerics import SAME_PLACE, Real, dot, find_roots
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, Real, dot, find_roots
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
@@ -66,14 +66,16 @@ def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Itera
     strokes = strokes and strokes.of_link(table.stroke_link)
     if strokes is None or not strokes.strokes:
         return
-    curve = OutputCurve(linkage, towards(mechanism.kernels, [linkage.output_carrier(strokes.link)]), strokes.link)
+    curve = OutputCurve(
+        linkage, solvers_towards(mechanism.kernels, [linkage.output_carrier(strokes.link)]), strokes.link
+    )
     first = strokes.strokes[0]
     for stroke in strokes.strokes:
         middle = stroke.low + stroke.run / 2
         for row in arguments:
             wanted = first.low + (first.run if table.shares else np.sign(first.run)) * row
             # at the ends themselves the output rests: rounding would put the row a little beside them
-            if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_PLACE):
+            if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_DRIVER_POSITION):
                 end = stroke.start + linkage.driver.sense * stroke.length
                 yield float(find_roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
 
@@ -96,7 +98,7 @@ def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
 
     def moved(q: Real, order: int) -> Motion:
-        return move(linkage, mechanism.kernels, q, law, order)
+        return compute_motion(linkage, mechanism.kernels, q, law, order)
 
     q = np.linspace(whole.start, whole.end, SCAN * whole.turns + 1)
     half = (q[1] - q[0]) / 2  # a place of the scan may be the end itself: a little beyond it there is no doubt

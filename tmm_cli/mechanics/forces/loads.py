@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.kinematics import Motion, Strokes, moving_parts, output_place
+from tmm_cli.mechanics.kinematics import Motion, Strokes, output_coordinate, zero_at_rest
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable, Spring
-from tmm_cli.mechanics.numerics import SAME_PLACE, SEAM, Real, Vector, cross, dot, pi, unit
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector, cross, dot, pi, unit
 
 
 @dataclass(frozen=True)
@@ -144,14 +144,14 @@ def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
     """
     largest = motion.largest
     velocity, spin = motion_on_base(load, motion)
-    velocity, spin = moving_parts(velocity, largest.speed), moving_parts(spin, largest.speed / largest.size)
+    velocity, spin = zero_at_rest(velocity, largest.speed), zero_at_rest(spin, largest.speed / largest.size)
     if motion.order > 1:
         pose, other = motion.poses[load.link], motion.second[load.base]
         arm, far = load.at * pose.z, pose.at(load.at) - motion.poses[load.base].x
         second = motion.second[load.link]
         gain = second.at(arm, motion.first[load.link].w) - other.at(far, motion.first[load.base].w)
-        velocity = np.where(velocity == 0, moving_parts(gain, largest.acceleration), velocity)
-        spin = np.where(spin == 0, moving_parts(second.e - other.e, largest.acceleration / largest.size), spin)
+        velocity = np.where(velocity == 0, zero_at_rest(gain, largest.acceleration), velocity)
+        spin = np.where(spin == 0, zero_at_rest(second.e - other.e, largest.acceleration / largest.size), spin)
     length = np.abs(velocity)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(length > 0, velocity / length, 0j), np.sign(spin)
@@ -170,8 +170,8 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
     low, high = window
     first = low if linkage.driver.sense > 0 else high
     cycle = 2 * np.pi * linkage.turns
-    gone = np.mod(linkage.driver.sense * (q - first) + SAME_PLACE, cycle) - SAME_PLACE
-    inside: Real = gone < np.mod(high - low, cycle) - SAME_PLACE
+    gone = np.mod(linkage.driver.sense * (q - first) + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
+    inside: Real = gone < np.mod(high - low, cycle) - SAME_DRIVER_POSITION
     return inside
 
 
@@ -191,7 +191,7 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
     assert strokes is not None
     strokes = strokes.of_link(table.stroke_link)
     first = strokes.strokes[0]
-    run: Real = output_place(motion, strokes.link) - first.low
+    run: Real = output_coordinate(motion, strokes.link) - first.low
     if strokes.kind == "swing":
         turns = np.round((run - first.run / 2) / (2 * np.pi))
         run = run - 2 * pi(run) * turns

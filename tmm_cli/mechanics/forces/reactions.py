@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_cli.mechanics.forces.loads import Applied
 from tmm_cli.mechanics.groups import PairReaction, Wrench
-from tmm_cli.mechanics.kinematics import Lead, Motion, followers
+from tmm_cli.mechanics.kinematics import DrivenLink, Motion, driven_links
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage
 from tmm_cli.mechanics.numerics import INFINITELY_FAR, NO_FORCE, Real, Vector, cross, dot, unit
 from tmm_cli.mechanics.structure import Group, Pair, Structure
@@ -336,11 +336,11 @@ def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[Trans
     The direction of the velocity is that of a rotation about the pivot that holds the link, or of its guide, so that it
     is there where the link rests, too.
     """
-    leads = [(kernel.group, lead) for kernel in motion.kernels for lead in followers(kernel.group)]
+    leads = [(kernel.group, lead) for kernel in motion.kernels for lead in driven_links(kernel.group)]
     return tuple(_transmitted(motion, reactions, group.title, lead) for group, lead in leads if len(lead[2]) == 1)
 
 
-def _transmitted(motion: Motion, reactions: Reactions, group: str, lead: Lead) -> TransmittedForce:
+def _transmitted(motion: Motion, reactions: Reactions, group: str, lead: DrivenLink) -> TransmittedForce:
     link, outer, (pair,) = lead
     reaction = reactions.of(pair.name)
     force = reaction.onto(link)

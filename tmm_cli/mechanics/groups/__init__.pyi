@@ -1,25 +1,41 @@
 """Assur groups that can be solved, a module a type, and the pairs of which they are made."""
 
 from . import sequence as sequence
-from .base import (
-    Closed as Closed,
-    HingeEnd as HingeEnd,
-    Kernel as Kernel,
-    SliderEnd as SliderEnd,
-    Wrapped as Wrapped,
-    line as line,
-    meet as meet,
-    reach as reach,
-    slider_end as slider_end,
-    spread as spread,
+from .branch_trace import (
+    AccumulatedAngles as AccumulatedAngles,
+    BranchTrace as BranchTrace,
+    ChangePoints as ChangePoints,
 )
-from .branch import BranchTrace as BranchTrace, SmoothWay as SmoothWay, Winding as Winding
-from .closed_forms import CLOSED as CLOSED
-from .dyads import DYADS as DYADS
-from .newton import Newton as Newton
-from .pairs import PAIRS as PAIRS
-from .pairs.higher import SHAPES as SHAPES, CamLaw as CamLaw, Gear as Gear, Piece as Piece, Rack as Rack
-from .pairs.lower import Constraint as Constraint, Driven as Driven, Guided as Guided, Sliding as Sliding, axis as axis
+from .closed_forms import CLOSED_FORM_SOLVERS as CLOSED_FORM_SOLVERS
+from .dyads import DYAD_SOLVERS as DYAD_SOLVERS
+from .group_solver import (
+    ClosedFormSolver as ClosedFormSolver,
+    GroupSolver as GroupSolver,
+    HingeEnd as HingeEnd,
+    SliderEnd as SliderEnd,
+    WrappedSolver as WrappedSolver,
+    guide_line as guide_line,
+    intersect_lines as intersect_lines,
+    link_extent as link_extent,
+    slider_end as slider_end,
+    slider_search_range as slider_search_range,
+)
+from .newton import NewtonSolver as NewtonSolver
+from .pairs import PAIR_CONSTRAINTS as PAIR_CONSTRAINTS
+from .pairs.higher import (
+    RISE_LAWS as RISE_LAWS,
+    CamLaw as CamLaw,
+    CamLawPiece as CamLawPiece,
+    GearConstraint as GearConstraint,
+    RackConstraint as RackConstraint,
+)
+from .pairs.lower import (
+    DriverConstraint as DriverConstraint,
+    GuideGeometry as GuideGeometry,
+    PairConstraint as PairConstraint,
+    SlideConstraint as SlideConstraint,
+    carrier_axis as carrier_axis,
+)
 from .sequence import (
     DriverMotion as DriverMotion,
     LawOfMotion as LawOfMotion,
@@ -29,22 +45,22 @@ from .sequence import (
     drives_at as drives_at,
     frame_state as frame_state,
     link_states as link_states,
-    towards as towards,
+    solvers_towards as solvers_towards,
 )
 from .state import (
     Accel as Accel,
     Accels as Accels,
-    Drive as Drive,
-    Drives as Drives,
+    DriverState as DriverState,
+    DriverStates as DriverStates,
     GroupReactions as GroupReactions,
+    GroupState as GroupState,
     PairReaction as PairReaction,
     Placement as Placement,
     Pose as Pose,
     Poses as Poses,
     Rate as Rate,
     Rates as Rates,
-    State as State,
     Wrench as Wrench,
 )
 from .telescope import Telescope as Telescope, TelescopeParts as TelescopeParts
-from .unrolled import NotUnrolledError as NotUnrolledError, Unrolled as Unrolled
+from .unrolled import NotUnrolledError as NotUnrolledError, UnrolledNewton as UnrolledNewton

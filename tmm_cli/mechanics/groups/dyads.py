@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tmm_cli.mechanics.groups.base import Dyad
+from tmm_cli.mechanics.groups.group_solver import Dyad
 from tmm_cli.mechanics.groups.prp import PRP
 from tmm_cli.mechanics.groups.rpp import RPP
 from tmm_cli.mechanics.groups.rpr import RPR
@@ -10,4 +10,4 @@ from tmm_cli.mechanics.groups.rrp import RRP
 from tmm_cli.mechanics.groups.rrr import RRR
 
 AnyDyad = Dyad[Any, Any, Any]
-DYADS: dict[str, type[AnyDyad]] = {dyad.type: dyad for dyad in (RRR, RRP, RPR, PRP, RPP)}
+DYAD_SOLVERS: dict[str, type[AnyDyad]] = {dyad.type: dyad for dyad in (RRR, RRP, RPR, PRP, RPP)}

@@ -15,21 +15,21 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Kernel, reach, spread
-from tmm_cli.mechanics.groups.branch import BranchTrace
-from tmm_cli.mechanics.groups.pairs import PAIRS
-from tmm_cli.mechanics.groups.pairs.lower import Constraint, Driven, JacobianRow
+from tmm_cli.mechanics.groups.branch_trace import BranchTrace
+from tmm_cli.mechanics.groups.group_solver import GroupSolver, link_extent, slider_search_range
+from tmm_cli.mechanics.groups.pairs import PAIR_CONSTRAINTS
+from tmm_cli.mechanics.groups.pairs.lower import DriverConstraint, JacobianRow, PairConstraint
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
+    GroupState,
     Placement,
     Pose,
     Poses,
     Rate,
     Rates,
-    State,
     Wrench,
 )
 from tmm_cli.mechanics.linkage import Linkage
@@ -46,25 +46,25 @@ from tmm_cli.mechanics.numerics import (
     Real,
     Vector,
     cross,
-    exactly,
-    least_over_largest,
-    rounded,
+    determinant_sign,
     roundoff,
-    signed_determinant,
+    singular_value_ratio,
     solve,
+    to_double_double,
+    to_float,
     unit,
 )
 from tmm_cli.mechanics.structure import Group
 
-ROUNDS = 12  # of Newton's method at most
+MOST_ITERATIONS = 12  # of Newton's method at most
 
 
 @dataclass(frozen=True)
-class Newton(Kernel):
+class NewtonSolver(GroupSolver):
     """A group with its pairs and drivers as constraints: outer pairs, inner pairs, drivers, in the group's order."""
 
-    constraints: tuple[Constraint, ...]
-    start: State | None = None
+    constraints: tuple[PairConstraint, ...]
+    start: GroupState | None = None
     trace: BranchTrace | None = None
     passive: bool = False
     order: Mapping[str, int] = field(default_factory=dict)
@@ -78,18 +78,18 @@ class Newton(Kernel):
         return BLURRED_PASSIVE if self.passive else self.near
 
     @classmethod
-    def of(cls, group: Group, linkage: Linkage) -> Newton:
+    def of(cls, group: Group, linkage: Linkage) -> NewtonSolver:
         """The group with its numbers, which may be arrays, not yet assembled."""
-        pairs = tuple(PAIRS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
-        drives = tuple(Driven.of(driver, linkage) for driver in group.drivers)
-        size = reduce(np.maximum, [spread(linkage, link) for link in sorted({*group.links, *group.known})])
-        size = size if np.any(size > 0) else reach(linkage)
+        pairs = tuple(PAIR_CONSTRAINTS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
+        drives = tuple(DriverConstraint.of(driver, linkage) for driver in group.drivers)
+        size = reduce(np.maximum, [link_extent(linkage, link) for link in sorted({*group.links, *group.known})])
+        size = size if np.any(size > 0) else slider_search_range(linkage)
         rows = sum(len(c.lengths) for c in (*pairs, *drives))
         order = {link: k for k, link in enumerate(group.links)}
         return cls(group, size, (*pairs, *drives), passive=rows > 3 * len(group.links), order=order)
 
-    def rebind(self, linkage: Linkage) -> Newton:
-        return replace(Newton.of(self.group.rebind(linkage), linkage), start=self.start, trace=self.trace)
+    def rebind(self, linkage: Linkage) -> NewtonSolver:
+        return replace(NewtonSolver.of(self.group.rebind(linkage), linkage), start=self.start, trace=self.trace)
 
     @property
     def followed(self) -> BranchTrace | None:
@@ -115,16 +115,16 @@ class Newton(Kernel):
 
     @cached_property
     def _scale(self) -> Real:
-        return _stacked([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
+        return _stack([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
     @cached_property
     def _columns(self) -> Real:
-        return _stacked([self.size, self.size, 1.0] * len(self.group.links))
+        return _stack([self.size, self.size, 1.0] * len(self.group.links))
 
     @property
     def unit(self) -> Real:
         """The size on an axis of its own."""
-        return _stacked([self.size])
+        return _stack([self.size])
 
     def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
         """Rows of all pairs as a matrix (..., rows, unknowns), without dimension."""
@@ -153,9 +153,9 @@ class Newton(Kernel):
     def _rows(self, poses: Poses) -> list[Mapping[str, Sequence[JacobianRow]]]:
         return [c.jacobian_rows(poses) for c in self.constraints]
 
-    def residuals(self, poses: Poses, drives: Drives) -> Real:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Real:
         """What is short of closing, without dimension, (..., rows)."""
-        return _stacked([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
+        return _stack([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
 
     def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
         """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
@@ -174,48 +174,50 @@ class Newton(Kernel):
                         for t, (c, m) in zip(total, lines, strict=True)
                     ]
             rows += total
-        return _stacked(rows) * self._scale
+        return _stack(rows) * self._scale
 
-    def asked(self, drives: Drives, order: int, shape: tuple[int, ...]) -> Real:
+    def asked(self, drives: DriverStates, order: int, shape: tuple[int, ...]) -> Real:
         """Derivative of each row that the drivers ask for, without dimension."""
         if not self.group.drivers:
             return np.zeros((*shape, self._scale.shape[-1]))
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
-        return _stacked([np.zeros(shape), *rows])[..., 1:] * self._scale
+        return _stack([np.zeros(shape), *rows])[..., 1:] * self._scale
 
-    def poses_of(self, state: State) -> dict[str, Pose]:
+    def poses_of(self, state: GroupState) -> dict[str, Pose]:
         """A state as poses."""
         x, z, unwrapped = state.x, unit(state.unwrapped), state.unwrapped
         return {link: Pose(x[..., k], z[..., k], unwrapped[..., k]) for link, k in self.order.items()}
 
-    def close(self, start: State, poses: Poses, drives: Drives, rounds: int = ROUNDS) -> tuple[State, Real]:
+    def close(
+        self, start: GroupState, poses: Poses, drives: DriverStates, rounds: int = MOST_ITERATIONS
+    ) -> tuple[GroupState, Real]:
         """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
         state = start
         if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
-            state = State(exactly(start.x), exactly(start.unwrapped))
+            state = GroupState(to_double_double(start.x), to_double_double(start.unwrapped))
         size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
             near = size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)
             everything = {**poses, **self.poses_of(state)}
-            step = solve(rounded(self.matrix(everything)), -rounded(self.residuals(everything, drives)))
+            step = solve(to_float(self.matrix(everything)), -to_float(self.residuals(everything, drives)))
             size = np.max(np.abs(step), axis=-1)
             state = state.moved(step, self.unit)
             if bool(np.all(near | ~np.isfinite(size))):
                 break
         return state, size
 
-    def begun(self, poses: Poses, q: Real, drives: Drives) -> tuple[State, Real]:
+    def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
         """States from which Newton's method begins, and how far q is beyond where the group goes (see BranchTrace)."""
         if self.trace is not None:
             start, residual = self.trace.start(q)
             nothing = (residual > 0)[..., None]  # is there to be found
-            return State(start.x, np.where(nothing, np.nan, start.unwrapped)), residual
+            return GroupState(start.x, np.where(nothing, np.nan, start.unwrapped)), residual
         assert self.start is not None
         shape = (*np.shape(q), len(self.group.links))
-        start = State(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
+        start = GroupState(np.broadcast_to(self.start.x, shape), np.broadcast_to(self.start.unwrapped, shape))
         return start, np.full(np.shape(q), -1.0)
 
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         start, residual = self.begun(poses, q, drives)
         with np.errstate(all="ignore"):
             state, step = self.close(start, poses, drives)
@@ -223,11 +225,11 @@ class Newton(Kernel):
         if self.trace is not None:  # in a dead position that it passes the group is where its way leads through
             dead, side = self.trace.in_dead(q, ROUNDINGS**2 * roundoff(start.unwrapped)), self.trace.side(q)
             through = dead[..., None]
-            state = State(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
+            state = GroupState(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
         own = self.poses_of(state)
         everything = {**poses, **own}
         matrix = self.matrix(everything)
-        margin = least_over_largest(matrix)
+        margin = singular_value_ratio(matrix)
         missed = np.max(np.abs(self.residuals(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
         lost = ~(step < CONVERGED) | ~(missed < CONVERGED)
         slack = np.full(np.shape(q), ROUNDINGS * roundoff(state.unwrapped))
@@ -238,7 +240,7 @@ class Newton(Kernel):
         residual = np.where(
             margin < (TRUNCATED if self.passive else SINGULAR), np.where(residual > slack, residual, 0.0), residual
         )
-        det = signed_determinant(matrix) * margin * side
+        det = determinant_sign(matrix) * margin * side
         return Placement(
             tuple(own[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
         )
@@ -246,28 +248,30 @@ class Newton(Kernel):
     def _all_poses(self, at: Placement, poses: Poses) -> dict[str, Pose]:
         return {**poses, **dict(zip(self.group.links, at.poses, strict=True))}
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         everything = self._all_poses(at, poses)
         return self.rates_at(everything, self.matrix(everything), at.det, rates, drives)
 
-    def rates_at(self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates_at(
+        self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: DriverStates
+    ) -> tuple[Rate, ...]:
         """Velocities of its links from the poses of all links and the matrix there; nan where det is."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
         return tuple(Rate(v, w) for v, w in self._by_link(found, det))
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         everything = self._all_poses(at, poses)
         return self.accelerations_at(everything, self.matrix(everything), at.det, rates, accels, drives)
 
     def accelerations_at(
-        self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: Drives
+        self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         """Accelerations of its links, likewise; rates holds those of its own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
-        bend = _stacked(self.velocity_terms(everything, rates)) * self._scale
+        bend = _stack(self.velocity_terms(everything, rates)) * self._scale
         found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
         return tuple(Accel(a, e) for a, e in self._by_link(found, det))
 
@@ -281,7 +285,7 @@ class Newton(Kernel):
         for k in range(0, found.shape[-1], 3):
             yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
 
-    def _by_constraint(self, found: Sequence[Real]) -> list[tuple[Constraint, list[Real]]]:
+    def _by_constraint(self, found: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
         """The multipliers of each pair and driver, from those of each row."""
         each, row = [], 0
         for constraint in self.constraints:
@@ -321,13 +325,13 @@ class Newton(Kernel):
 
         def under(wrenches: Sequence[Wrench]) -> Sequence[Real]:
             borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
-            found = solve(turned, -_stacked(borne) * self._columns)
+            found = solve(turned, -_stack(borne) * self._columns)
             found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
             return [found[..., row] for row in range(found.shape[-1])]
 
         return under
 
-    def given_by(self, everything: Poses, multipliers: Sequence[tuple[Constraint, list[Real]]]) -> GroupReactions:
+    def given_by(self, everything: Poses, multipliers: Sequence[tuple[PairConstraint, list[Real]]]) -> GroupReactions:
         """Reactions from the multipliers of each pair and driver."""
         reaction = [constraint.reaction(everything, here) for constraint, here in multipliers]
         outer, inner = len(self.group.outer), len(self.group.inner)
@@ -341,7 +345,7 @@ class Newton(Kernel):
         return GroupReactions(tuple(reaction[:outer]), tuple(reaction[outer : outer + inner]), drives)
 
 
-def _stacked(values: Sequence[Any]) -> Real:
+def _stack(values: Sequence[Any]) -> Real:
     """Numbers, or arrays of them, on a last axis."""
     if len({np.shape(value) for value in values}) > 1:
         values = np.broadcast_arrays(*values)

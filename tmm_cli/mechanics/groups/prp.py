@@ -9,22 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import (
+from tmm_cli.mechanics.groups.group_solver import (
     Dyad,
     HingeEnd,
     SliderEnd,
-    line,
-    meet,
-    parallel,
-    slide_acceleration,
-    slide_rate,
-    split,
-    turned_apart,
+    common_point_rate,
+    guide_acceleration,
+    guide_line,
+    intersect_lines,
+    parallel_residual,
+    parallel_residual_rate,
+    split_across_guides,
 )
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -44,40 +44,40 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
     type = "PRP"
     assemblies = 1
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         a, b, c = self.parts
-        (P, u), (Q, v) = line(a, poses), line(b, poses)
+        (P, u), (Q, v) = guide_line(a, poses), guide_line(b, poses)
         za, zb = poses[a.known].z * unit(a.turned), poses[b.known].z * unit(b.turned)
-        C, det = meet(P + (c.there - a.here) * za, u, Q + (c.here - b.here) * zb, v)
-        residual, slack = parallel(det)
+        C, det = intersect_lines(P + (c.there - a.here) * za, u, Q + (c.here - b.here) * zb, v)
+        residual, slack = parallel_residual(det)
         return Placement((Pose(C - c.there * za, za), Pose(C - c.here * zb, zb)), det, np.abs(det), residual, slack)
 
     def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
         """C and the directions of both guides."""
         a, b, c = self.parts
-        return at.a.at(c.there), line(a, poses)[1], line(b, poses)[1]
+        return at.a.at(c.there), guide_line(a, poses)[1], guide_line(b, poses)[1]
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         a, b, _ = self.parts
-        u, v = line(a, poses)[1], line(b, poses)[1]
-        return turned_apart(u, v, rates[a.known].w, rates[b.known].w)
+        u, v = guide_line(a, poses)[1], guide_line(b, poses)[1]
+        return parallel_residual_rate(u, v, rates[a.known].w, rates[b.known].w)
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, c = self.parts
         C, u, v = self._frame(at, poses)
         ra, rb = rates[a.known], rates[b.known]
-        vC = slide_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
+        vC = common_point_rate(ra.at(C - poses[a.known].x), u, rb.at(C - poses[b.known].x), v, at.det)
         return Rate.through(vC, ra.w, c.there * at.a.z), Rate.through(vC, rb.w, c.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         a, b, c = self.parts
         C, u, v = self._frame(at, poses)
         vC = rates[self.group.links[0]].at(c.there * at.a.z)
-        by_a = slide_acceleration(C, vC, (poses[a.known].x, u, rates[a.known], accels[a.known]))
-        by_b = slide_acceleration(C, vC, (poses[b.known].x, v, rates[b.known], accels[b.known]))
-        aC = slide_rate(by_a, u, by_b, v, at.det)
+        by_a = guide_acceleration(C, vC, (poses[a.known].x, u, rates[a.known], accels[a.known]))
+        by_b = guide_acceleration(C, vC, (poses[b.known].x, v, rates[b.known], accels[b.known]))
+        aC = common_point_rate(by_a, u, by_b, v, at.det)
         (wa, ea), (wb, eb) = ((rates[k].w, accels[k].e) for k in (a.known, b.known))
         return Accel.through(aC, ea, wa, c.there * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
@@ -86,7 +86,7 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
         on_a, on_b = applied
         a, b, c = self.parts
         _, u, v = self._frame(at, poses)
-        by_a, by_b = split(on_a.force + on_b.force, u, v, at.det)
+        by_a, by_b = split_across_guides(on_a.force + on_b.force, u, v, at.det)
         arm_a, arm_b = c.there * at.a.z, c.here * at.b.z
         couple_a = -on_a.about(arm_a) - cross(a.runner_arm(at.a, poses) - arm_a, by_a)
         couple_b = -on_b.about(arm_b) - cross(b.runner_arm(at.b, poses) - arm_b, by_b)

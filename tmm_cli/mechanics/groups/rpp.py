@@ -10,21 +10,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import (
+from tmm_cli.mechanics.groups.group_solver import (
     Dyad,
     HingeEnd,
     SliderEnd,
-    line,
-    meet,
-    parallel,
-    slide_acceleration,
-    slide_rate,
-    split,
+    common_point_rate,
+    guide_acceleration,
+    guide_line,
+    intersect_lines,
+    parallel_residual,
+    split_across_guides,
 )
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -44,28 +44,28 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
     type = "RPP"
     assemblies = 1
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         a, b, run = self.parts
-        Q, v = line(b, poses)
+        Q, v = guide_line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
         za = zb * unit(-run.turned)
         A = a.place(poses)
         pose_a = Pose(A - a.here * za, za)
         u = za * unit(run.direction)
         # b's origin runs along both guides
-        origin, det = meet(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
-        residual, slack = parallel(det)
+        origin, det = intersect_lines(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
+        residual, slack = parallel_residual(det)
         return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), residual, slack)
 
     def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector]:
         """Directions of the guides on a and on the known link."""
         _, b, run = self.parts
-        return at.a.z * unit(run.direction), line(b, poses)[1]
+        return at.a.z * unit(run.direction), guide_line(b, poses)[1]
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, _ = self.parts
         u, v = self._frame(at, poses)
         w = rates[b.known].w
@@ -73,10 +73,10 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         rate_a = Rate.through(vA, w, a.here * at.a.z)
         by_a = rate_a.at(at.b.x - at.a.x)
         by_g = rates[b.known].at(at.b.x - poses[b.known].x)
-        return rate_a, Rate(slide_rate(by_a, u, by_g, v, at.det), w)
+        return rate_a, Rate(common_point_rate(by_a, u, by_g, v, at.det), w)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         a, b, _ = self.parts
         u, v = self._frame(at, poses)
@@ -84,16 +84,16 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         aA = a.acceleration(poses, rates, accels)
         accel_a = Accel.through(aA, e, w, a.here * at.a.z)
         rate_a, rate_b = (rates[link] for link in self.group.links)
-        by_a = slide_acceleration(at.b.x, rate_b.v, (at.a.x, u, rate_a, accel_a))
-        by_g = slide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
-        return accel_a, Accel(slide_rate(by_a, u, by_g, v, at.det), e)
+        by_a = guide_acceleration(at.b.x, rate_b.v, (at.a.x, u, rate_a, accel_a))
+        by_g = guide_acceleration(at.b.x, rate_b.v, (poses[b.known].x, v, rates[b.known], accels[b.known]))
+        return accel_a, Accel(common_point_rate(by_a, u, by_g, v, at.det), e)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
         """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
         on_a, on_b = applied
         a, b, run = self.parts
         u, v = self._frame(at, poses)
-        inner, guide = split(on_b.force, u, v, at.det)  # on b, from a and from the known link
+        inner, guide = split_across_guides(on_b.force, u, v, at.det)  # on b, from a and from the known link
         RA = inner - on_a.force
         # a carries the opposite of `inner` and of its couple, both at the running point
         arm_a = a.here * at.a.z

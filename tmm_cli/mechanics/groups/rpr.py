@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Dyad, HingeEnd, SliderEnd
+from tmm_cli.mechanics.groups.group_solver import Dyad, HingeEnd, SliderEnd
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -42,7 +42,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         offset: Real = cross(unit(run.direction), fixed)
         return offset
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         a, b, run = self.parts
         A, B = a.place(poses), b.place(poses)
         base = B - A
@@ -64,13 +64,13 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         _, _, run = self.parts
         return at.a.z * unit(run.direction), self._offset()
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         a, b, _ = self.parts
         base = b.place(poses) - a.place(poses)
         shorter: Real = -dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / np.abs(base)
         return shorter
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, _ = self.parts
         u, _ = self._frame(at)
         vA = a.velocity(poses, rates)
@@ -79,7 +79,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         return Rate.through(vA, w, a.here * at.a.z), Rate.through(vB, w, b.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         a, b, _ = self.parts
         u, h = self._frame(at)

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Dyad, HingeEnd, SliderEnd, line
+from tmm_cli.mechanics.groups.group_solver import Dyad, HingeEnd, SliderEnd, guide_line
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -23,7 +23,7 @@ from tmm_cli.mechanics.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roundoff, square, unit
+from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roundoff, squared_length, unit
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
 
     type = "RRP"
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         a, b, c = self.parts
         A = a.place(poses)
-        Q, u = line(b, poses)
+        Q, u = guide_line(b, poses)
         zb = poses[b.known].z * unit(b.turned)
         arm = c.there - a.here
         la = np.abs(arm)
@@ -55,19 +55,19 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
     def _arms(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
         """ra, u, and C from the origin of the guide's link."""
         a, b, c = self.parts
-        _, u = line(b, poses)
+        _, u = guide_line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         a, b, c = self.parts
-        Q, u = line(b, poses)
+        Q, u = guide_line(b, poses)
         A = a.place(poses)
         start = Q + (c.here - b.here) * poses[b.known].z * unit(b.turned)
         away: Real = cross(u, a.velocity(poses, rates) - rates[b.known].at(A - poses[b.known].x))
         rate: Real = np.sign(cross(u, A - start)) * away
         return rate
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, c = self.parts
         ra, u, onto = self._arms(at, poses)
         vA = a.velocity(poses, rates)
@@ -79,7 +79,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vC, wb, c.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         a, b, c = self.parts
         ra, u, onto = self._arms(at, poses)
@@ -99,7 +99,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         on_a, on_b = applied
         a, b, c = self.parts
         ra, u, _ = self._arms(at, poses)
-        tau = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
+        tau = 1j * ra * (on_a.about(c.there * at.a.z) / squared_length(c.there - a.here))
         rest = on_a.force + on_b.force + tau
         normal = ra * (-dot(rest, u) / at.det)
         guide = 1j * u * (-dot(rest + normal, 1j * u))

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Dyad, HingeEnd
+from tmm_cli.mechanics.groups.group_solver import Dyad, HingeEnd
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -23,7 +23,7 @@ from tmm_cli.mechanics.groups.state import (
     Rates,
     Wrench,
 )
-from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, square
+from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, squared_length
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         a, b, c = self.parts
         return (c.there - a.here) * at.a.z, (c.here - b.here) * at.b.z
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         a, b, c = self.parts
         A, B = a.place(poses), b.place(poses)
         arm_a, arm_b = c.there - a.here, c.here - b.here  # in each link's own axes
@@ -63,7 +63,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
             (Pose(A - a.here * za, za), Pose(B - b.here * zb, zb)), d * h, np.abs(d * h) / (la * lb), residual, slack
         )
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         a, b, c = self.parts
         base = b.place(poses) - a.place(poses)
         d = np.abs(base)
@@ -72,7 +72,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         longer: Real = dot(base, b.velocity(poses, rates) - a.velocity(poses, rates)) / d
         return np.where(reach < spare, longer, -longer)
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, _ = self.parts
         ra, rb = self._arms(at)
         vA = a.velocity(poses, rates)
@@ -82,7 +82,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         return Rate.through(vA, wa, a.here * at.a.z), Rate.through(vB, wb, b.here * at.b.z)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         a, b, _ = self.parts
         la, lb = self.group.links
@@ -105,8 +105,8 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         t_a, t_b = on_a.about(a.here * at.a.z), -on_b.about(b.here * at.b.z)
         inner = (t_a * rb - t_b * ra) / at.det  # ra x inner = t_a, rb x inner = t_b
         RA, RB = inner - on_a.force, -(inner + on_b.force)
-        tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / square(c.there - a.here))
-        tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / square(c.here - b.here))
+        tau_a = 1j * ra * (on_a.about(c.there * at.a.z) / squared_length(c.there - a.here))
+        tau_b = 1j * rb * (on_b.about(c.here * at.b.z) / squared_length(c.here - b.here))
         return GroupReactions(
             (
                 PairReaction(RA, tangential=tau_a, normal=RA - tau_a),

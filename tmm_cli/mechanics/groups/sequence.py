@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Kernel
-from tmm_cli.mechanics.groups.state import Accel, Drive, Drives, Placement, Pose, Rate
+from tmm_cli.mechanics.groups.group_solver import GroupSolver
+from tmm_cli.mechanics.groups.state import Accel, DriverState, DriverStates, Placement, Pose, Rate
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide
 from tmm_cli.mechanics.numerics import Real, Vector, dot, unit
 
@@ -66,7 +66,7 @@ class LinkStates:
     """
 
     linkage: Linkage
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     q: Real
     poses: Mapping[str, Pose]
     first: Mapping[str, Rate]
@@ -76,7 +76,7 @@ class LinkStates:
     moving: Real
     dead: Mapping[str, Real] = field(default_factory=dict)
     missing: Mapping[str, Real] = field(default_factory=dict)
-    drives: Mapping[str, Drive] = field(default_factory=dict)
+    drives: Mapping[str, DriverState] = field(default_factory=dict)
     order: int = 2
 
     def spot(self, point: str) -> Vector:
@@ -108,7 +108,7 @@ class NotComputed(LookupError):  # noqa: N818  it says what is the matter
     """Velocities or accelerations of a motion that was computed without them."""
 
 
-class Absent(dict[str, Any]):
+class MissingRates(dict[str, Any]):
     """In the place of what was not computed."""
 
     def __init__(self, what: str) -> None:
@@ -119,7 +119,7 @@ class Absent(dict[str, Any]):
         raise NotComputed(f"{self.what} were not computed")
 
 
-def towards(kernels: Iterable[Kernel], links: Iterable[str]) -> tuple[Kernel, ...]:
+def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tuple[GroupSolver, ...]:
     """The groups that lie on the way from the drivers to some links, in solving order."""
     wanted, kept = set(links), []
     for kernel in reversed(tuple(kernels)):
@@ -139,7 +139,7 @@ def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
     return Pose(zero, one, zero.real), Rate(zero, zero.real), Accel(zero, zero.real)
 
 
-def driven_state(linkage: Linkage, driver: Driver, drive: Drive) -> tuple[Pose, Rate, Accel]:
+def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[Pose, Rate, Accel]:
     """Pose of a link that is driven from the frame, and its transfer functions."""
     q = drive.value
     zero = np.zeros(np.shape(q))
@@ -163,14 +163,14 @@ def driven_state(linkage: Linkage, driver: Driver, drive: Drive) -> tuple[Pose, 
     return pose, Rate(v * first, w * first), Accel(bend * first**2 + v * second, w * second)
 
 
-def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
+def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
     """Where each driver is when the first one is at q, by the driven link.
 
     Several drivers move by their own speeds and pass together through the places of the sketch; their speeds are those
     of that moment.
     """
     zero = np.zeros(np.shape(q))
-    found = {linkage.driver.link: Drive(q, zero + 1, zero)}
+    found = {linkage.driver.link: DriverState(q, zero + 1, zero)}
     if linkage.others:
         lead = linkage.driver
         law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
@@ -179,18 +179,18 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, Drive]:
             value = driver.at + driver.sense * time * (driver.rate + driver.acceleration * time / 2)
             first = driver.sense * (driver.rate + driver.acceleration * time) / speed
             second = (driver.sense * driver.acceleration - first * lead.sense * lead.acceleration) / speed**2
-            found[driver.link] = Drive(value, first, second)
+            found[driver.link] = DriverState(value, first, second)
     return found
 
 
 def link_states(
     linkage: Linkage,
-    kernels: Iterable[Kernel],
+    kernels: Iterable[GroupSolver],
     q: Real,
     order: int = 2,
     *,
     blank: bool = True,
-    drives: Drives | None = None,
+    drives: DriverStates | None = None,
 ) -> LinkStates:
     """All links at the first driver's places q (rad or m), each found alone.
 
@@ -204,8 +204,8 @@ def link_states(
     kernels = tuple(kernels)
     q = np.atleast_1d(q)
     poses: dict[str, Pose] = {}
-    first: dict[str, Rate] = {} if order > 0 else Absent("velocities")
-    second: dict[str, Accel] = {} if order > 1 else Absent("accelerations")
+    first: dict[str, Rate] = {} if order > 0 else MissingRates("velocities")
+    second: dict[str, Accel] = {} if order > 1 else MissingRates("accelerations")
 
     def put(link: str, pose: Pose, rate: Rate, accel: Accel) -> None:
         poses[link] = pose
@@ -233,7 +233,7 @@ def link_states(
             moving = moving & placed & ~at.dead
             if blank:
                 det = np.where(at.dead, np.nan, at.det)
-                at = replace(at, poses=tuple(_without(pose, ~placed) for pose in at.poses), det=det)
+                at = replace(at, poses=tuple(_blank_pose(pose, ~placed) for pose in at.poses), det=det)
             links = kernel.group.links
             poses.update(zip(links, at.poses, strict=True))
             if order > 0:
@@ -246,7 +246,7 @@ def link_states(
     )
 
 
-def _without(pose: Pose, lost: Real) -> Pose:
+def _blank_pose(pose: Pose, lost: Real) -> Pose:
     """A pose that is nothing where it is lost."""
     unwrapped = None if pose.unwrapped is None else np.where(lost, np.nan, pose.unwrapped)
     return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), unwrapped)

@@ -171,7 +171,7 @@ class GroupReactions:
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriverState:
     """Where a driver is: its place (rad or m) and its first and second derivatives by the parameter of the motion."""
 
     value: Real
@@ -179,21 +179,21 @@ class Drive:
     second: Real
 
 
-Drives = Mapping[str, Drive]
+DriverStates = Mapping[str, DriverState]
 
 
 @dataclass(frozen=True)
-class State:
+class GroupState:
     """Origins (m) and angles (rad, through full turns) of a group's links on the last axis."""
 
     x: Vector
     unwrapped: Real
 
-    def moved(self, step: Real, size: Real | float) -> State:
+    def moved(self, step: Real, size: Real | float) -> GroupState:
         """The state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in sizes (m)."""
         parts = step.reshape(*np.shape(step)[:-1], np.shape(step)[-1] // 3, 3)
-        return State(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
+        return GroupState(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
 
-    def part(self, chosen: slice) -> State:
+    def part(self, chosen: slice) -> GroupState:
         """Some of many states."""
-        return State(self.x[chosen], self.unwrapped[chosen])
+        return GroupState(self.x[chosen], self.unwrapped[chosen])

@@ -14,13 +14,13 @@ from typing import Any, Self
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.base import Closed, HingeEnd, SliderEnd, seen, spread
-from tmm_cli.mechanics.groups.dyads import DYADS, AnyDyad
+from tmm_cli.mechanics.groups.dyads import DYAD_SOLVERS, AnyDyad
+from tmm_cli.mechanics.groups.group_solver import ClosedFormSolver, HingeEnd, SliderEnd, link_extent, pair_end
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drive,
-    Drives,
+    DriverState,
+    DriverStates,
     GroupReactions,
     PairReaction,
     Placement,
@@ -80,7 +80,7 @@ class TelescopeParts:
 
 
 @dataclass(frozen=True)
-class Telescope(Closed):
+class Telescope(ClosedFormSolver):
     """Such a group. dyad: its two links with the joint of n where n itself has it; hung: what m hangs on."""
 
     chain: TelescopeParts
@@ -91,16 +91,16 @@ class Telescope(Closed):
     @classmethod
     def fits(cls, group: Group) -> bool:
         chain = TelescopeParts.of(group)
-        return chain is not None and chain.dyad.type in DYADS
+        return chain is not None and chain.dyad.type in DYAD_SOLVERS
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Self:
         chain = TelescopeParts.of(group)
         assert chain is not None
-        kind, (a, b), outer = DYADS[chain.dyad.type], chain.dyad.links, chain.dyad.outer
-        first, last = seen(outer[0], a, linkage), seen(outer[1], b, linkage)
-        size = reduce(np.maximum, [spread(linkage, link) for link in (*group.links, first.known, last.known)])
-        inner = seen(chain.joint, b if b == chain.arm else chain.n, linkage)
+        kind, (a, b), outer = DYAD_SOLVERS[chain.dyad.type], chain.dyad.links, chain.dyad.outer
+        first, last = pair_end(outer[0], a, linkage), pair_end(outer[1], b, linkage)
+        size = reduce(np.maximum, [link_extent(linkage, link) for link in (*group.links, first.known, last.known)])
+        inner = pair_end(chain.joint, b if b == chain.arm else chain.n, linkage)
         hung = (first if a == chain.m else last).known
         ends = (replace(first, known=UNDER), last) if a == chain.m else (first, replace(last, known=UNDER))
         pin = linkage.local(chain.n, chain.joint.point) if chain.joint.slide is None else 0j
@@ -166,10 +166,10 @@ class Telescope(Closed):
         own = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
         return tuple(own[link] for link in self.group.links)
 
-    def _drive(self, drives: Drives) -> Drive:
+    def _drive(self, drives: DriverStates) -> DriverState:
         return drives[self.driver.link]
 
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         run = self._drive(drives).value
         at = self._locked(run).closed(self._poses(poses), drives)
         own = dict(zip(self.chain.dyad.links, at.poses, strict=True))
@@ -177,7 +177,7 @@ class Telescope(Closed):
         m = own[self.chain.m]
         return replace(at, poses=self._ordered(own[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
 
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         drive, known = self._drive(drives), self._poses(poses)
         dyad = self._locked(drive.value)
         # what is short of closing is measured where the two links lie as in a dead position
@@ -191,7 +191,7 @@ class Telescope(Closed):
         hung = rates[self.hung]
         return {**rates, UNDER: Rate(hung.v + slid, hung.w)}
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         drive = self._drive(drives)
         m, off = self._m(at)
         slid = drive.first * self._along * m.z
@@ -210,7 +210,7 @@ class Telescope(Closed):
         return m, own[self.chain.n].x - m.x
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         drive = self._drive(drives)
         m, off = self._m(at)

@@ -9,17 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.newton import Newton
-from tmm_cli.mechanics.groups.pairs.lower import Constraint, JacobianRow, Turning
-from tmm_cli.mechanics.groups.state import Accel, Accels, Drives, Placement, Pose, Poses, Rate, Rates, Wrench
+from tmm_cli.mechanics.groups.newton import NewtonSolver
+from tmm_cli.mechanics.groups.pairs.lower import HingeConstraint, JacobianRow, PairConstraint
+from tmm_cli.mechanics.groups.state import Accel, Accels, DriverStates, Placement, Pose, Poses, Rate, Rates, Wrench
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import LAST_STEP, NEAR_SINGULAR, Eliminated, Order, Real, Row, dot, margin_of, unit
+from tmm_cli.mechanics.numerics import (
+    LAST_STEP,
+    NEAR_SINGULAR,
+    EliminatedSystem,
+    EliminationOrder,
+    EquationRow,
+    Real,
+    dot,
+    singular_margin,
+    unit,
+)
 
 GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may give an angle from others
 
 
 @dataclass(frozen=True)
-class Closure:
+class ExplicitOrder:
     """Explicit angles and origins as (number of the constraint, link), in their order, and the order of elimination.
 
     An unknown is three times the number of its link, and 0, 1 or 2 more for x, y and the angle. shifts: whole turns
@@ -29,54 +39,56 @@ class Closure:
 
     angles: tuple[tuple[int, str], ...]
     origins: tuple[tuple[int, str], ...]
-    order: Order
-    pushing: Order
+    order: EliminationOrder
+    pushing: EliminationOrder
     shifts: Mapping[str, float] = field(default_factory=dict)
 
 
-def closure_of(constraints: Sequence[Constraint], links: Sequence[str]) -> Closure:
+def find_explicit_order(constraints: Sequence[PairConstraint], links: Sequence[str]) -> ExplicitOrder:
     """Of constraints on some links; as many unknowns as can be are explicit."""
-    alike = {n for n, c in enumerate(constraints) if type(c).pushes is Constraint.pushes}
-    own = {n: [link for link in _turned(c) if link in links] for n, c in enumerate(constraints)}
-    angles, origins, order = _ordered(constraints, links, own)
+    alike = {n for n, c in enumerate(constraints) if type(c).pushes is PairConstraint.pushes}
+    own = {n: [link for link in _links_with_angles(c) if link in links] for n, c in enumerate(constraints)}
+    angles, origins, order = _order_unknowns(constraints, links, own)
     pushing = order
     if len(alike) < len(constraints):
-        pushing = _ordered(constraints, links, {n: own[n] for n in alike})[2]
-    return Closure(angles, origins, order, pushing)
+        pushing = _order_unknowns(constraints, links, {n: own[n] for n in alike})[2]
+    return ExplicitOrder(angles, origins, order, pushing)
 
 
 Explicit = tuple[tuple[int, str], ...]
 
 
-def _ordered(
-    constraints: Sequence[Constraint], links: Sequence[str], turning: dict[int, list[str]]
-) -> tuple[Explicit, Explicit, Order]:
+def _order_unknowns(
+    constraints: Sequence[PairConstraint], links: Sequence[str], turning: dict[int, list[str]]
+) -> tuple[Explicit, Explicit, EliminationOrder]:
     """Explicit angles, those that constraints with these links may give, and origins; and their order."""
     order = {link: k for k, link in enumerate(links)}
     first = [sum(len(c.lengths) for c in constraints[:n]) for n in range(len(constraints))]
     busy = {link: sum(link in c.links for c in constraints) for link in links}
     hinges = {
-        n: [link for link in c.links if link in order] for n, c in enumerate(constraints) if isinstance(c, Turning)
+        n: [link for link in c.links if link in order]
+        for n, c in enumerate(constraints)
+        if isinstance(c, HingeConstraint)
     }
-    angles, free = _explicit(turning, links, busy)
-    origins, loose = _explicit(hinges, links, busy)
+    angles, free = _assign_rows(turning, links, busy)
+    origins, loose = _assign_rows(hinges, links, busy)
     explicit = [(first[n], 3 * order[link] + 2) for n, link in angles]
     for n, link in origins:
         explicit += [(first[n], 3 * order[link]), (first[n] + 1, 3 * order[link] + 1)]
     rows = sum(len(c.lengths) for c in constraints)
     closing = tuple(row for row in range(rows) if row not in {row for row, _ in explicit})
     columns = (*(3 * order[link] + part for link in loose for part in (0, 1)), *(3 * order[link] + 2 for link in free))
-    return tuple(angles), tuple(origins), Order(tuple(explicit), closing, columns)
+    return tuple(angles), tuple(origins), EliminationOrder(tuple(explicit), closing, columns)
 
 
-def _turned(constraint: Constraint) -> tuple[str, ...]:
+def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
     """Links whose angles are in the first row of a constraint that may give one of them."""
     if constraint.kind not in GIVE_ANGLES or constraint.lengths[0]:
         return ()
     return constraint.links
 
 
-def _explicit(
+def _assign_rows(
     rows: dict[int, list[str]], links: Sequence[str], busy: Mapping[str, int]
 ) -> tuple[list[tuple[int, str]], list[str]]:
     """Which rows, of links that are not known, give which link, in their order; and links that none gives.
@@ -116,19 +128,21 @@ class NotUnrolledError(ValueError):
 
 
 @dataclass(frozen=True)
-class Unrolled(Newton):
+class UnrolledNewton(NewtonSolver):
     """A group so. starts: of its free unknowns (m, rad), arrays over positions; steps: of Newton's method.
 
     enough: it has closed where the last of these was less (sizes of the group, rad).
     """
 
-    closure: Closure | None = None
+    closure: ExplicitOrder | None = None
     starts: tuple[Any, ...] = ()
     steps: int = STEPS
     enough: float = LAST_STEP
 
     @classmethod
-    def from_newton(cls, kernel: Newton, poses: Poses, drives: Drives, geared: Container[str] = ()) -> Unrolled:
+    def from_newton(
+        cls, kernel: NewtonSolver, poses: Poses, drives: DriverStates, geared: Container[str] = ()
+    ) -> UnrolledNewton:
         """The same group; poses and drives: at the sketch; geared: links whose whole turns count.
 
         Raises NotUnrolledError.
@@ -136,7 +150,7 @@ class Unrolled(Newton):
         rows = sum(len(c.lengths) for c in kernel.constraints)
         if kernel.passive or kernel.start is None or rows != 3 * len(kernel.group.links):
             raise NotUnrolledError
-        closure = closure_of(kernel.constraints, kernel.group.links)
+        closure = find_explicit_order(kernel.constraints, kernel.group.links)
         found = cls(
             kernel.group,
             kernel.size,
@@ -155,12 +169,12 @@ class Unrolled(Newton):
                 raise NotUnrolledError
         return replace(found, closure=replace(closure, shifts=found._shifts(poses, drives)))
 
-    def rebind(self, linkage: Linkage) -> Unrolled:
-        new = Newton.of(self.group.rebind(linkage), linkage)
+    def rebind(self, linkage: Linkage) -> UnrolledNewton:
+        new = NewtonSolver.of(self.group.rebind(linkage), linkage)
         return replace(self, group=new.group, size=new.size, constraints=new.constraints)
 
     @property
-    def closed_by(self) -> Closure:
+    def closed_by(self) -> ExplicitOrder:
         """How it is written."""
         assert self.closure is not None
         return self.closure
@@ -184,7 +198,7 @@ class Unrolled(Newton):
         """Of free unknowns from the three unknowns x, y and angle of all links, one after another."""
         return [states[column] for column in self.free]
 
-    def _shifts(self, poses: Poses, drives: Drives) -> dict[str, float]:
+    def _shifts(self, poses: Poses, drives: DriverStates) -> dict[str, float]:
         assert self.start is not None
         angles = {name: float(np.ravel(pose.turned)[0]) for name, pose in poses.items()}
         angles |= {link: float(self.start.unwrapped[0, k]) for link, k in self.order.items()}
@@ -195,9 +209,9 @@ class Unrolled(Newton):
             shifts[link] = 2 * np.pi * float(np.round((angles[link] - float(np.ravel(given)[0])) / (2 * np.pi)))
         return shifts
 
-    def posed(self, free: Mapping[int, Any], poses: Poses, drives: Drives) -> dict[str, Pose]:
+    def posed(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[str, Pose]:
         """All links for values of the free unknowns; explicit equations hold."""
-        angles: dict[str, Any] = _Angles(poses)
+        angles: dict[str, Any] = _AnglesOfLinks(poses)
         names = self.group.links
         angles.update({names[k // 3]: value for k, value in free.items() if k % 3 == 2})
         for number, link in self.closed_by.angles:
@@ -210,12 +224,12 @@ class Unrolled(Newton):
                 found[link] = Pose(free[3 * k] + 1j * free[3 * k + 1], turned[link], angles[link])
         for number, link in self.closed_by.origins:
             pair = self.constraints[number]
-            assert isinstance(pair, Turning)
+            assert isinstance(pair, HingeConstraint)
             other, there, here = (pair.i, pair.at_i, pair.at_j) if link == pair.j else (pair.j, pair.at_j, pair.at_i)
             found[link] = Pose(found[other].at(there) - here * turned[link], turned[link], angles[link])
         return found
 
-    def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[Row]:
+    def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[EquationRow]:
         """Rows of all constraints; lengths are not scaled."""
         found: list[dict[int, Any]] = []
         for constraint, of_links in zip(self.constraints, parts, strict=True):
@@ -230,23 +244,25 @@ class Unrolled(Newton):
             found += own
         return list(found)
 
-    def eliminated(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: Order) -> Eliminated:
+    def eliminated(
+        self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: EliminationOrder
+    ) -> EliminatedSystem:
         """The equations of given rows, ready to be solved."""
         mixed = len({self.lengths[row] for row in order.closing}) > 1 or len({k % 3 == 2 for k in order.free}) > 1
         scales = None
         if mixed:
             down = [1 / self.size if length else 1.0 for length in self.lengths]
             scales = down, [1.0 if k % 3 == 2 else self.size for k in range(3 * len(self.group.links))]
-        return Eliminated(self.rows(parts), order, scales)
+        return EliminatedSystem(self.rows(parts), order, scales)
 
-    def _moved(self, free: Mapping[int, Any], poses: Poses, drives: Drives) -> dict[int, Any]:
+    def _moved(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[int, Any]:
         """A step of Newton's method."""
         everything = self.posed(free, poses, drives)
         short = [value for c in self.constraints for value in c.residuals(everything, drives)]
         by = self.eliminated(self._rows(everything), self.closed_by.order)
         return by.free([-short[row] for row in self.closed_by.order.closing])
 
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         starts = self.starts or tuple(np.zeros(np.shape(q)) for _ in self.free)
         free = dict(zip(self.free, starts, strict=True))
         size: Any = np.zeros(np.shape(q))
@@ -264,26 +280,30 @@ class Unrolled(Newton):
             sizes = [np.abs(value) for value in diagonal]
             sharp = reduce(np.minimum, sizes) / reduce(np.maximum, sizes)
         sure = (sharp > NEAR_SINGULAR) & ((size < self.enough) | self.linear)
-        margin = margin_of(self.rows(rows), self.lengths, self.size)
+        margin = singular_margin(self.rows(rows), self.lengths, self.size)
         residual = np.where(sure, -1.0, 1.0) * self.size
         return Placement(own, det, margin, residual, np.zeros(np.shape(q)))
 
-    def rates_at(self, everything: Poses, matrix: Any, det: Real, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates_at(
+        self, everything: Poses, matrix: Any, det: Real, rates: Rates, drives: DriverStates
+    ) -> tuple[Rate, ...]:
         right = self._right(everything, {name: (rate.v, rate.w) for name, rate in rates.items()}, drives, 1)
-        return tuple(Rate(v, w) for v, w in _by_link(matrix.solve(right)))
+        return tuple(Rate(v, w) for v, w in _split_by_link(matrix.solve(right)))
 
     def accelerations_at(
-        self, everything: Poses, matrix: Any, det: Real, rates: Rates, accels: Accels, drives: Drives
+        self, everything: Poses, matrix: Any, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         right = self._right(everything, {name: (accel.a, accel.e) for name, accel in accels.items()}, drives, 2)
         bend = self.velocity_terms(everything, rates)
         found = matrix.solve([value - term for value, term in zip(right, bend, strict=True)])
-        return tuple(Accel(a, e) for a, e in _by_link(found))
+        return tuple(Accel(a, e) for a, e in _split_by_link(found))
 
     def matrix(self, poses: Poses) -> Any:
         return self.eliminated(self._rows(poses), self.closed_by.order)
 
-    def _right(self, poses: Poses, motion: Mapping[str, tuple[Any, Any]], drives: Drives, order: int) -> list[Any]:
+    def _right(
+        self, poses: Poses, motion: Mapping[str, tuple[Any, Any]], drives: DriverStates, order: int
+    ) -> list[Any]:
         """What drivers ask of each row less what the links it hangs on do to it, with dimensions."""
         found = []
         for constraint in self.constraints:
@@ -306,7 +326,7 @@ class Unrolled(Newton):
         return under
 
 
-class _Angles(dict[str, Any]):
+class _AnglesOfLinks(dict[str, Any]):
     """Angles of a group's links, and when they are asked for those of the links it hangs on."""
 
     def __init__(self, poses: Poses) -> None:
@@ -318,7 +338,7 @@ class _Angles(dict[str, Any]):
         return self[link]
 
 
-def _by_link(found: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
+def _split_by_link(found: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
     """Unknowns by links."""
     for k in range(0, len(found), 3):
         yield found[k] + 1j * found[k + 1], found[k + 2]

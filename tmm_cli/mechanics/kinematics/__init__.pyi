@@ -1,51 +1,56 @@
 """Motion, range of the driver, strokes, pressure angles."""
 
-from . import driver_range as driver_range, motion as motion, pressure as pressure, strokes as strokes
-from .centres import Centre as Centre, Line as Line, Links as Links, find_centres as find_centres
+from . import driver_range as driver_range, motion as motion, pressure_angles as pressure_angles, strokes as strokes
 from .driver_range import (
     SCAN as SCAN,
     DeadPosition as DeadPosition,
     DriverRange as DriverRange,
-    Excess as Excess,
-    cycle_of as cycle_of,
-    find_dead as find_dead,
+    SlotExcess as SlotExcess,
+    cycle_turns as cycle_turns,
+    find_dead_positions as find_dead_positions,
     find_range as find_range,
-    find_slots as find_slots,
+    find_slot_excess as find_slot_excess,
+)
+from .instantaneous_centres import (
+    CentreLine as CentreLine,
+    InstantCentre as InstantCentre,
+    LinkPair as LinkPair,
+    find_centres as find_centres,
 )
 from .motion import (
-    FIXED as FIXED,
+    FIELDS_WITHOUT_POSITIONS as FIELDS_WITHOUT_POSITIONS,
+    LinkMotion as LinkMotion,
     Motion as Motion,
-    Point as Point,
-    Sliding as Sliding,
-    Turning as Turning,
-    move as move,
-    moving_parts as moving_parts,
-    spliced as spliced,
-    with_limits as with_limits,
+    PointMotion as PointMotion,
+    SlidingMotion as SlidingMotion,
+    compute_motion as compute_motion,
+    fill_in_limits as fill_in_limits,
+    splice_positions as splice_positions,
+    zero_at_rest as zero_at_rest,
 )
-from .pressure import (
-    Lead as Lead,
-    Pressure as Pressure,
-    angle as angle,
+from .pressure_angles import (
+    DrivenLink as DrivenLink,
+    PressureAngle as PressureAngle,
+    driven_links as driven_links,
+    driving_pair_names as driving_pair_names,
     find_pressure as find_pressure,
-    followers as followers,
-    named as named,
+    pressure_angle as pressure_angle,
     pressure_at as pressure_at,
-    sides as sides,
+    pressure_sine_and_cosine as pressure_sine_and_cosine,
 )
 from .strokes import (
-    Curve as Curve,
     OutputCurve as OutputCurve,
+    OutputTravel as OutputTravel,
     Stroke as Stroke,
+    StrokeCurve as StrokeCurve,
     Strokes as Strokes,
-    Travel as Travel,
+    driver_positions as driver_positions,
     find_strokes as find_strokes,
     find_travel as find_travel,
+    measure_runs as measure_runs,
     moving_slope as moving_slope,
-    output_place as output_place,
+    output_coordinate as output_coordinate,
     output_run as output_run,
     output_slope as output_slope,
-    places as places,
-    resisted as resisted,
-    runs_of as runs_of,
+    resisted_direction as resisted_direction,
 )

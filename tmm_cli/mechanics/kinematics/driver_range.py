@@ -9,11 +9,20 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly import pinned, slack
-from tmm_cli.mechanics.groups import Closed, DriverMotion, Kernel, LinkStates, Winding, link_states, reach, towards
+from tmm_cli.mechanics.assembly import assembly_reserve, refine_dead_positions
+from tmm_cli.mechanics.groups import (
+    AccumulatedAngles,
+    ClosedFormSolver,
+    DriverMotion,
+    GroupSolver,
+    LinkStates,
+    link_states,
+    slider_search_range,
+    solvers_towards,
+)
 from tmm_cli.mechanics.linkage import Linkage, Slide
-from tmm_cli.mechanics.numerics import CAME_BACK, DEAD, END_OF_SLOT, Real, find_roots, least
-from tmm_cli.mechanics.structure import MOST, turns_of_cycle
+from tmm_cli.mechanics.numerics import CAME_BACK, DEAD, END_OF_SLOT, Real, find_minima, find_roots
+from tmm_cli.mechanics.structure import MOST_TURNS, turns_of_cycle
 
 SCAN = 1440  # places looked at in a first round; what lies between is refined
 PARTS = 64  # into which an interval is cut at once
@@ -62,9 +71,9 @@ class DeadPosition:
     passed: bool = False
 
 
-def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+def find_range(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> DriverRange:
     """The driver's range about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
-    driver_range = _reach(linkage, kernels)
+    driver_range = _range_about_sketch(linkage, kernels)
     stroke = linkage.driver.stroke
     if stroke is None:
         return driver_range
@@ -75,22 +84,24 @@ def find_range(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
     return DriverRange(low, high, False, kept, inclusive=(low, high) == stroke)
 
 
-def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
+def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> DriverRange:
     at, turns = linkage.sketch.at, linkage.driver.kind == "turn"
-    cycle = cycle_of(linkage, kernels) if turns else 1
+    cycle = cycle_turns(linkage, kernels) if turns else 1
     number = cycle or 1
-    half = np.pi * number if turns else reach(linkage)
-    low, high = _looked_at(kernels, at, half)
+    half = np.pi * number if turns else slider_search_range(linkage)
+    low, high = _search_interval(kernels, at, half)
     steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
     # np.unique would import masked arrays, which costs more than all the rest of this stage
     steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
     side = [np.sign(p.det[0]) for p in link_states(linkage, kernels, np.array([at]), 0).placements]
     scan = link_states(linkage, kernels, at + steps, 0)
-    steps = np.sort(np.concatenate([steps, *(_narrows(linkage, kernels, scan, n) - at for n in range(len(kernels)))]))
-    lost = _lost(link_states(linkage, kernels, at + steps, 0), side)
-    stopped = _stopped(linkage, at + steps)
+    steps = np.sort(
+        np.concatenate([steps, *(_nearly_lost(linkage, kernels, scan, n) - at for n in range(len(kernels)))])
+    )
+    lost = _is_lost(link_states(linkage, kernels, at + steps, 0), side)
+    stopped = _stops_before(linkage, at + steps)
     if not bool(np.any(lost)) and not bool(np.any(stopped)):
-        back = cycle is not None and (not turns or _returned(linkage, kernels, at, half))
+        back = cycle is not None and (not turns or _returns_after_cycle(linkage, kernels, at, half))
         return DriverRange(at - half, at + half, turns, turns=number, repeats=back)
     blocked = np.flatnonzero(np.any(lost, axis=0) | stopped)
     middle = int(np.argmin(np.abs(steps)))
@@ -98,7 +109,7 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
     def limit(index: int, towards: int) -> DriverLimit:
         good, bad = at + steps[index - towards], at + steps[index]
         first = kernels[int(np.argmax(lost[:, index]))]
-        for end in _ends(first):  # found to the last bit when the group was followed
+        for end in _trace_limits(first):  # found to the last bit when the group was followed
             if min(good, bad) <= end <= max(good, bad):
                 return DriverLimit(end, first.group.title)
         while True:
@@ -106,7 +117,9 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
             between = between[(between != good) & (between != bad)]
             if not between.size:
                 break
-            gone = np.any(_lost(link_states(linkage, kernels, between, 0), side), axis=0) | _stopped(linkage, between)
+            gone = np.any(_is_lost(link_states(linkage, kernels, between, 0), side), axis=0) | _stops_before(
+                linkage, between
+            )
             found = np.flatnonzero(gone)
             places = np.array([good, *between, bad])
             there = int(found[0]) + 1 if found.size else len(places) - 1
@@ -120,15 +133,15 @@ def _reach(linkage: Linkage, kernels: tuple[Kernel, ...]) -> DriverRange:
     last = limit(int(above[0]), 1) if above.size else None
     around = turns and cycle is not None
     if around and first is None and last is not None:  # the places that are blocked straddle the scan's end
-        first = limit_from(last, blocked, steps, (at, 2 * half), limit)
+        first = limit_a_cycle_away(last, blocked, steps, (at, 2 * half), limit)
     if around and last is None and first is not None:
-        last = limit_from(first, blocked, steps, (at, 2 * half), limit)
+        last = limit_a_cycle_away(first, blocked, steps, (at, 2 * half), limit)
     start = first.place if first else at - half
     end = last.place if last else at + half
     return DriverRange(start, end, False, tuple(x for x in (first, last) if x))
 
 
-def _stopped(linkage: Linkage, q: Real) -> Real:
+def _stops_before(linkage: Linkage, q: Real) -> Real:
     """Whether the first of several drivers never comes to a place: it slows down and stops before."""
     lead = linkage.driver
     if not linkage.others:
@@ -137,7 +150,7 @@ def _stopped(linkage: Linkage, q: Real) -> Real:
     return ~np.isfinite(law.time(q))
 
 
-def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: float) -> bool:
+def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at: float, half: float) -> bool:
     """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
     motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
@@ -145,7 +158,7 @@ def _returned(linkage: Linkage, kernels: tuple[Kernel, ...], at: float, half: fl
     return bool(max(moved) < CAME_BACK)
 
 
-def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
+def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
     """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
     trace = kernel.followed
     end = (0, -1)[towards > 0]
@@ -156,7 +169,7 @@ def _at_infinity(kernel: Kernel, place: float, towards: int) -> float:
     return infinite if close or abs(infinite - place) < abs(infinite - last) else place
 
 
-def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[float, float]:
+def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -> tuple[float, float]:
     """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
     low, high = -half, half
     for kernel in kernels:
@@ -166,7 +179,7 @@ def _looked_at(kernels: tuple[Kernel, ...], at: float, half: float) -> tuple[flo
     return float(low), float(high)
 
 
-def _ends(kernel: Kernel) -> tuple[float, ...]:
+def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
     """Places where a followed group turns back."""
     trace = kernel.followed
     if trace is None or trace.closed:
@@ -174,34 +187,34 @@ def _ends(kernel: Kernel) -> tuple[float, ...]:
     return tuple(float(q) for q, limit in zip((trace.q[0], trace.q[-1]), trace.limits, strict=True) if limit)
 
 
-def rounds_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> dict[str, int]:
+def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[str, int]:
     """How often links that toothed wheels depend on go round in a turn of the driver, where they were followed."""
     found = {}
     for kernel in kernels:
-        winding = kernel.winding if isinstance(kernel, Closed) else None
-        if isinstance(winding, Winding) and winding.closed:
+        winding = kernel.winding if isinstance(kernel, ClosedFormSolver) else None
+        if isinstance(winding, AccumulatedAngles) and winding.closed:
             turns = (winding.q[-1] - winding.q[0]) / (2 * np.pi)
             for link, angles in winding.angles.items():
                 found[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
     return found
 
 
-def cycle_of(linkage: Linkage, kernels: tuple[Kernel, ...]) -> int | None:
+def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | None:
     """Turns of the driver in a cycle, from loads, wheels, drivers and groups that come back only after several."""
-    turns = turns_of_cycle(linkage, rounds_of(linkage, kernels))
+    turns = turns_of_cycle(linkage, link_rotations(linkage, kernels))
     for kernel in kernels:
         trace = kernel.followed
         if trace is not None and trace.closed and turns is not None:
             turns = math.lcm(turns, round((trace.q[-1] - trace.q[0]) / (2 * np.pi)))
-        way = kernel.way if isinstance(kernel, Closed) else None
+        way = kernel.way if isinstance(kernel, ClosedFormSolver) else None
         if way is not None and way.cycle is not None and len(way.places) % 2 and turns is not None:
             turns = math.lcm(turns, round(way.cycle / np.pi))
     if turns is not None:
         turns = math.lcm(turns, linkage.turns)
-    return turns if turns is not None and turns <= MOST else None
+    return turns if turns is not None and turns <= MOST_TURNS else None
 
 
-def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, number: int) -> Real:
+def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkStates, number: int) -> Real:
     """Places where a group comes nearest to losing its assembly: it may lose it between two places of a scan."""
     residual = np.where(np.isfinite(scan.placements[number].residual), scan.placements[number].residual, -np.inf)
     inner = residual[1:-1]
@@ -212,12 +225,12 @@ def _narrows(linkage: Linkage, kernels: tuple[Kernel, ...], scan: LinkStates, nu
         np.flatnonzero((inner >= residual[:-2]) & (inner > residual[2:]) & (inner < 0) & (inner + 2 * rise >= 0)) + 1
     )
     step = scan.q[1] - scan.q[0]
-    to_spare = partial(slack, linkage, towards(kernels, kernels[number].group.links))
-    narrow: Real = least(to_spare, scan.q[close] - step, scan.q[close] + step)[0]
+    to_spare = partial(assembly_reserve, linkage, solvers_towards(kernels, kernels[number].group.links))
+    narrow: Real = find_minima(to_spare, scan.q[close] - step, scan.q[close] + step)[0]
     return narrow
 
 
-def _lost(motion: LinkStates, side: list[float]) -> Real:
+def _is_lost(motion: LinkStates, side: list[float]) -> Real:
     """For each group and place whether the linkage cannot be there: no assembly, or only past a dead position.
 
     The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
@@ -230,7 +243,7 @@ def _lost(motion: LinkStates, side: list[float]) -> Real:
     return np.array(lost) if lost else np.zeros((0, len(motion.q)), dtype=bool)
 
 
-def limit_from(
+def limit_a_cycle_away(
     known: DriverLimit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], DriverLimit]
 ) -> DriverLimit | None:
     """The other limit when all blocked places lie on one side of the sketch: a cycle away.
@@ -246,7 +259,9 @@ def limit_from(
     return DriverLimit(other.place + sense * cycle, other.group)
 
 
-def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange) -> tuple[DeadPosition, ...]:
+def find_dead_positions(
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange
+) -> tuple[DeadPosition, ...]:
     """Dead positions inside the driver's range (its limits are dead too and are not repeated here)."""
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
     motion = link_states(linkage, kernels, q, 0)
@@ -262,40 +277,42 @@ def find_dead(linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: Drive
         steps = q[1] - q[0]
         if driver_range.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
             places.append(q[0])
-        upto = towards(kernels, dyad.group.links)
-        passed = _passed(linkage, upto, driver_range)
+        upto = solvers_towards(kernels, dyad.group.links)
+        passed = _passed_dead_positions(linkage, upto, driver_range)
         found += passed
-        away = [p for p in places if all(abs(_apart(p, o.place, driver_range)) > 2 * steps for o in passed)]
-        narrowest = least(partial(_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
+        away = [p for p in places if all(abs(_driver_distance(p, o.place, driver_range)) > 2 * steps for o in passed)]
+        narrowest = find_minima(partial(_last_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
         for best, left in zip(*narrowest, strict=True):
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
-                best = float(pinned(linkage, upto, np.array([best]), steps)[0])
+                best = float(refine_dead_positions(linkage, upto, np.array([best]), steps)[0])
                 passive = getattr(dyad, "passive", False)  # what holds it twice leads it through
                 found.append(DeadPosition(best, dyad.group.title, left, passive))
     return tuple(sorted(found, key=lambda d: d.place))
 
 
-def _passed(linkage: Linkage, upto: tuple[Kernel, ...], driver_range: DriverRange) -> list[DeadPosition]:
+def _passed_dead_positions(
+    linkage: Linkage, upto: tuple[GroupSolver, ...], driver_range: DriverRange
+) -> list[DeadPosition]:
     """Dead positions inside the range that the last group passes smoothly: nodes of its trace, change points."""
     last, title = upto[-1], upto[-1].group.title
-    trace, way = last.followed, last.way if isinstance(last, Closed) else None
+    trace, way = last.followed, last.way if isinstance(last, ClosedFormSolver) else None
     if trace is not None and trace.dead.size:
         places = trace.dead_within(driver_range.start, driver_range.end)
     elif way is not None:
         places = way.within(driver_range.start, driver_range.end)
     else:
         return []
-    left = _margin(linkage, upto, places) if places.size else places
+    left = _last_margin(linkage, upto, places) if places.size else places
     return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
 
 
-def _apart(one: float, other: float, driver_range: DriverRange) -> float:
+def _driver_distance(one: float, other: float, driver_range: DriverRange) -> float:
     """From one place to another, round the cycle where the way is a whole one."""
     cycle = driver_range.end - driver_range.start
     return one - other - cycle * round((one - other) / cycle) if driver_range.full else one - other
 
 
-def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
     """Of the last group."""
     motion = link_states(linkage, kernels, q, 0)
     return np.where(motion.placed, motion.placements[-1].margin, 0.0)
@@ -308,7 +325,7 @@ def _margin(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
 
 
 @dataclass(frozen=True)
-class Excess:
+class SlotExcess:
     """How a stone comes nearest to an end of its segment, or goes beyond it.
 
     point: the end. far: how far beyond it at most (m; negative: what is left before it), with the driver at `place`.
@@ -323,9 +340,9 @@ class Excess:
     ways: tuple[tuple[float, float], ...]
 
 
-def find_slots(
-    linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange, asked: Sequence[float]
-) -> tuple[Excess, ...]:
+def find_slot_excess(
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, asked: Sequence[float]
+) -> tuple[SlotExcess, ...]:
     """Both ends of every segment, over the driver's range. asked: its places that were given one by one; where the
     driver does not turn fully, it goes from the first to the last of them only.
     """
@@ -340,20 +357,20 @@ def find_slots(
     scan = link_states(linkage, kernels, q, 0)
     found = []
     for slide in slides:
-        upto = towards(kernels, (slide.carrier, slide.runner))
+        upto = solvers_towards(kernels, (slide.carrier, slide.runner))
         run, there = scan.run(slide)[scan.placed], q[scan.placed]
         for point, forward in zip(slide.ends or (), (-1.0, 1.0), strict=True):
             if there.size > 1:
-                found.append(_Segment(linkage, upto, slide, point, forward).excess(there, run, driver_range.full))
+                found.append(_SegmentEnd(linkage, upto, slide, point, forward).excess(there, run, driver_range.full))
     return tuple(found)
 
 
 @dataclass(frozen=True)
-class _Segment:
+class _SegmentEnd:
     """One end of a segment. forward: +1 at its last point, -1 at its first."""
 
     linkage: Linkage
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     slide: Slide
     point: str
     forward: float
@@ -370,15 +387,15 @@ class _Segment:
     def at(self, q: Real) -> Real:
         return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))
 
-    def excess(self, q: Real, run: Real, full: bool) -> Excess:
+    def excess(self, q: Real, run: Real, full: bool) -> SlotExcess:
         """Over the places q, which are the whole cycle when `full`."""
         far = self.beyond(run)
         k = int(np.argmax(far))
         low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
-        place, short = least(lambda places: -self.at(places), low, high)
+        place, short = find_minima(lambda places: -self.at(places), low, high)
         most = 0.0 if abs(short) <= END_OF_SLOT * self.length else -short
         ways = (self.ways(q, far, full) or ((place, place),)) if most > 0 else ()
-        return Excess(self.slide, self.point, self.length, most, place, ways)
+        return SlotExcess(self.slide, self.point, self.length, most, place, ways)
 
     def ways(self, q: Real, far: Real, full: bool) -> tuple[tuple[float, float], ...]:
         """From where to where it is beyond; of a cycle the last way may go on through its end."""

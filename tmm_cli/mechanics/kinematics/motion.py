@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from tmm_cli.mechanics.groups import Drives, Kernel, LawOfMotion, LinkStates, link_states
+from tmm_cli.mechanics.groups import DriverStates, GroupSolver, LawOfMotion, LinkStates, link_states
 from tmm_cli.mechanics.linkage import Linkage, Slide
 from tmm_cli.mechanics.numerics import (
     AT_REST,
@@ -22,17 +22,19 @@ from tmm_cli.mechanics.numerics import (
     Record,
     Vector,
     dot,
-    mapped,
-    rounded,
+    map_record,
+    to_float,
     unit,
 )
 
-FIXED = frozenset({"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"})
+FIELDS_WITHOUT_POSITIONS = frozenset(
+    {"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"}
+)
 """Names of fields of a motion, and of what follows from it, that hold no array over positions."""
 
 
 @dataclass(frozen=True)
-class Point:
+class PointMotion:
     """Motion of a point: x (m), v (m/s), a (m/s2); first and second are its transfer functions."""
 
     x: Vector
@@ -43,7 +45,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Turning:
+class LinkMotion:
     """Motion of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2) and its transfer functions."""
 
     angle: Real
@@ -54,7 +56,7 @@ class Turning:
 
 
 @dataclass(frozen=True)
-class Sliding:
+class SlidingMotion:
     """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (vector, m/s2)."""
 
     run: Real
@@ -82,7 +84,7 @@ class Motion(LinkStates):
     limits: Real | None = None
     bare: Motion | None = None
 
-    def point(self, link: str, local: complex) -> Point:
+    def point(self, link: str, local: complex) -> PointMotion:
         """Motion of a point given in the axes of a link (m)."""
         if local is self.linkage.links[link].centre:  # where weights and forces of inertia act
             return self.centre(link)
@@ -107,15 +109,17 @@ class Motion(LinkStates):
     def _finest(self, of: Callable[[Motion], Record]) -> Record:
         """What is asked of the motion, from its finer one where there is one."""
         found = of(self)
-        return found if self.finer is None or self.where is None else spliced(found, of(self.finer), self.where)
+        return (
+            found if self.finer is None or self.where is None else splice_positions(found, of(self.finer), self.where)
+        )
 
-    def _point(self, link: str, local: complex) -> Point:
+    def _point(self, link: str, local: complex) -> PointMotion:
         pose, first, second = self.poses[link], self.first[link], self.second[link]
         arm = local * pose.z
         v1, a1 = first.at(arm), second.at(arm, first.w)
-        return Point(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
+        return PointMotion(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
 
-    def named(self, point: str) -> Point:
+    def named(self, point: str) -> PointMotion:
         """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
         there = [link for link in self.linkage.carriers(point) if link in self.poses]
         return self._once(
@@ -125,14 +129,14 @@ class Motion(LinkStates):
     def _sway(self, link: str, point: str) -> float:
         """Size of the terms that a point's acceleration is the sum of."""
         first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
-        terms = np.abs(rounded(second.a)) + (np.abs(rounded(second.e)) + rounded(first.w) ** 2) * rounded(arm)
+        terms = np.abs(to_float(second.a)) + (np.abs(to_float(second.e)) + to_float(first.w) ** 2) * to_float(arm)
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
-    def named_on(self, link: str, point: str) -> Point:
+    def named_on(self, link: str, point: str) -> PointMotion:
         """Motion of a named point as one of a given link."""
         return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
-    def centre(self, link: str) -> Point:
+    def centre(self, link: str) -> PointMotion:
         """Motion of a centre of mass."""
         return self._once(
             "centre",
@@ -140,22 +144,22 @@ class Motion(LinkStates):
             lambda: self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
         )
 
-    def link(self, name: str) -> Turning:
+    def link(self, name: str) -> LinkMotion:
         """Turning of a link."""
 
-        def turning() -> Turning:
+        def turning() -> LinkMotion:
             w1, e1 = self.first[name].w, self.second[name].e
-            return Turning(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+            return LinkMotion(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
 
         return self._once("link", name, turning)
 
-    def slide(self, slide: Slide) -> Sliding:
+    def slide(self, slide: Slide) -> SlidingMotion:
         """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
         return self._once(
             "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
         )
 
-    def _slide(self, slide: Slide) -> Sliding:
+    def _slide(self, slide: Slide) -> SlidingMotion:
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         u = carrier.z * unit(slide.direction)
         point = self._point(slide.runner, slide.at)
@@ -166,7 +170,7 @@ class Motion(LinkStates):
         second = dot(u, point.second - self.second[slide.carrier].at(arm, w))
         v = first * self.rate
         coriolis = 2j * (w * self.rate) * v * u
-        return Sliding(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
+        return SlidingMotion(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
 
     def run(self, slide: Slide) -> Real:
         """Run in a sliding pair, m."""
@@ -177,15 +181,15 @@ class Motion(LinkStates):
         return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
 
 
-def move(
+def compute_motion(
     linkage: Linkage,
-    kernels: Iterable[Kernel],
+    kernels: Iterable[GroupSolver],
     q: Real,
     law: LawOfMotion,
     order: int = 2,
     *,
     blank: bool = True,
-    drives: Drives | None = None,
+    drives: DriverStates | None = None,
 ) -> Motion:
     """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
 
@@ -226,12 +230,12 @@ class LargestRates:
         return cls(size, speed, reduce(np.maximum, gains, speed * speed / size))
 
 
-def moving_parts(rates: Real | Vector, largest: Real) -> Real | Vector:
+def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
     """Rates, with zeros for those of what is at rest; largest: the largest of their kind in the mechanism."""
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 
-def spliced(full: Record, part: Record, where: Real) -> Record:
+def splice_positions(full: Record, part: Record, where: Real) -> Record:
     """A record of arrays over positions with those of `where` taken from another one, rounded to its own precision."""
 
     def joined(path: str, leaf: Any, finer: Any) -> Any:
@@ -241,7 +245,7 @@ def spliced(full: Record, part: Record, where: Real) -> Record:
         found[..., where] = finer.astype(leaf.dtype)
         return found
 
-    return mapped(joined, full, part, skip=FIXED)
+    return map_record(joined, full, part, skip=FIELDS_WITHOUT_POSITIONS)
 
 
 # Limits of velocities and accelerations in dead positions that the mechanism passes smoothly.
@@ -254,14 +258,24 @@ def spliced(full: Record, part: Record, where: Real) -> Record:
 
 NODES = 16  # on both sides of a change point; an even number, so that none lies in it
 RADII = (0.1, 0.05)  # rad, and of a slider this share of the largest group: how far the outer nodes are
-STATES = ("poses", "first", "second")
-SIZES = ("x", "z", "unwrapped", "v", "w", "a", "e")  # of poses, rates and accelerations: what is compared alike
-PLACES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
-WEIGHTS: Real = chebyshev.chebvander(np.zeros(1), NODES - 1)[0] @ np.linalg.inv(chebyshev.chebvander(PLACES, NODES - 1))
+STATE_FIELDS = ("poses", "first", "second")
+COMPARED_FIELDS = (
+    "x",
+    "z",
+    "unwrapped",
+    "v",
+    "w",
+    "a",
+    "e",
+)  # of poses, rates and accelerations: what is compared alike
+CHEBYSHEV_NODES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+WEIGHTS: Real = chebyshev.chebvander(np.zeros(1), NODES - 1)[0] @ np.linalg.inv(
+    chebyshev.chebvander(CHEBYSHEV_NODES, NODES - 1)
+)
 """Values at the nodes to the value in the middle between them."""
 
 
-def with_limits(motion: Motion) -> Motion:
+def fill_in_limits(motion: Motion) -> Motion:
     """Put the limits of positions, velocities and accelerations into change points that are passed smoothly.
 
     `moving` stays False in these positions, as forces have no limit there in general; the mask `limits` says which they
@@ -273,7 +287,7 @@ def with_limits(motion: Motion) -> Motion:
     if not np.any(dead):
         return motion
     places = np.flatnonzero(dead)
-    limits, smooth = _limits(motion, np.asarray(motion.q, dtype=float)[places])
+    limits, smooth = _interpolate_limits(motion, np.asarray(motion.q, dtype=float)[places])
     if not np.any(smooth):
         return motion
     filled = places[smooth]
@@ -286,20 +300,20 @@ def with_limits(motion: Motion) -> Motion:
         found[..., filled] = np.where(known, values[..., filled], own)  # a place that is known needs no interpolation
         return found
 
-    parts = {name: mapped(put, getattr(motion, name), getattr(limits, name)) for name in STATES}
+    parts = {name: map_record(put, getattr(motion, name), getattr(limits, name)) for name in STATE_FIELDS}
     mask = np.zeros(np.shape(motion.q), dtype=bool)
     mask[filled] = True
     return replace(motion, **parts, limits=mask, bare=motion)
 
 
-def _limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
+def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
     """States of links in the middle of nodes about places q, and which of these are passed smoothly."""
     size = float(np.max([np.max(kernel.size) for kernel in motion.kernels], initial=0.0)) or 1.0
     unit = 1.0 if motion.linkage.driver.kind == "turn" else size
     smooth = np.ones(len(q), dtype=bool)
     found = []
     for radius in RADII:
-        nodes = q[:, None] + radius * unit * PLACES
+        nodes = q[:, None] + radius * unit * CHEBYSHEV_NODES
         states = link_states(motion.linkage, motion.kernels, nodes.ravel(), 2)
         smooth &= np.all(states.moving.reshape(nodes.shape), axis=1)
 
@@ -309,16 +323,16 @@ def _limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
             return np.broadcast_to(values, shape[0] * shape[1]).reshape(shape) @ WEIGHTS
 
         with np.errstate(invalid="ignore"):
-            states = replace(states, **{name: mapped(middle, getattr(states, name)) for name in STATES})
+            states = replace(states, **{name: map_record(middle, getattr(states, name)) for name in STATE_FIELDS})
         found.append(states)
     far, near = found
-    return far, smooth & _agree(far, near, size)
+    return far, smooth & _limits_agree(far, near, size)
 
 
-def _agree(one: LinkStates, other: LinkStates, size: float) -> Real:
+def _limits_agree(one: LinkStates, other: LinkStates, size: float) -> Real:
     """Whether two states of all links are the same at each place; size: of the mechanism (m)."""
-    gaps: dict[str, Any] = dict.fromkeys(SIZES, 0.0)
-    largest: dict[str, Any] = dict.fromkeys(SIZES, 0.0)
+    gaps: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
+    largest: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
 
     def compare(path: str, values: Any, beside: Any) -> Any:
         if isinstance(values, np.ndarray):
@@ -327,8 +341,8 @@ def _agree(one: LinkStates, other: LinkStates, size: float) -> Real:
             largest[kind] = np.maximum(largest[kind], np.abs(values))
         return values
 
-    for name in STATES:
-        mapped(compare, getattr(one, name), getattr(other, name))
+    for name in STATE_FIELDS:
+        map_record(compare, getattr(one, name), getattr(other, name))
     speed = np.maximum(largest["v"], largest["w"] * size)
     gain = np.maximum(np.maximum(largest["a"], largest["e"] * size), speed**2 / size)
     scales = {
@@ -342,6 +356,6 @@ def _agree(one: LinkStates, other: LinkStates, size: float) -> Real:
     }
     with np.errstate(invalid="ignore"):
         agree: Real = np.all(
-            [np.broadcast_to(gaps[k] <= LIMIT_AGREES * scales[k], np.shape(speed)) for k in SIZES], axis=0
+            [np.broadcast_to(gaps[k] <= LIMIT_AGREES * scales[k], np.shape(speed)) for k in COMPARED_FIELDS], axis=0
         )
     return agree

@@ -8,9 +8,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import Kernel, LinkStates, link_states, towards
+from tmm_cli.mechanics.groups import GroupSolver, LinkStates, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
-from tmm_cli.mechanics.kinematics.motion import LargestRates, Motion, moving_parts
+from tmm_cli.mechanics.kinematics.motion import LargestRates, Motion, zero_at_rest
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, Request
 from tmm_cli.mechanics.numerics import (
     AT_EDGE_OF_CAM,
@@ -18,7 +18,7 @@ from tmm_cli.mechanics.numerics import (
     NO_DWELL,
     NO_JUMP,
     RESTS,
-    SAME_PLACE,
+    SAME_DRIVER_POSITION,
     SEAM,
     Real,
     Vector,
@@ -38,16 +38,16 @@ def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
     point = motion.linkage.output_point(link)
     if point is not None:
         moving = motion.named(point)
-        return _along(link, moving.x), _along(link, moving.first), _along(link, moving.second)
+        return _coordinate(link, moving.x), _coordinate(link, moving.first), _coordinate(link, moving.second)
     turning = motion.link(link)
     return turning.angle, turning.first, turning.second
 
 
-def output_place(motion: LinkStates, link: str) -> Real:
+def output_coordinate(motion: LinkStates, link: str) -> Real:
     """Run of the output (m, or its angle in rad) alone."""
     point = motion.linkage.output_point(link)
     if point is not None:
-        return _along(link, motion.spot(point))
+        return _coordinate(link, motion.spot(point))
     slide = motion.linkage.output_guide(link)
     return motion.angle(link) if slide is None else motion.run(slide)
 
@@ -58,7 +58,7 @@ def output_slope(motion: LinkStates, link: str) -> Real:
     point = linkage.output_point(link)
     if point is not None:
         own = linkage.owner(point)
-        return _along(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
+        return _coordinate(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
     slide = linkage.output_guide(link)
     return motion.first[link].w if slide is None else motion.slope(slide)
 
@@ -70,16 +70,16 @@ def moving_slope(motion: LinkStates, link: str) -> Real:
     """
     slope, rates = output_slope(motion, link), LargestRates.of(motion)
     largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
-    moves = np.any(moving_parts(slope, largest), axis=-1, keepdims=True)
+    moves = np.any(zero_at_rest(slope, largest), axis=-1, keepdims=True)
     return np.where(moves, slope, 0.0)
 
 
-def _along(output: str, vector: Vector) -> Real:
+def _coordinate(output: str, vector: Vector) -> Real:
     """The coordinate of a vector that an output K.x or K.y is about."""
     return vector.real if output.endswith(".x") else vector.imag
 
 
-class Curve(Protocol):
+class StrokeCurve(Protocol):
     """What tells the strokes of an output, see OutputCurve."""
 
     @property
@@ -96,7 +96,7 @@ class OutputCurve:
     """An output over the driver's places; kernels: the groups on the way to it."""
 
     linkage: Linkage
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[GroupSolver, ...]
     link: str
 
     @property
@@ -110,7 +110,7 @@ class OutputCurve:
 
     def place(self, q: Real) -> Real:
         """Run, m, or angle in -pi..pi, rad."""
-        return output_place(link_states(self.linkage, self.kernels, q, 0), self.link)
+        return output_coordinate(link_states(self.linkage, self.kernels, q, 0), self.link)
 
     def slope(self, q: Real) -> Real:
         """First transfer function."""
@@ -121,7 +121,7 @@ class OutputCurve:
         return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
 
-def runs_of(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
+def measure_runs(curve: StrokeCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
     """Where an output is at the start of each way of the driver (..., ways), and how far it goes in it.
 
     An angle is followed through, so that it may pass 180 degrees.
@@ -134,7 +134,7 @@ def runs_of(curve: Curve, starts: Real, ways: Real) -> tuple[Real, Real]:
 
 
 @dataclass(frozen=True)
-class Travel:
+class OutputTravel:
     """How far an output goes between two ends of the driver that were asked for: run (m or rad) and driver's place."""
 
     link: str
@@ -145,12 +145,12 @@ class Travel:
     high_at: float
 
 
-def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link: str) -> Travel | None:
+def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], asked: Real, link: str) -> OutputTravel | None:
     """Extremes of an output over the places asked for, found between them; for drivers that do not turn fully."""
-    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
+    curve = OutputCurve(linkage, solvers_towards(kernels, [linkage.output_carrier(link)]), link)
     q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
     moved = link_states(linkage, kernels, q, 1)  # all groups: it goes only where the whole linkage can
-    run, slope = output_place(moved, link), output_slope(moved, link)
+    run, slope = output_coordinate(moved, link), output_slope(moved, link)
     before, after = moved.placed[:-1], moved.placed[1:]
     turning = (before & after & (slope[:-1] * slope[1:] < 0))[before]  # not over a gap between two ways of the driver
     q, run = q[moved.placed], run[moved.placed]
@@ -165,7 +165,7 @@ def find_travel(linkage: Linkage, kernels: tuple[Kernel, ...], asked: Real, link
             there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
         q, run = np.concatenate([q, ends]), np.concatenate([run, there])
     low, high = int(np.argmin(run)), int(np.argmax(run))
-    return Travel(link, curve.kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
+    return OutputTravel(link, curve.kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
 
 
 # Stage: the strokes of the output of the mechanism, which of them is the working one.
@@ -233,14 +233,14 @@ class Strokes:
         """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
         inside = np.zeros(np.shape(q), dtype=bool)
         for stroke in self.working:
-            gone = np.mod(sense * (q - stroke.start) + SAME_PLACE, self.cycle) - SAME_PLACE
-            inside = inside | (gone < stroke.length - SAME_PLACE)
+            gone = np.mod(sense * (q - stroke.start) + SAME_DRIVER_POSITION, self.cycle) - SAME_DRIVER_POSITION
+            inside = inside | (gone < stroke.length - SAME_DRIVER_POSITION)
         return inside
 
 
 def find_strokes(
     linkage: Linkage,
-    kernels: tuple[Kernel, ...],
+    kernels: tuple[GroupSolver, ...],
     driver_range: DriverRange,
     resists: float = 0.0,
     link: str | None = None,
@@ -254,7 +254,7 @@ def find_strokes(
     link = link or output_link(linkage, tuple(d.group for d in kernels))
     if link is None:
         return None
-    curve = OutputCurve(linkage, towards(kernels, [linkage.output_carrier(link)]), link)
+    curve = OutputCurve(linkage, solvers_towards(kernels, [linkage.output_carrier(link)]), link)
     none = Strokes(link, curve.kind, (), "")
     if not driver_range.full:
         return none
@@ -269,22 +269,22 @@ def find_strokes(
     if moves[0] > 0:  # a dwell at the seam is not to be cut in two
         q = q + (q[moves[0]] - q[0])
         slope = curve.slope(q)
-    turns, rests = _stops(curve, q, slope, sense)
+    turns, rests = _find_reversals(curve, q, slope, sense)
     turns = np.mod(turns, cycle)
     turns = np.where(cycle - turns < SEAM, 0.0, turns)
     order = np.argsort(turns)
     turns, rests = turns[order], rests[order]
-    again = np.diff(turns, append=turns[:1] + cycle) < SAME_PLACE  # found at both ends of the scan
+    again = np.diff(turns, append=turns[:1] + cycle) < SAME_DRIVER_POSITION  # found at both ends of the scan
     rest_before = dict(zip(turns[~again].tolist(), rests[~again].tolist(), strict=True))
-    turns = _true_ends(curve, turns[~again][::sense], cycle, sense)
+    turns = _drop_rounding_reversals(curve, turns[~again][::sense], cycle, sense)
     if turns.size < 2:
         return none
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
-    lows, runs = runs_of(curve, turns, sense * lengths)
+    lows, runs = measure_runs(curve, turns, sense * lengths)
     rests = np.roll([rest_before.get(float(t), 0.0) for t in turns], -1)
     lengths = lengths - rests
     forward, back = lengths[runs > 0].sum(), lengths[runs < 0].sum()
-    direction, rule = _working(linkage.working_direction(link), forward, back, resists)
+    direction, rule = _working_direction(linkage.working_direction(link), forward, back, resists)
     strokes = [
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction), float(rest))
         for t, n, s, r, rest in zip(turns, lengths, lows, runs, rests, strict=True)
@@ -295,7 +295,7 @@ def find_strokes(
     return Strokes(link, curve.kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
 
 
-def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
+def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
     """Where the output turns back: the driver's places from which it goes the other way, and the dwells before them.
 
     slope: the output's first transfer function at the places q, which rise; it is exactly zero in a dwell, and jumps
@@ -324,7 +324,7 @@ def _stops(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, 
     return ends[true], rests[true]
 
 
-def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Real:
+def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Real:
     """Ends of strokes, without those that only rounding makes.
 
     Where the output all but rests, its rounded speed may change sign over and over: such places are one end, in their
@@ -333,7 +333,7 @@ def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Rea
     if turns.size < 2:
         return turns
     lengths = np.mod(sense * (np.roll(turns, -1) - turns), cycle)
-    __, runs = runs_of(curve, turns, sense * lengths)
+    __, runs = measure_runs(curve, turns, sense * lengths)
     moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
     if bool(np.all(moves)) or not bool(np.any(moves)):
         return turns
@@ -351,18 +351,18 @@ def _true_ends(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Rea
     return np.sort(np.array(kept))[::sense]
 
 
-def _working(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
+def _working_direction(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
     """In which direction (+1 or -1) the output works, and why: forward, back: how long strokes of each last (rad)."""
     if asked != "auto":
         return (1 if asked == "forward" else -1), "as the file says"
-    if abs(forward - back) > SAME_PLACE:
+    if abs(forward - back) > SAME_DRIVER_POSITION:
         return (1 if forward > back else -1), "the slower one"
     if resists:
         return int(np.sign(resists)), "the one that the load resists"
     return 1, "the forward one"
 
 
-def resisted(linkage: Linkage, link: str | None) -> Any:
+def resisted_direction(linkage: Linkage, link: str | None) -> Any:
     """The sign of the output's run that the loads of the working stroke resist, of each variant where the loads differ
     (variants, 1); 0 when they tell nothing."""
     for slide in linkage.slides:
@@ -371,20 +371,20 @@ def resisted(linkage: Linkage, link: str | None) -> Any:
             if slide.runner == FRAME:
                 along = -along
             push = sum(
-                (x.force.real * along.real + x.force.imag * along.imag) * _mean(x)
+                (x.force.real * along.real + x.force.imag * along.imag) * _mean_table_value(x)
                 for x in linkage.loads
                 if x.link == link and x.working_stroke_only
             )
             return -np.sign(push)
-    moment = sum(x.moment * _mean(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
+    moment = sum(x.moment * _mean_table_value(x) for x in linkage.loads if x.link == link and x.working_stroke_only)
     return -np.sign(moment)
 
 
-def _mean(load: Load) -> Any:
+def _mean_table_value(load: Load) -> Any:
     return sum(load.table.values) / len(load.table.values) if load.table else 1.0
 
 
-def places(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:
+def driver_positions(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:
     """The driver's places that are asked for (rad or m); position 0 is the zero.
 
     On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost; over the

@@ -21,36 +21,36 @@ from tmm_cli.mechanics.numerics.double_double_number import (
     arctan2,
     array,
     divide,
-    exactly,
+    exp_i,
     floor,
+    high_and_low,
     multiply,
     negative,
-    parts,
     power,
     remainder,
-    rounded,
     sqrt,
     subtract,
-    turn,
+    to_double_double,
+    to_float,
 )
 
 
 def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
-    (a, b), (c, d) = parts(one), parts(other)
+    (a, b), (c, d) = high_and_low(one), high_and_low(other)
     return DoubleDouble(np.where(truth, a, c), np.where(truth, b, d))
 
 
-def _compared(ufunc: Any) -> Callable[[Any, Any], Any]:
+def _comparison(ufunc: Any) -> Callable[[Any, Any], Any]:
     """By the higher parts, and by the lower ones where these are equal."""
 
     def compare(x: Any, y: Any) -> Any:
-        (a, b), (c, d) = parts(x), parts(y)
+        (a, b), (c, d) = high_and_low(x), high_and_low(y)
         return np.where(a == c, ufunc(b, d), ufunc(a, c))
 
     return compare
 
 
-def _of_higher(ufunc: Any) -> Callable[[DoubleDouble], Any]:
+def _high_part_only(ufunc: Any) -> Callable[[DoubleDouble], Any]:
     return lambda x: ufunc(x.hi)
 
 
@@ -66,8 +66,8 @@ def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
 
 def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
     """A piecewise linear table (np.interp), which jumps where two arguments are equal."""
-    at, values = (DoubleDouble(*parts(array(column))) for column in (at, values))
-    left = np.clip(np.searchsorted(at.hi, parts(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
+    at, values = (DoubleDouble(*high_and_low(array(column))) for column in (at, values))
+    left = np.clip(np.searchsorted(at.hi, high_and_low(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
     right = np.minimum(left + 1, len(at) - 1)
     with np.errstate(invalid="ignore", divide="ignore"):
         share = np.clip(divide(subtract(x, at[left]), at[right] - at[left]), 0.0, 1.0)
@@ -89,10 +89,10 @@ UFUNCS |= {
     "ceil": lambda x: negative(floor(negative(x))),
     "remainder": remainder,
     "conjugate": DoubleDouble.conjugate,
-    "cos": lambda x: turn(x).real,
-    "sin": lambda x: turn(x).imag,
+    "cos": lambda x: exp_i(x).real,
+    "sin": lambda x: exp_i(x).imag,
     "arctan2": arctan2,
-    "tan": lambda x: divide(turn(x).imag, turn(x).real),
+    "tan": lambda x: divide(exp_i(x).imag, exp_i(x).real),
     "arctan": lambda x: arctan2(x, 1.0),
     "arcsin": lambda x: arctan2(x, sqrt(multiply(subtract(1.0, x), add(1.0, x)))),
     "arccos": lambda x: arctan2(sqrt(multiply(subtract(1.0, x), add(1.0, x))), x),
@@ -101,9 +101,9 @@ UFUNCS |= {
     "minimum": lambda x, y: _where(np.less_equal(x, y) | np.isnan(x), x, y),
 }
 COMPARING: tuple[Any, ...] = (np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal)
-TELLING: tuple[Any, ...] = (np.sign, np.isfinite, np.isnan)
-UFUNCS |= {ufunc.__name__: _compared(ufunc) for ufunc in COMPARING}
-UFUNCS |= {ufunc.__name__: _of_higher(ufunc) for ufunc in TELLING}
+CLASSIFYING: tuple[Any, ...] = (np.sign, np.isfinite, np.isnan)
+UFUNCS |= {ufunc.__name__: _comparison(ufunc) for ufunc in COMPARING}
+UFUNCS |= {ufunc.__name__: _high_part_only(ufunc) for ufunc in CLASSIFYING}
 
 FUNCTIONS |= {
     np.where: _where,
@@ -115,7 +115,7 @@ FUNCTIONS |= {
     np.angle: angle,
     np.iscomplexobj: lambda x: x.dtype.kind == "c",
     np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
-    np.searchsorted: lambda a, v, **how: np.searchsorted(parts(a)[0], parts(v)[0], **how),
+    np.searchsorted: lambda a, v, **how: np.searchsorted(high_and_low(a)[0], high_and_low(v)[0], **how),
 }
 
 
@@ -125,4 +125,4 @@ FUNCTIONS |= {
 # rounding error itself. A complex number is a sum of two complex ones: real and imaginary parts are sums of their own.
 
 
-__all__ = ["EPS", "PI", "DoubleDouble", "array", "exactly", "rounded"]
+__all__ = ["EPS", "PI", "DoubleDouble", "array", "to_double_double", "to_float"]

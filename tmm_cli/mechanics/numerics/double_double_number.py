@@ -51,7 +51,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
     @classmethod
     def decimal(cls, written: str) -> DoubleDouble:
         """The number that decimals write. Raises decimal.InvalidOperation where they write none."""
-        return of_decimals([EXACT.create_decimal(written)])[0]
+        return from_decimals([EXACT.create_decimal(written)])[0]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -101,7 +101,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
         return DoubleDouble(self.hi[key], self.lo[key])
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        self.hi[key], self.lo[key] = parts(value)
+        self.hi[key], self.lo[key] = high_and_low(value)
         self.turn = self.angle = None
 
     def __len__(self) -> int:
@@ -147,13 +147,13 @@ class DoubleDouble(NDArrayOperatorsMixin):
             return function(args[0].hi, *args[1:], **kwargs)
         if function not in ARRANGING:
             return NotImplemented
-        hi, lo = (function(*_each(args, part), **kwargs) for part in (0, 1))
+        hi, lo = (function(*_arguments_of_part(args, part), **kwargs) for part in (0, 1))
         if isinstance(hi, list | tuple):
             return type(hi)(DoubleDouble(*both) for both in zip(hi, lo, strict=True))
         return DoubleDouble(hi, lo)
 
 
-def parts(value: Any) -> Pair:
+def high_and_low(value: Any) -> Pair:
     """Higher and lower parts of an array of either kind."""
     if isinstance(value, DoubleDouble):
         return value.hi, value.lo
@@ -161,13 +161,13 @@ def parts(value: Any) -> Pair:
     return array, np.zeros_like(array)
 
 
-def _each(args: Any, part: int) -> Any:
+def _arguments_of_part(args: Any, part: int) -> Any:
     """Arguments of a function that arranges numbers, with the higher (0) or the lower parts (1) of these."""
     found = []
     mixed = any(isinstance(arg, DoubleDouble) for arg in args)
     for arg in args:
         if isinstance(arg, tuple | list):
-            found.append(_each(arg, part))
+            found.append(_arguments_of_part(arg, part))
         elif isinstance(arg, DoubleDouble):
             found.append((arg.hi, arg.lo)[part])
         else:  # integers and truths say where, other plain numbers have no lower part
@@ -176,7 +176,7 @@ def _each(args: Any, part: int) -> Any:
     return type(args)(found)
 
 
-def exactly(values: Any) -> Any:
+def to_double_double(values: Any) -> Any:
     """Plain numbers as double-doubles, in the place of an array."""
     return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
 
@@ -189,17 +189,17 @@ def array(values: Any) -> Any:
         return np.asarray(values)
     found = [array(value) if isinstance(value, list | tuple) else value for value in values]
     if any(isinstance(value, DoubleDouble) for value in found):
-        higher, lower = zip(*map(parts, found), strict=True)
+        higher, lower = zip(*map(high_and_low, found), strict=True)
         return DoubleDouble(np.array(higher), np.array(lower))
     return np.asarray(found)
 
 
-def rounded(values: Any) -> Any:
+def to_float(values: Any) -> Any:
     """Plain numbers of an array of either kind."""
     return values.hi if isinstance(values, DoubleDouble) else values
 
 
-def of_decimals(numbers: Sequence[Decimal]) -> DoubleDouble:
+def from_decimals(numbers: Sequence[Decimal]) -> DoubleDouble:
     """The nearest numbers."""
     hi = [float(number) for number in numbers]
     lo = [EXACT.subtract(number, Decimal(h)) for number, h in zip(numbers, hi, strict=True)]
@@ -268,14 +268,14 @@ def multiply(x: Any, y: Any) -> DoubleDouble:
         x, y = y, x
     if isinstance(x, DoubleDouble):
         one, rest = x.hi, x.hi * y.lo + x.lo * y.hi
-    elif _only_scales(x):
+    elif _is_exact_factor(x):
         return DoubleDouble(x * y.hi, x * y.lo)
     else:
         one, rest = np.asarray(x), x * y.lo
     other = y.hi
     if one.dtype.kind == "c" and other.dtype.kind == "c":
         one, other = (one, other) if one.ndim >= other.ndim else (other, one)
-        products, errors = two_product(_planes(one), other)
+        products, errors = two_product(_real_and_imaginary(one), other)
         product, error = two_sum(products[0], 1j * products[1])
         error = error + (errors[0] + 1j * errors[1])
     else:
@@ -283,14 +283,14 @@ def multiply(x: Any, y: Any) -> DoubleDouble:
     return DoubleDouble(*fast_two_sum(product, error + rest))
 
 
-def _only_scales(x: Any) -> bool:
+def _is_exact_factor(x: Any) -> bool:
     """Whether products with it are exact: a power of two, or i."""
     if isinstance(x, complex):
         return x in (1j, -1j)
     return isinstance(x, int | float) and abs(frexp(x)[0]) == 0.5
 
 
-def _planes(values: Any) -> Any:
+def _real_and_imaginary(values: Any) -> Any:
     """Real and imaginary parts on a first axis."""
     planes = np.empty((2, *values.shape))
     planes[0], planes[1] = values.real, values.imag
@@ -299,16 +299,16 @@ def _planes(values: Any) -> Any:
 
 def divide(x: Any, y: Any) -> DoubleDouble:
     """x / y, real or complex."""
-    x, y = DoubleDouble(*parts(x)), DoubleDouble(*parts(y))
+    x, y = DoubleDouble(*high_and_low(x)), DoubleDouble(*high_and_low(y))
     if y.dtype.kind == "c":
         return divide(multiply(x, y.conjugate()), square(y))
     first = x.hi / y.hi
     product, error = two_product(first, y.hi)
     rest = (x.hi - product) - error + (x.lo - first * y.lo)
-    return _finite(DoubleDouble(*fast_two_sum(first, rest / y.hi)), first)
+    return _keep_nonfinite(DoubleDouble(*fast_two_sum(first, rest / y.hi)), first)
 
 
-def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
+def _keep_nonfinite(found: DoubleDouble, plain: Any) -> DoubleDouble:
     """What was found, or the plain number where that is infinite or none."""
     sound = np.isfinite(plain)
     if sound.all():
@@ -318,10 +318,10 @@ def _finite(found: DoubleDouble, plain: Any) -> DoubleDouble:
 
 def square(z: DoubleDouble) -> DoubleDouble:
     """|z|^2 of complex numbers."""
-    planes = _planes(z.hi)
+    planes = _real_and_imaginary(z.hi)
     squares, errors = two_product(planes, planes)
     total, error = two_sum(squares[0], squares[1])
-    rest = errors + 2 * planes * _planes(z.lo)
+    rest = errors + 2 * planes * _real_and_imaginary(z.lo)
     return DoubleDouble(*fast_two_sum(total, error + (rest[0] + rest[1])))
 
 
@@ -330,7 +330,7 @@ def sqrt(x: DoubleDouble) -> DoubleDouble:
     root = np.sqrt(x.hi)
     square, error = two_product(root, root)
     rest = (x.hi - square) - error + x.lo
-    return _finite(DoubleDouble(*fast_two_sum(root, rest / np.where(root == 0, 1.0, 2 * root))), root)
+    return _keep_nonfinite(DoubleDouble(*fast_two_sum(root, rest / np.where(root == 0, 1.0, 2 * root))), root)
 
 
 def absolute(x: DoubleDouble) -> DoubleDouble:
@@ -343,7 +343,7 @@ def absolute(x: DoubleDouble) -> DoubleDouble:
 
 def power(x: Any, n: Any) -> DoubleDouble:
     """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
-    x, number = exactly(x), float(n)
+    x, number = to_double_double(x), float(n)
     if number == 0.5:
         return sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:
@@ -371,10 +371,10 @@ PARTS = 64  # of a turn: directions that sines and cosines start from
 POWERS, PRECISE = 9, 5  # of the square in the series from there on; those from PRECISE on are small enough for doubles
 
 
-def turn(x: DoubleDouble) -> DoubleDouble:
+def exp_i(x: DoubleDouble) -> DoubleDouble:
     """e^(i x): the nearest of some directions, and the power series from there."""
     if x.turn is None:
-        steps, directions, series = _tables()
+        steps, directions, series = _trigonometric_tables()
         number = np.round(x.hi * (PARTS / (2 * np.pi)))
         product, error = two_product(number, steps[0])
         rest = DoubleDouble(*two_sum(x.hi - product, x.lo - error)) - number * steps[1]
@@ -396,9 +396,9 @@ def turn(x: DoubleDouble) -> DoubleDouble:
 
 def arctan2(y: Any, x: Any) -> DoubleDouble:
     """One step from the double's: the sine of the angle that is left is that angle."""
-    y, x = DoubleDouble(*parts(y)), DoubleDouble(*parts(x))
+    y, x = DoubleDouble(*high_and_low(y)), DoubleDouble(*high_and_low(x))
     near = DoubleDouble(np.arctan2(y.hi, x.hi))
-    there, size = turn(near), np.hypot(y.hi, x.hi)
+    there, size = exp_i(near), np.hypot(y.hi, x.hi)
     left = subtract(multiply(y, there.real), multiply(x, there.imag)).hi
     return add(near, left / np.where(size == 0, 1.0, size))
 
@@ -411,7 +411,7 @@ def angle(z: DoubleDouble) -> DoubleDouble:
 
 
 @cache
-def _tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
+def _trigonometric_tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
     """A part of a turn in two doubles; the directions it leads to; coefficients of cosine and sine by powers."""
     with localcontext(EXACT):
         step = 2 * Decimal(PI) / PARTS
@@ -430,8 +430,8 @@ def _tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
         series, even = [], Decimal(1)
         for k in range(POWERS):
             odd = even / (2 * k + 1)
-            series.append(of_decimals((even, odd)))
+            series.append(from_decimals((even, odd)))
             even = -odd / (2 * k + 2)
-    re, im = (of_decimals(column) for column in zip(*directions, strict=True))
+    re, im = (from_decimals(column) for column in zip(*directions, strict=True))
     coefficients: Any = np.stack(series)
     return steps, DoubleDouble(re.hi + 1j * im.hi, re.lo + 1j * im.lo), coefficients

@@ -20,11 +20,11 @@ from tmm_cli.mechanics.numerics.tolerances import SEAM
 from tmm_cli.mechanics.numerics.vectors import Real
 
 Between = Literal["linear", "step", "smooth"]
-LOOKED_AT = 17  # places between two rows
+SAMPLES_BETWEEN = 17  # places between two rows
 
 
 @dataclass(frozen=True)
-class Table:
+class InterpolationTable:
     """Rows by growing arguments. step: each row's value holds up to the next row; smooth: a cubic spline.
 
     closed: the spline goes on from its last row to its first, which has the same value. With jumps it does not: the
@@ -59,7 +59,7 @@ class Table:
         if self.between != "smooth":
             return 0, 0.0
         rows, low, span = np.array(self.arguments, float), min(self.values), np.ptp(np.array(self.values, float))
-        places = rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, LOOKED_AT)
+        places = rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, SAMPLES_BETWEEN)
         found = self(places)
         beyond = np.max(np.maximum(low - found, found - low - span), axis=1)
         row = int(np.argmax(beyond))
@@ -118,46 +118,46 @@ class Table:
         if len(arguments) < 2:
             return []
         steps = [end - start for start, end in pairwise(arguments)]
-        rises = [_rise(end - start, step) for (start, end), step in zip(pairwise(values), steps, strict=True)]
+        rises = [_slope_of_step(end - start, step) for (start, end), step in zip(pairwise(values), steps, strict=True)]
         if self.between == "linear":
             return [(value, rise, 0.0, 0.0) for value, rise in zip(values, rises, strict=False)]
         round_and_round = self.closed and not self.jumps and len(steps) > 2
-        slopes = _closed(steps, rises) if round_and_round else _open(steps, rises)
+        slopes = _periodic_spline_slopes(steps, rises) if round_and_round else _natural_spline_slopes(steps, rises)
         return [
             (value, m, (3 * rise - 2 * m - n) / step, (m + n - 2 * rise) / (step * step))
             for value, rise, step, (m, n) in zip(values, rises, steps, pairwise(slopes), strict=False)
         ]
 
 
-def _rise(change: Any, step: Any) -> Any:
+def _slope_of_step(change: Any, step: Any) -> Any:
     """Change over a step, for each variant; none where a variant has a jump there."""
     if not np.any(step == 0):
         return change / step
     return np.where(step == 0, 0.0, change) / np.where(step == 0, 1.0, step)
 
 
-def _open(steps: list[Any], rises: list[Any]) -> list[Any]:
+def _natural_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
     """Slopes in the rows of a spline whose second derivative is zero at both ends."""
-    lower, middle, upper, right = _inner(steps, rises)
-    return _solved([*lower, 1.0], [2.0, *middle, 2.0], [1.0, *upper], [3 * rises[0], *right, 3 * rises[-1]])
+    lower, middle, upper, right = _inner_equations(steps, rises)
+    return _solve_tridiagonal([*lower, 1.0], [2.0, *middle, 2.0], [1.0, *upper], [3 * rises[0], *right, 3 * rises[-1]])
 
 
-def _closed(steps: list[Any], rises: list[Any]) -> list[Any]:
+def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
     """Slopes in the rows of a spline that goes on from its last row to its first.
 
     The slope m of that row is what fits: all others follow from it, linearly.
     """
-    lower, middle, upper, right = _inner(steps, rises)
-    fixed = _solved(lower[1:], middle, upper[:-1], right)
+    lower, middle, upper, right = _inner_equations(steps, rises)
+    fixed = _solve_tridiagonal(lower[1:], middle, upper[:-1], right)
     nothing = [0.0] * (len(right) - 2)
-    by_last = _solved(lower[1:], middle, upper[:-1], [-lower[0], *nothing, -upper[-1]])
+    by_last = _solve_tridiagonal(lower[1:], middle, upper[:-1], [-lower[0], *nothing, -upper[-1]])
     first, last = steps[0], steps[-1]
     wanted = 3 * (rises[-1] / last + rises[0] / first) - fixed[0] / first - fixed[-1] / last
     m = wanted / (2 / first + 2 / last + by_last[0] / first + by_last[-1] / last)
     return [m, *(one + m * other for one, other in zip(fixed, by_last, strict=True)), m]
 
 
-def _inner(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
     """Rows of the equations for slopes between the ends: factors of the slope before, of the own and of the next."""
     both = list(zip(pairwise(steps), pairwise(rises), strict=True))
     return (
@@ -168,7 +168,7 @@ def _inner(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], li
     )
 
 
-def _solved(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:
+def _solve_tridiagonal(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:
     """A system of three diagonals, of which the middle one is the largest."""
     kept = [(middle[0], right[0])]
     for below, own, above, value in zip(lower, middle[1:], upper, right[1:], strict=True):

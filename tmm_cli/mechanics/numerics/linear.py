@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics.double_double import exactly, rounded
+from tmm_cli.mechanics.numerics.double_double import to_double_double, to_float
 from tmm_cli.mechanics.numerics.tolerances import TRUNCATED
 from tmm_cli.mechanics.numerics.vectors import Real
 
-ROUNDS = 5  # each gives as many digits more as float64 has beyond those that the matrix loses
+REFINEMENTS = 5  # each gives as many digits more as float64 has beyond those that the matrix loses
 
 
 def solve(matrix: Real, right: Real) -> Real:
@@ -22,7 +22,7 @@ def solve(matrix: Real, right: Real) -> Real:
     With more equations than unknowns, or fewer, the least squares solution of least size.
     """
     if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
-        return _refined(matrix, right)
+        return _solve_refined(matrix, right)
     rows, columns = matrix.shape[-2:]
     if rows != columns:
         return _least_squares(matrix, right)
@@ -34,13 +34,13 @@ def solve(matrix: Real, right: Real) -> Real:
         return np.where(singular[..., None], np.nan, np.linalg.solve(sound, right[..., None])[..., 0])
 
 
-def _refined(matrix: Real, right: Real) -> Real:
+def _solve_refined(matrix: Real, right: Real) -> Real:
     """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
-    near = rounded(matrix)
-    found: Real = exactly(solve(near, rounded(right)))
-    for _ in range(ROUNDS):
+    near = to_float(matrix)
+    found: Real = to_double_double(solve(near, to_float(right)))
+    for _ in range(REFINEMENTS):
         rest = right - np.sum(matrix * found[..., None, :], axis=-1)
-        found = found + solve(near, rounded(rest))
+        found = found + solve(near, to_float(rest))
     return found
 
 
@@ -54,24 +54,24 @@ def _least_squares(matrix: Real, right: Real) -> Real:
     return np.where(sound[..., None], found, np.nan)
 
 
-def least_over_largest(matrix: Real) -> Real:
+def singular_value_ratio(matrix: Real) -> Real:
     """Least singular value over the largest, nan where the matrix is not finite."""
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
-    clean = np.where(sound[..., None, None], rounded(matrix), 0.0)
+    clean = np.where(sound[..., None, None], to_float(matrix), 0.0)
     values = np.linalg.svd(clean, compute_uv=False)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(sound, values[..., -1] / values[..., 0], np.nan)
 
 
-def signed_determinant(matrix: Real) -> Real:
+def determinant_sign(matrix: Real) -> Real:
     """Sign of the determinant; 1 where there are more equations than unknowns."""
     if matrix.shape[-1] != matrix.shape[-2]:
         return np.ones(matrix.shape[:-2])
-    sign: Real = np.linalg.slogdet(rounded(matrix))[0]
+    sign: Real = np.linalg.slogdet(to_float(matrix))[0]
     return sign
 
 
-def margin_of(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
+def singular_margin(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
     """Least singular value over the largest of as many rows {unknown: coefficient} as there are unknowns.
 
     Without dimension: lengths tells which rows are in metres; of three unknowns two are. On a tape it is one operation.
@@ -90,7 +90,7 @@ def margin_of(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: 
 def _margin(*entries: Any) -> Real:
     many = math.isqrt(len(entries))
     together = np.stack(np.broadcast_arrays(*entries), axis=-1)
-    return least_over_largest(together.reshape(*together.shape[:-1], many, many))
+    return singular_value_ratio(together.reshape(*together.shape[:-1], many, many))
 
 
 # Linear equations whose coefficients are arrays one by one: eliminated in an order that is chosen beforehand.
@@ -102,11 +102,11 @@ def _margin(*entries: Any) -> Real:
 # equations are sound.
 
 
-Row = Mapping[int, Any]
+EquationRow = Mapping[int, Any]
 
 
 @dataclass(frozen=True)
-class Order:
+class EliminationOrder:
     """explicit: (row, column) one after another; closing: rows that are left; free: columns that are left."""
 
     explicit: tuple[tuple[int, int], ...]
@@ -114,13 +114,15 @@ class Order:
     free: tuple[int, ...]
 
 
-class Eliminated:
+class EliminatedSystem:
     """Equations made triangular: solved for several right sides, with the matrix or its transpose.
 
     scales: what rows are multiplied by and columns counted in where lengths and angles meet in the free unknowns.
     """
 
-    def __init__(self, rows: Sequence[Row], order: Order, scales: tuple[Sequence[Any], Sequence[Any]] | None) -> None:
+    def __init__(
+        self, rows: Sequence[EquationRow], order: EliminationOrder, scales: tuple[Sequence[Any], Sequence[Any]] | None
+    ) -> None:
         self.rows, self.order, self.scales = rows, order, scales
         self.following: dict[int, dict[int, Any]] = {}  # of each explicit unknown what a free one moves it by
         for row, column in order.explicit:
@@ -161,8 +163,8 @@ class Eliminated:
                 self.turns.append((top, row, c, s))
                 one, other = left[top], left[row]
                 both = list(dict.fromkeys([*one, *other]))
-                left[top] = {k: _sum(c, one.get(k), s, other.get(k)) for k in both} | {column: length}
-                left[row] = {k: _sum(-s, one.get(k), c, other.get(k)) for k in both if k != column}
+                left[top] = {k: _combine(c, one.get(k), s, other.get(k)) for k in both} | {column: length}
+                left[row] = {k: _combine(-s, one.get(k), c, other.get(k)) for k in both if k != column}
             self.pivots.append((top, column))
             rows.remove(top)
             columns.remove(column)
@@ -237,7 +239,7 @@ class Eliminated:
         return [found[k] for k in range(len(found))]
 
 
-def _sum(c: Any, one: Any, s: Any, other: Any) -> Any:
+def _combine(c: Any, one: Any, s: Any, other: Any) -> Any:
     """c one + s other, where None is nothing."""
     if one is None:
         return s * other

@@ -29,10 +29,10 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
     b, a = np.asarray(low, kind), np.asarray(high, kind)
     fb, fa = function(b), function(a)
     if bool(np.any((fa == 0) | (fb == 0))):
-        return _edges(function, b, a, fb)
+        return _bisect_sign_changes(function, b, a, fb)
     c, fc, share = b, fb, np.full(np.shape(a), 0.5)
     with np.errstate(all="ignore"):
-        for _ in range(halvings_of(a)):
+        for _ in range(count_halvings(a)):
             place = a + share * (b - a)
             value = function(place)
             same = np.sign(value) == np.sign(fa)
@@ -58,25 +58,25 @@ def bisect(
 
     It holds at `inside` and not at `outside`; by default they are neighbours in the end, in their own precision.
     """
-    for _ in range(halvings_of(inside) if halvings is None else halvings):
+    for _ in range(count_halvings(inside) if halvings is None else halvings):
         middle = (inside + outside) / 2
         good = holds(middle)
         inside, outside = np.where(good, middle, inside)[()], np.where(good, outside, middle)[()]
     return inside, outside
 
 
-def halvings_of(places: Real) -> int:
+def count_halvings(places: Real) -> int:
     """How many halvings leave nothing of an interval in the precision of its ends."""
     return int(np.finfo(np.result_type(places, float)).nmant) + SPARE
 
 
-def _edges(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
+def _bisect_sign_changes(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
     """Where the sign of the lower end ends, by halving: beside a dwell that is its edge, not any place of it."""
     same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
     return (same + other) / 2
 
 
-def least(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
+def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
     """Places and values of the least between places, of all intervals at once, in each of which there is one minimum:
     nine places of each, the best third kept.
     """
@@ -91,7 +91,7 @@ def least(function: Callable[[Real], Real], low: Real | float, high: Real | floa
     return middle, function(np.ravel(middle)).reshape(np.shape(middle))[()]
 
 
-def greatest(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
+def greatest_values(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
     """The largest values of curves that may jump or bend, (curves,); nan of those that have no value anywhere.
 
     About every peak of a scan that may reach the largest value between two of its places, finer grids are laid, one
@@ -129,7 +129,7 @@ def greatest(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, tur
     return np.where(np.isfinite(best), best, np.nan)
 
 
-def top(function: Callable[[Real], Real], place: float, half: float) -> float:
+def locate_extreme(function: Callable[[Real], Real], place: float, half: float) -> float:
     """The place of a smooth extreme near `place`, to nearly all digits: where the slope of a polynomial vanishes.
 
     The extreme itself is known to half the digits only, as long as one compares values. `place` is given back where
@@ -159,78 +159,82 @@ def top(function: Callable[[Real], Real], place: float, half: float) -> float:
 
 
 WINDOW = 33  # places about a peak
-SIDE = 3  # neighbours on either side
-FIT = np.linalg.inv(np.vander(np.arange(-SIDE, SIDE + 1.0), increasing=True)).T  # values @ FIT: coefficients
-NEWTON = 6
-RIVALS = 8  # highest places of what may jump
-RIVAL = 0.3  # of its range: a lower peak so far below the highest one is no rival
-FACTORS = [[float(perm(power, order)) for power in range(2 * SIDE + 1)] for order in range(3)]  # of derivatives
+WINDOW_SIDE = 3  # neighbours on either side
+WINDOW_FIT = np.linalg.inv(
+    np.vander(np.arange(-WINDOW_SIDE, WINDOW_SIDE + 1.0), increasing=True)
+).T  # values @ FIT: coefficients
+NEWTON_STEPS = 6
+MOST_PEAKS = 8  # highest places of what may jump
+LOWEST_PEAK = 0.3  # of its range: a lower peak so far below the highest one is no rival
+FACTORS = [[float(perm(power, order)) for power in range(2 * WINDOW_SIDE + 1)] for order in range(3)]  # of derivatives
 
 
-def _near(y: Real, k: Real) -> tuple[Real, Real]:
-    middle = np.clip(k, SIDE, y.shape[1] - SIDE - 1)
-    near = np.take_along_axis(y, middle[:, None] + np.arange(-SIDE, SIDE + 1), axis=1)
-    return near @ FIT, middle
+def _fit_windows(y: Real, k: Real) -> tuple[Real, Real]:
+    middle = np.clip(k, WINDOW_SIDE, y.shape[1] - WINDOW_SIDE - 1)
+    near = np.take_along_axis(y, middle[:, None] + np.arange(-WINDOW_SIDE, WINDOW_SIDE + 1), axis=1)
+    return near @ WINDOW_FIT, middle
 
 
-def value(c: Real, u: Real, order: int = 0) -> Real:
+def polynomial_value(c: Real, u: Real, order: int = 0) -> Real:
     """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
-    return _at(_derived(c, order), u)
+    return _horner(_derivative_coefficients(c, order), u)
 
 
-def _derived(c: Real, order: int) -> list[Real]:
+def _derivative_coefficients(c: Real, order: int) -> list[Real]:
     """Coefficients of a derivative, that of the highest power first."""
-    return [FACTORS[order][power] * c[..., power] for power in range(2 * SIDE, order - 1, -1)]
+    return [FACTORS[order][power] * c[..., power] for power in range(2 * WINDOW_SIDE, order - 1, -1)]
 
 
-def _at(coefficients: list[Real], u: Real) -> Real:
+def _horner(coefficients: list[Real], u: Real) -> Real:
     found, *rest = coefficients
     for coefficient in rest:
         found = found * u + coefficient
     return found
 
 
-def peak(y: Real) -> Real:
+def window_peak(y: Real) -> Real:
     """The largest value within a window; (variants,)."""
     top, most = np.argmax(y, axis=1), np.max(y, axis=1)
-    c, middle = _near(y, top)
-    slopes, bends = _derived(c, 1), _derived(c, 2)
+    c, middle = _fit_windows(y, top)
+    slopes, bends = _derivative_coefficients(c, 1), _derivative_coefficients(c, 2)
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
-        for _ in range(NEWTON):
-            bend, last = _at(bends, u), u
-            u = np.minimum(np.maximum(u - np.where(bend < 0, _at(slopes, u) / bend, 0.0), -SIDE), SIDE)
+        for _ in range(NEWTON_STEPS):
+            bend, last = _horner(bends, u), u
+            u = np.minimum(
+                np.maximum(u - np.where(bend < 0, _horner(slopes, u) / bend, 0.0), -WINDOW_SIDE), WINDOW_SIDE
+            )
             if np.array_equal(u, last):
                 break
-    found: Real = np.maximum(value(c, u), most)
-    return np.where((middle == top) & (np.abs(u) < SIDE), found, most)
+    found: Real = np.maximum(polynomial_value(c, u), most)
+    return np.where((middle == top) & (np.abs(u) < WINDOW_SIDE), found, most)
 
 
-def zero(y: Real) -> Real:
+def locate_zero(y: Real) -> Real:
     """Where in a window a quantity changes its sign, in steps from its first place; (variants,)."""
-    c, middle = _near(y, np.argmin(np.abs(y), axis=1))
+    c, middle = _fit_windows(y, np.argmin(np.abs(y), axis=1))
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
-        for _ in range(NEWTON):
-            step = value(c, u) / value(c, u, 1)
-            u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -SIDE, SIDE)
+        for _ in range(NEWTON_STEPS):
+            step = polynomial_value(c, u) / polynomial_value(c, u, 1)
+            u = np.clip(u - np.where(np.isfinite(step), step, 0.0), -WINDOW_SIDE, WINDOW_SIDE)
     return middle + u
 
 
-def highest(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
+def highest_value(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
     """The largest value of a curve that may jump or bend sharply: closer and closer about its highest places.
 
     scan: shares of the way at equal steps; closed: the curve goes on after its end as at its beginning.
     """
     y = curve(scan)
     best, step = float(np.nanmax(y)), scan[1] - scan[0]
-    middle = scan[peaks_of(y, RIVALS, closed)]
+    middle = scan[highest_peaks(y, MOST_PEAKS, closed)]
     ends = (middle - step, middle + step) if closed else (np.maximum(middle - step, 0), np.minimum(middle + step, 1))
-    __, lowest = least(lambda shares: np.nan_to_num(-curve(shares), nan=np.inf), *ends)
+    __, lowest = find_minima(lambda shares: np.nan_to_num(-curve(shares), nan=np.inf), *ends)
     return max(best, -float(np.min(lowest)))
 
 
-def peaks_of(y: Real, most: int, closed: bool) -> list[int]:
+def highest_peaks(y: Real, most: int, closed: bool) -> list[int]:
     """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
     before, after = np.roll(y, 1), np.roll(y, -1)
     if not closed:
@@ -239,4 +243,6 @@ def peaks_of(y: Real, most: int, closed: bool) -> list[int]:
     if not found.size:
         return [int(np.argmax(y))]
     found = found[np.argsort(-y[found], kind="stable")][:most]
-    return [int(k) for k in found if not y[k] < np.max(y) - RIVAL * np.ptp(y)]  # some are kept where not all is known
+    return [
+        int(k) for k in found if not y[k] < np.max(y) - LOWEST_PEAK * np.ptp(y)
+    ]  # some are kept where not all is known

@@ -31,7 +31,7 @@ LAST_STEP = 1e-9  # a step below this squares to less than rounding: it was the 
 LAST_STEP_EXTENDED = 1e-20  # of double-doubles, whose steps are found in float64: the next is 1e-16 of this
 LAST_STEP_AFAR = 1e-12  # the last of damped steps from anywhere: the next one is all rounding
 CONVERGED = 1e-6  # a last step, or a residual, above this has not converged
-CLOSED = 1e-9  # residual of a group that is closed, and is not so to half the digits only
+GROUP_CLOSED = 1e-9  # residual of a group that is closed, and is not so to half the digits only
 
 # Crossing of a dead position by a fitted way
 CROSSING_AGREES = 1e-13  # scales of the driver: a place known closer than this is good enough at once
@@ -48,9 +48,11 @@ LIMIT_AGREES = (
 
 # Equal
 SAME_ASSEMBLY = 1e-6  # sizes, rad: two assemblies are the same; found in a dead position they agree to half the digits
-MEET = 1e-4  # sizes, rad: two assemblies this near, both dead, are one
+ASSEMBLIES_MEET = 1e-4  # sizes, rad: two assemblies this near, both dead, are one
 CAME_BACK = 1e-6  # sizes of a group, or of a cycle: what is no farther off after a cycle is back where it was
-SAME_PLACE = 1e-9  # rad, m: places of the driver, and times of strokes, that differ by rounding of a search only
+SAME_DRIVER_POSITION = (
+    1e-9  # rad, m: places of the driver, and times of strokes, that differ by rounding of a search only
+)
 SAME_IN_SKETCH = 1e-9  # sizes of the group, rad: two assemblies that differ by less at a point differ by rounding there
 SAME_SKETCH = 1e-6  # of the farthest point: sketches that differ by no more are of one assembly
 SAME_STATE = 1e-7  # sizes of the group, rad: states on a branch that are this near are the same
@@ -60,7 +62,7 @@ SEAM_OF_EXTREMES = 1e-7  # rad: the same of an extreme, which is found to half t
 CONSTANT_INERTIA = 1e-9  # of a link's largest reduced inertia: a change below that over a cycle is rounding
 SAME_RATIO = 1e-12  # relative: numbers that differ by what arithmetic on a file's numbers rounds (0.1 + 0.2 is not 0.3)
 PARALLEL = 1e-9  # sine: lines that meet under less do not meet
-SAME_PLACES = 1e-9  # of the size: places this near are one, and three this near to a line have no circle
+SAME_POINTS = 1e-9  # of the size: places this near are one, and three this near to a line have no circle
 PITCHES_TOUCH = 1e-6  # of the distance of the axes: pitch circles that miss one another by less touch
 IN_PHASE = 5e-7  # rad: wheels that come round a ring to one place but for less fit, as offsets are rounded
 WHOLE_TEETH = 1e-9  # teeth: a number that arithmetic gave is whole but for rounding
@@ -102,4 +104,4 @@ FRICTION_AGREES = 1e-13  # of the largest reaction: friction and the reactions t
 FRICTION_ROUNDED = 1e-15  # of the largest reaction: a smaller step of Newton's method is rounding
 FRICTION_LOCKS = 1e-9  # of the largest reaction: a last step above this, or a size below minus this, has no solution
 NO_VIOLATION = 1e-12  # of its scale: a smaller violation is none that could be shown
-MET = 1e-9  # relative: a wanted value is met when it is missed by less
+DEMAND_MET = 1e-9  # relative: a wanted value is met when it is missed by less

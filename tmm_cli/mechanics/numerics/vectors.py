@@ -24,7 +24,7 @@ def pi(values: Any) -> Any:
     return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
 
 
-def largest(values: Any) -> float:
+def largest_magnitude(values: Any) -> float:
     """The size of the largest of them; zero where there is none."""
     return float(np.nanmax(np.abs(values), initial=0.0))
 
@@ -49,12 +49,12 @@ def cross(a: Any, b: Any) -> Any:
     return a.real * b.imag - a.imag * b.real
 
 
-def square(a: Any) -> Any:
+def squared_length(a: Any) -> Any:
     """The square of its length."""
     return a.real * a.real + a.imag * a.imag
 
 
-def along(a: Any, amount: Any) -> Any:
+def scaled(a: Any, amount: Any) -> Any:
     """The vector a scaled by a real amount (no complex product, so no spurious rounding)."""
     return a * amount
 
@@ -64,20 +64,20 @@ def unit(angle: Any) -> Any:
     return np.cos(angle) + 1j * np.sin(angle)
 
 
-def settled(values: Any, size: Any) -> Any:
+def zero_within_rounding(values: Any, size: Any) -> Any:
     """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
     values = values if isinstance(values, DoubleDouble) else np.asarray(values)
     if np.iscomplexobj(values):
-        return (settled(values.real, size) + 1j * settled(values.imag, size))[()]
+        return (zero_within_rounding(values.real, size) + 1j * zero_within_rounding(values.imag, size))[()]
     return np.where(np.abs(values) > 2 * CONSTRUCTION_ROUNDINGS * roundoff(values) * size, values, 0.0)[()]
 
 
-def left(a: Any) -> Any:
+def rotated_left(a: Any) -> Any:
     """a turned through +90 degrees."""
     return 1j * a
 
 
-def mapped(
+def map_record(
     change: Callable[..., Any], record: Record, *others: Any, skip: Collection[str] = (), path: str = ""
 ) -> Record:
     """A record like this one with change(path, leaf, *leaves of the others) in the place of each leaf.
@@ -87,7 +87,7 @@ def mapped(
     """
 
     def at(name: str, part: Any, rest: Any) -> Any:
-        return mapped(change, part, *rest, skip=skip, path=name)
+        return map_record(change, part, *rest, skip=skip, path=name)
 
     found: Any
     if is_dataclass(record) and not isinstance(record, type):
@@ -105,17 +105,17 @@ def mapped(
     return whole
 
 
-def leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
+def record_leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
     """Paths and leaves of a record, as `mapped` has them."""
     if is_dataclass(record) and not isinstance(record, type):
         for f in fields(record):
             if f.name not in skip:
-                yield from leaves(getattr(record, f.name), skip, f"{path}.{f.name}" if path else f.name)
+                yield from record_leaves(getattr(record, f.name), skip, f"{path}.{f.name}" if path else f.name)
     elif isinstance(record, Mapping):
         for key, value in record.items():
-            yield from leaves(value, skip, f"{path}.{key}")
+            yield from record_leaves(value, skip, f"{path}.{key}")
     elif isinstance(record, tuple | list):
         for k, value in enumerate(record):
-            yield from leaves(value, skip, f"{path}[{k}]")
+            yield from record_leaves(value, skip, f"{path}[{k}]")
     else:
         yield path, record

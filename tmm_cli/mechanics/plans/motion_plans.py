@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.mechanics.forces import Symbol, other_than, subscript
-from tmm_cli.mechanics.groups import Gear, Rack, axis
+from tmm_cli.mechanics.groups import GearConstraint, RackConstraint, carrier_axis
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.mechanics.numerics import NO_VECTOR
@@ -127,11 +127,13 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
     for mesh in linkage.meshes:
         if mesh.kind == "cam":
             continue
-        one = axis(linkage, mesh.i, mesh.carrier)
+        one = carrier_axis(linkage, mesh.i, mesh.carrier)
         if mesh.kind == "gear":
-            place = Gear(mesh.name, mesh, one, axis(linkage, mesh.j, mesh.carrier)).contact(motion.poses)[0]
+            place = GearConstraint(mesh.name, mesh, one, carrier_axis(linkage, mesh.j, mesh.carrier)).contact(
+                motion.poses
+            )[0]
         else:
-            place = Rack(mesh.name, mesh, linkage.slide(mesh.slide), one).contact(motion.poses)[0]
+            place = RackConstraint(mesh.name, mesh, linkage.slide(mesh.slide), one).contact(motion.poses)[0]
         yield mesh.name, mesh.j if mesh.i == FRAME else mesh.i, complex(np.broadcast_to(place, motion.q.shape)[k])
 
 

@@ -12,20 +12,20 @@ from typing import Literal
 
 from tmm_cli.language import printed
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Linkage
-from tmm_cli.mechanics.structure.graph import Count, Tie, components, count, rigid_sets
+from tmm_cli.mechanics.structure.graph import PebbleCount, Tie, count_freedoms, dependence_components, rigid_sets
 from tmm_cli.mechanics.structure.group import (
-    NOTHING,
+    NO_REDUCTION,
     ROMAN,
     Group,
     Pair,
-    Passive,
+    PairRedundancy,
     Reduction,
     RedundantPair,
     RigidSet,
     group_class,
 )
 
-HIGHER: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
+HIGHER_PAIR_KINDS: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K", "cam": "C"}
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class Structure:
     freedom: int
     under_constrained: tuple[str, ...] = ()
     redundant_pairs: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    passive: tuple[Passive, ...] = ()
+    passive: tuple[PairRedundancy, ...] = ()
     all_groups: tuple[Group, ...] = ()
-    reduction: Reduction = NOTHING
+    reduction: Reduction = NO_REDUCTION
 
     @property
     def redundant(self) -> int:
@@ -201,24 +201,24 @@ def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
     return ", ".join(" -> ".join(" + ".join(titles) for titles in chain) for chain in kept)
 
 
-def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
+def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
     """Structure of a linkage; never fails: what is wrong with it is in the result.
 
     dropped: how many conditions of which tie (by its number) are left out of the count; the groups of the report are
     then still those of all links.
     """
     less = dropped or {}
-    ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(ties_of(linkage))]
-    pins = _pins(linkage)
+    ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(list_ties(linkage))]
+    pins = _list_pins(linkage)
     bodies = tuple(linkage.links)
-    undriven, driven = _counts(bodies, ties, pins, [(d.base, d.link) for d in linkage.drivers])
-    solved = _parts(driven, bodies)
+    undriven, driven = _play_pebble_games(bodies, ties, pins, [(d.base, d.link) for d in linkage.drivers])
+    solved = _list_group_bodies(driven, bodies)
     rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
-    pairs = tuple(_pairs(linkage, rank))
+    pairs = tuple(_iterate_pairs(linkage, rank))
     mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
-    sound = _sound(undriven, driven, linkage)
+    sound = _is_sound(undriven, driven, linkage)
     cranks = {(driver.link,) for driver in linkage.cranks}
-    groups = tuple(_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
+    groups = tuple(_make_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
     order = {name: k for k, name in enumerate(linkage.links)}
     over_held = undriven.redundant_pairs or driven.redundant_pairs
     structure = Structure(
@@ -235,25 +235,25 @@ def analyse(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Struc
     )
     if sound and not less:
         rigid = Reduction(tuple(RigidSet(links) for links in rigid_sets(bodies, ties, pins)))
-        return (reduced(linkage, structure, rigid) or structure) if rigid else structure
+        return (reduce_structure(linkage, structure, rigid) or structure) if rigid else structure
     return structure
 
 
-def reduced(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
+def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
     """The structure with the groups of what a reduction leaves; None where these are not Assur groups.
 
     Groups of all links get the class of the report's groups that they contain.
     """
-    every = list(ties_of(linkage))
+    every = list(list_ties(linkage))
     ties = list(reduction.ties(every))
     tied = {end for tie in ties for end in (tie.a, tie.b)}
-    pins = tuple(pin for pin in _pins(linkage) if pin in tied)
+    pins = tuple(pin for pin in _list_pins(linkage) if pin in tied)
     bodies = reduction.bodies(linkage.links)
     drivers = [(reduction.body(d.base), reduction.body(d.link)) for d in linkage.drivers]
-    undriven, driven = _counts(bodies, ties, pins, drivers)
-    if not _sound(undriven, driven, linkage):
+    undriven, driven = _play_pebble_games(bodies, ties, pins, drivers)
+    if not _is_sound(undriven, driven, linkage):
         return None
-    solved = _parts(driven, bodies)
+    solved = _list_group_bodies(driven, bodies)
     rank = dict.fromkeys(reduction.members(FRAME), -1)
     rank |= {link: k for k, part in enumerate(solved) for body in part for link in reduction.members(body)}
     pairs = tuple(reduction.reduced_pairs(linkage, structure.pairs, rank, ties))
@@ -268,7 +268,9 @@ def reduced(linkage: Linkage, structure: Structure, reduction: Reduction) -> Str
         if left and tie.constraints > 1:
             as_higher.add(pair.name)
     cranks = {(reduction.body(driver.link),) for driver in linkage.cranks}
-    groups = tuple(_group(part, pairs, rank, linkage, reduction, as_higher) for part in solved if part not in cranks)
+    groups = tuple(
+        _make_group(part, pairs, rank, linkage, reduction, as_higher) for part in solved if part not in cranks
+    )
     if any(group.mobility for group in groups):
         return None
     grade = {link: group.group_class for group in groups for link in group.links}
@@ -280,35 +282,38 @@ def reduced(linkage: Linkage, structure: Structure, reduction: Reduction) -> Str
     )
 
 
-def _counts(
+def _play_pebble_games(
     bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
-) -> tuple[Count, Count]:
+) -> tuple[PebbleCount, PebbleCount]:
     """What the pebble game says without the drivers and with them."""
     driving = [Tie("driver", base, link, 1) for base, link in drivers]
-    return count(bodies, FRAME, ties, pins), count(bodies, FRAME, [*ties, *driving], pins)
+    return count_freedoms(bodies, FRAME, ties, pins), count_freedoms(bodies, FRAME, [*ties, *driving], pins)
 
 
-def _parts(driven: Count, bodies: Sequence[str]) -> list[tuple[str, ...]]:
+def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple[str, ...]]:
     """The bodies of each group in solving order, without pins and the frame."""
-    parts = [tuple(body for body in part if body in bodies and body != FRAME) for part in components(driven.depends)]
+    parts = [
+        tuple(body for body in part if body in bodies and body != FRAME)
+        for part in dependence_components(driven.depends)
+    ]
     return [tuple(sorted(part, key=bodies.index)) for part in parts if part]
 
 
-def _sound(undriven: Count, driven: Count, linkage: Linkage) -> bool:
+def _is_sound(undriven: PebbleCount, driven: PebbleCount, linkage: Linkage) -> bool:
     """True if each freedom is driven, and nothing is held twice."""
     held_twice = undriven.redundant_pairs or driven.redundant_pairs
     return undriven.free == len(linkage.drivers) and not held_twice and driven.free == 0
 
 
-def _pins(linkage: Linkage) -> tuple[str, ...]:
-    return tuple(_pin(hinge) for hinge in linkage.hinges if len(hinge.links) > 2 and not hinge.attached_to)
+def _list_pins(linkage: Linkage) -> tuple[str, ...]:
+    return tuple(_pin_name(hinge) for hinge in linkage.hinges if len(hinge.links) > 2 and not hinge.attached_to)
 
 
-def _pin(hinge: Hinge) -> str:
+def _pin_name(hinge: Hinge) -> str:
     return f"pin {hinge.point}"
 
 
-def ties_of(linkage: Linkage) -> Iterable[Tie]:
+def list_ties(linkage: Linkage) -> Iterable[Tie]:
     """Who is joined to whom; a compound hinge through its pin, or as the file attaches its links."""
     for hinge in linkage.hinges:
         if len(hinge.links) == 2:
@@ -316,17 +321,17 @@ def ties_of(linkage: Linkage) -> Iterable[Tie]:
         elif hinge.attached_to:
             yield from (Tie(hinge.point, hinge.attached_to, x, 2) for x in hinge.links if x != hinge.attached_to)
         else:
-            yield from (Tie(hinge.point, _pin(hinge), link, 2) for link in hinge.links)
+            yield from (Tie(hinge.point, _pin_name(hinge), link, 2) for link in hinge.links)
     yield from (Tie(slide.name, slide.carrier, slide.runner, 2) for slide in linkage.slides)
     yield from (Tie(mesh.name, mesh.i, mesh.j, 1) for mesh in linkage.meshes)
 
 
-def pairs_within(linkage: Linkage) -> tuple[Pair, ...]:
+def list_pairs(linkage: Linkage) -> tuple[Pair, ...]:
     """The pairs of a linkage whose solving order is not known."""
-    return tuple(_pairs(linkage, dict.fromkeys(linkage.links, 0)))
+    return tuple(_iterate_pairs(linkage, dict.fromkeys(linkage.links, 0)))
 
 
-def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
+def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
     """Pairs of the linkage; in a compound hinge all links are attached to one of them.
 
     `rank` is the number of a link's group in solving order.
@@ -341,7 +346,7 @@ def _pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
     for slide in linkage.slides:
         yield Pair(slide.name, "P", slide.carrier, slide.runner, slide.point, slide)
     for mesh in linkage.meshes:
-        yield Pair(mesh.name, HIGHER[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
+        yield Pair(mesh.name, HIGHER_PAIR_KINDS[mesh.kind], mesh.i, mesh.j, "", mesh=mesh)
 
 
 def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
@@ -356,12 +361,12 @@ def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) ->
     return (*driven, *connected, *first)[0]
 
 
-def _group(
+def _make_group(
     bodies: tuple[str, ...],
     pairs: tuple[Pair, ...],
     rank: Mapping[str, int],
     linkage: Linkage,
-    reduction: Reduction = NOTHING,
+    reduction: Reduction = NO_REDUCTION,
     as_higher: Collection[str] = (),
 ) -> Group:
     """The group of these bodies. `rank` is the number of a link's group; as_higher: see Group."""

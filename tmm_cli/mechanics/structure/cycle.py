@@ -9,9 +9,9 @@ from fractions import Fraction
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Mesh
 from tmm_cli.mechanics.numerics import SAME_RATIO
 
-DENSE = 361  # places of a curve that is drawn, a turn
-MOST = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
-TEETH = 500  # denominators of ratios that are looked for
+POSITIONS_PER_TURN = 361  # places of a curve that is drawn, a turn
+MOST_TURNS = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
+LARGEST_DENOMINATOR = 500  # denominators of ratios that are looked for
 
 
 def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) -> int | None:
@@ -20,18 +20,18 @@ def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) ->
     rounds: how often links go round in a turn of the driver, as far as that is known; a rocker does not.
     """
     turns = 1
-    for share in _shares(linkage, rounds or {}).values():
-        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
+    for share in _gear_turns(linkage, rounds or {}).values():
+        turns = math.lcm(turns, share.denominator if share is not None else MOST_TURNS + 1)
     lead = linkage.driver
     for driver in linkage.others:
         if driver.kind != "turn" or not lead.rate or driver.acceleration or lead.acceleration:
             return None
         share = _fraction(driver.rate / lead.rate)
-        turns = math.lcm(turns, share.denominator if share is not None else MOST + 1)
-    return turns if turns <= MOST else None
+        turns = math.lcm(turns, share.denominator if share is not None else MOST_TURNS + 1)
+    return turns if turns <= MOST_TURNS else None
 
 
-def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
+def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
     """Turns of each wheel in a turn of the driver, as far as other wheels and the driver tell; None: not in any number.
 
     Links that no wheel turns come round with the driver: their turns are whole, which is all that counts here where
@@ -45,7 +45,7 @@ def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction |
     while gears:
         known = [m for m in gears if m.carrier in found and (m.i in found or m.j in found)]
         if not known:
-            together = _together(gears, found)
+            together = _solve_gear_turns(gears, found)
             if together:
                 found.update(together)
                 continue
@@ -59,12 +59,12 @@ def _shares(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction |
         ratio, carrier = _fraction(mesh.ratio), found[mesh.carrier]
         for one, other, step in ((mesh.i, mesh.j, ratio), (mesh.j, mesh.i, ratio and 1 / ratio)):
             if one in found and other not in found:
-                found[other] = _turned(found[one], carrier, step)
+                found[other] = _mate_turns(found[one], carrier, step)
                 break
     return found
 
 
-def _together(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
+def _solve_gear_turns(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
     """Turns that follow from several pairs of wheels at once, as those of a carrier between its sun and a fixed ring.
 
     Every pair says turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
@@ -77,21 +77,21 @@ def _together(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[s
         row: dict[str, Fraction] = {}
         for link, factor in ((mesh.j, Fraction(1)), (mesh.i, -ratio), (mesh.carrier, ratio - 1)):
             known = found.get(link)
-            _add(row, {link: Fraction(1)} if known is None else {"": known}, factor)
+            _add_multiple(row, {link: Fraction(1)} if known is None else {"": known}, factor)
         for link, by in solved.items():
-            _add(row, by, row.pop(link, Fraction(0)))
+            _add_multiple(row, by, row.pop(link, Fraction(0)))
         first = next((link for link in row if link), None)
         if first is None:
             continue
         share = row.pop(first)
         own = {link: -factor / share for link, factor in row.items()}
         for by in solved.values():
-            _add(by, own, by.pop(first, Fraction(0)))
+            _add_multiple(by, own, by.pop(first, Fraction(0)))
         solved[first] = own
     return {link: by.get("", Fraction(0)) for link, by in solved.items() if not set(by) - {""}}
 
 
-def _add(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
+def _add_multiple(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
     """Adds a multiple of another sum to a sum; what comes to nothing is left out."""
     for link, share in other.items():
         row[link] = row.get(link, Fraction(0)) + factor * share
@@ -99,7 +99,7 @@ def _add(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fracti
             del row[link]
 
 
-def _turned(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:
+def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:
     """Turns of a wheel from those of its partner; where that stands still on the carrier, so does the wheel."""
     if share is None or carrier is None:
         return None
@@ -110,5 +110,5 @@ def _turned(share: Fraction | None, carrier: Fraction | None, step: Fraction | N
 
 def _fraction(ratio: float) -> Fraction | None:
     """The ratio of two whole numbers that it is, if it is one."""
-    near = Fraction(ratio).limit_denominator(TEETH)
+    near = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
     return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None

@@ -38,7 +38,7 @@ class Tie:
 
 
 @dataclass(frozen=True)
-class Count:
+class PebbleCount:
     """What the game found.
 
     free: freedoms left to all bodies together, the root's three excepted. depends: body -> bodies its place depends
@@ -52,7 +52,7 @@ class Count:
     under_constrained: tuple[str, ...]
 
 
-def reach(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
+def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
     """All that can be reached from these nodes, themselves included, in the order in which they are met."""
     seen = dict.fromkeys(starts)
     todo = list(starts)
@@ -116,7 +116,7 @@ class PebbleGame:
             pass
 
 
-def count(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[str] = ()) -> Count:
+def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[str] = ()) -> PebbleCount:
     """Play the game over all ties of the bodies and pins (names of pins are none of the bodies')."""
     bodies, pins = tuple(bodies), frozenset(pins)
     game = PebbleGame(bodies, root, pins)
@@ -124,14 +124,16 @@ def count(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[
     for tie in ties:
         added = [game.add(tie.a, tie.b) for _ in range(tie.constraints)]
         if not all(added):
-            redundant_pairs.append((tie, tuple(b for b in reach(game.out, tie.a, tie.b) if b not in pins)))
+            redundant_pairs.append((tie, tuple(b for b in reachable_nodes(game.out, tie.a, tie.b) if b not in pins)))
     game.settle()
     free = sum(game.pebbles.values()) - FREEDOMS
     under_constrained = tuple(
-        body for body in bodies if body != root and any(game.pebbles[b] for b in reach(game.out, body) if b != root)
+        body
+        for body in bodies
+        if body != root and any(game.pebbles[b] for b in reachable_nodes(game.out, body) if b != root)
     )
     depends = {body: tuple(dict.fromkeys(targets)) for body, targets in game.out.items()}
-    return Count(free, depends, tuple(redundant_pairs), under_constrained)
+    return PebbleCount(free, depends, tuple(redundant_pairs), under_constrained)
 
 
 def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] = ()) -> tuple[tuple[str, ...], ...]:
@@ -155,7 +157,7 @@ def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] =
     return tuple(dict.fromkeys(links for links in together.values() if len(links) > 1))
 
 
-def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
+def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
     """Bodies that depend on one another, part by part, each part after all that it depends on."""
     seen: set[str] = set()
 
@@ -168,7 +170,7 @@ def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]
         if alone:  # the first of its part to be met is the last to be left
             yield parts[body]
 
-    needs = {body: reach(depends, body) for body in depends}
+    needs = {body: reachable_nodes(depends, body) for body in depends}
     parts = {body: tuple(other for other in needs[body] if body in needs[other]) for body in depends}
     for body in depends:
         if body not in seen:
@@ -182,7 +184,7 @@ def components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]
 # contours are short and run through the frame where they can.
 
 
-class Joint(Protocol):
+class AnyPair(Protocol):
     """Whatever joins two links: a planar pair or a pair in space."""
 
     @property
@@ -206,9 +208,9 @@ class Contour:
         return "-".join(map(printed, (*self.links, self.links[0])))
 
 
-def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...]:
+def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Contour, ...]:
     """Independent contours of the links that pairs join to the frame; `links` says in which order they are named."""
-    ways = _ways(pairs)
+    ways = _shortest_paths(pairs)
     rank = {link: number for number, link in enumerate((FRAME, *links))}
     found = []
     for pair in pairs:
@@ -218,7 +220,7 @@ def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...
         while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0]:
             one.pop()
             other.pop()
-        if (rank[_second(one, other)], len(one) == 1) > (rank[_second(other, one)], len(other) == 1):
+        if (rank[_second_link(one, other)], len(one) == 1) > (rank[_second_link(other, one)], len(other) == 1):
             one, other = other, one
         # down the one path from the link both have in common, over the pair, back up the other
         names = [link for link, _ in reversed(one)] + [link for link, _ in other[:-1]]
@@ -227,7 +229,7 @@ def contours(pairs: Sequence[Joint], links: Iterable[str]) -> tuple[Contour, ...
     return tuple(sorted(found, key=lambda c: [rank[link] for link in c.links]))
 
 
-def classification(structure: Structure) -> tuple[str, ...]:
+def classify_linkage(structure: Structure) -> tuple[str, ...]:
     """Words for a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
 
     Elementary: the driver alone; simple: one group on it; complex: two groups or more. Combined: some of its groups are
@@ -250,17 +252,17 @@ def is_dependent(contour: Contour, structure: Structure) -> bool:
     return not structure.reduction.removed.isdisjoint(contour.links) or not pairs.isdisjoint(contour.pairs)
 
 
-def reached(pairs: Sequence[Joint]) -> set[str]:
+def links_joined_to_frame(pairs: Sequence[AnyPair]) -> set[str]:
     """The links that some way of pairs joins to the frame, the frame among them."""
-    return set(_ways(pairs))
+    return set(_shortest_paths(pairs))
 
 
-Way = list[tuple[str, Joint | None]]  # links on the way to the frame, each with the pair that leads on
+PathToFrame = list[tuple[str, AnyPair | None]]  # links on the way to the frame, each with the pair that leads on
 
 
-def _ways(pairs: Sequence[Joint]) -> dict[str, Way]:
+def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
     """The shortest way to the frame of every link that has one."""
-    ways: dict[str, Way] = {FRAME: [(FRAME, None)]}
+    ways: dict[str, PathToFrame] = {FRAME: [(FRAME, None)]}
     todo = [FRAME]
     for link in todo:  # grows while it is walked: nearest links first
         for pair in pairs:
@@ -272,6 +274,6 @@ def _ways(pairs: Sequence[Joint]) -> dict[str, Way]:
     return ways
 
 
-def _second(path: Way, other: Way) -> str:
+def _second_link(path: PathToFrame, other: PathToFrame) -> str:
     """The link after the common one, going down the path and then up the other."""
     return path[-2][0] if len(path) > 1 else other[0][0]

@@ -191,15 +191,21 @@ class Reduction:
         return next((pair for pair in here if ends & {self.body(pair.i), self.body(pair.j)}), None)
 
 
-NOTHING = Reduction()
+NO_REDUCTION = Reduction()
 
 
 ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 
 
-CODES = {"R": "1в", "P": "1п"}  # K. S. Alyushin: freedoms, then the first letter of "rotational" or "translational"
-DYADS = {"RRR": 1, "RRP": 2, "RPR": 3, "PRP": 4, "RPP": 5}  # types of a class II group with two links
-LOWER = ("R", "P")  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
+PAIR_CODES = {
+    "R": "1в",
+    "P": "1п",
+}  # K. S. Alyushin: freedoms, then the first letter of "rotational" or "translational"
+DYAD_NUMBERS = {"RRR": 1, "RRP": 2, "RPR": 3, "PRP": 4, "RPP": 5}  # types of a class II group with two links
+LOWER_PAIR_KINDS = (
+    "R",
+    "P",
+)  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
 
 
 @dataclass(frozen=True)
@@ -220,7 +226,7 @@ class Pair:
     @property
     def lower(self) -> bool:
         """Whether it leaves one freedom only."""
-        return self.kind in LOWER
+        return self.kind in LOWER_PAIR_KINDS
 
     @property
     def freedoms(self) -> int:
@@ -235,7 +241,7 @@ class Pair:
     @property
     def code(self) -> str:
         """1в for a revolute pair, 1п for a prismatic one; empty for a higher pair, which has no code."""
-        return CODES.get(self.kind, "")
+        return PAIR_CODES.get(self.kind, "")
 
     def other(self, link: str) -> str:
         """The link at the other side."""
@@ -315,7 +321,7 @@ class Group:
     @property
     def type_number(self) -> int | None:
         """The number 1 to 5 of the type of a class II group of two links; None for any other group."""
-        return DYADS.get(self.type)
+        return DYAD_NUMBERS.get(self.type)
 
     @property
     def letters(self) -> str:
@@ -334,7 +340,7 @@ class Group:
 
 
 @dataclass(frozen=True)
-class Passive:
+class PairRedundancy:
     """Passive constraints in a pair: its conditions that only repeat others, by special dimensions.
 
     links: the two that the pair joins, the passive one (whose place follows without it) last. among: all links that are

@@ -12,19 +12,19 @@ from itertools import combinations, product
 import numpy as np
 
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import SAME_PLACES
+from tmm_cli.mechanics.numerics import SAME_POINTS
 from tmm_cli.mechanics.structure.assur import Structure
-from tmm_cli.mechanics.structure.graph import Contour, contours
+from tmm_cli.mechanics.structure.graph import Contour, find_contours
 from tmm_cli.mechanics.structure.group import Group, Pair
 
 
-def roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
+def link_roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
     """The role of each moving link; `turns` tells whether a link turns through 360 degrees, and is asked only then."""
-    return {name: _role(linkage, name, turns) for name in linkage.moving}
+    return {name: _link_role(linkage, name, turns) for name in linkage.moving}
 
 
-def _role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str:
-    special = _higher(linkage, name) or _cylinder(linkage, name)
+def _link_role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str:
+    special = _higher_pair_role(linkage, name) or _cylinder_role(linkage, name)
     if special is not None:
         return special
     slides = [s for s in linkage.slides if name in (s.carrier, s.runner)]
@@ -46,7 +46,7 @@ def _role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str:
     return "coupler"
 
 
-def _higher(linkage: Linkage, name: str) -> str | None:
+def _higher_pair_role(linkage: Linkage, name: str) -> str | None:
     """What a link is called for its teeth or its cam; a wheel is a planet where its axis moves."""
     for mesh in linkage.meshes:
         if mesh.kind == "cam" and name in (mesh.i, mesh.j):
@@ -58,7 +58,7 @@ def _higher(linkage: Linkage, name: str) -> str | None:
     return "carrier" if any(mesh.carrier == name for mesh in linkage.meshes) else None
 
 
-def _cylinder(linkage: Linkage, name: str) -> str | None:
+def _cylinder_role(linkage: Linkage, name: str) -> str | None:
     """A cylinder that swings, and the piston that is driven out of it."""
     driven = {d.joint for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
     for slide in linkage.slides:
@@ -113,8 +113,8 @@ def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
             arms.append((linkage.local(name, hinge.point), linkage.local(FRAME, pivot), abs(arm)))
     size = max((float(np.max(arm)) for __, __, arm in arms), default=0.0)
     return any(
-        bool(np.all(np.abs(arm - other_arm) <= SAME_PLACES * size))
-        and bool(np.all(np.abs(np.abs(end - other_end) - np.abs(pivot - other_pivot)) <= SAME_PLACES * size))
+        bool(np.all(np.abs(arm - other_arm) <= SAME_POINTS * size))
+        and bool(np.all(np.abs(np.abs(end - other_end) - np.abs(pivot - other_pivot)) <= SAME_POINTS * size))
         for (end, pivot, arm), (other_end, other_pivot, other_arm) in combinations(arms, 2)
     )
 
@@ -147,7 +147,8 @@ def contour_scheme(contour: Contour, structure: Structure) -> str | None:
 def basic_schemes(structure: Structure) -> dict[str, str]:
     """The basic schemes of all contours of four links with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
     named = (
-        (contour.title, contour_scheme(contour, structure)) for contour in contours(structure.pairs, structure.links)
+        (contour.title, contour_scheme(contour, structure))
+        for contour in find_contours(structure.pairs, structure.links)
     )
     return {title: scheme for title, scheme in named if scheme}
 
@@ -160,7 +161,7 @@ def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
     """
     if len(structure.links) != 5 or len(structure.pairs) != 7 or structure.higher or structure.reduction:
         return ()
-    names = (_six_bar(pairs) for pairs in _attachments(structure.pairs))
+    names = (_six_bar_name(pairs) for pairs in _attachments(structure.pairs))
     return tuple(sorted({name for name in names if name}))
 
 
@@ -178,7 +179,7 @@ def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]
         yield tuple(pair for star in chosen for pair in star)
 
 
-def _six_bar(pairs: tuple[tuple[str, str], ...]) -> str | None:
+def _six_bar_name(pairs: tuple[tuple[str, str], ...]) -> str | None:
     """The name of a six-link chain with two ternary links on a frame; None for other chains."""
     degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
     ternary = {link for link in degree if degree[link] == 3}

@@ -13,10 +13,10 @@ from typing import Any
 
 from tmm_cli.language import N_
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.structure.graph import Contour, contours
+from tmm_cli.mechanics.structure.graph import Contour, find_contours
 
 SPACE = 6  # freedoms of a free link
-KINDS: dict[str, int] = {  # of pairs, in the words of a file, by which they are translated too; their freedoms
+PAIR_FREEDOMS: dict[str, int] = {  # of pairs, in the words of a file, by which they are translated too; their freedoms
     N_("turning"): 1,
     N_("sliding"): 1,
     N_("screw"): 1,
@@ -31,8 +31,8 @@ KINDS: dict[str, int] = {  # of pairs, in the words of a file, by which they are
 }
 TELESCOPIC = {"sliding", "screw", "cylindrical"}
 BALL_OR_PLATE = {"spherical", "planar"}
-AXLES = {"turning": 1, "cylindrical": 2}  # of rollers, with the freedoms that a roller on it has by itself
-CONTACTS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  # of rollers
+AXLE_FREEDOMS = {"turning": 1, "cylindrical": 2}  # of rollers, with the freedoms that a roller on it has by itself
+CONTACT_PAIRS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  # of rollers
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class LocalFreedom:
 
 
 @dataclass(frozen=True)
-class Findings:
+class ChainCount:
     """What the count says of a chain.
 
     local: the local freedoms that follow from the kinds of pairs; given_local: those that were told instead (a
@@ -186,21 +186,21 @@ class Findings:
         return "mixed" if self.branches else "closed"
 
 
-def examine(
+def count_chain(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
-) -> Findings:
+) -> ChainCount:
     """Everything that can be counted of a chain."""
-    found = contours(chain.pairs, chain.links)
+    found = find_contours(chain.pairs, chain.links)
     closed = {link for contour in found for link in contour.links}
     certain = local_freedoms(chain)
     spare = chain.mobility - sum(part.freedoms for part in certain) - (1 if wanted is None else wanted)
-    pistons = [p for p in pistons_on_balls(chain) if closed.issuperset(p.links) and not _shared(p, certain)]
+    pistons = [p for p in pistons_on_balls(chain) if closed.issuperset(p.links) and not _shares_links(p, certain)]
     order = {link: number for number, link in enumerate(chain.links)}
     local = sorted((*certain, *pistons[: max(spare, 0)]), key=lambda part: order[part.links[0]])
-    return Findings(chain, found, tuple(local), given_local, wanted, output)
+    return ChainCount(chain, found, tuple(local), given_local, wanted, output)
 
 
-def _shared(part: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
+def _shares_links(part: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
     return any({*part.links} & {*other.links} for other in others)
 
 
@@ -234,10 +234,10 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
         touching = list(dict.fromkeys(p for link in links for p in around[link]))
         inner = [p for p in touching if p.i in links and p.j in links]
         ends = [p for p in touching if p not in inner]
-        freedoms = _certain(inner, ends)
+        freedoms = _certain_freedoms(inner, ends)
         if freedoms > 0 and len({other for p in ends for other in (p.i, p.j) if other not in links}) > 1:
             found.append(LocalFreedom(links, freedoms, tuple(ends)))
-    rollers = [part for part in _rollers(chain) if not _shared(part, found)]
+    rollers = [part for part in _rollers(chain) if not _shares_links(part, found)]
     return (*found, *rollers)
 
 
@@ -246,14 +246,14 @@ def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
     contacts: dict[str, LocalFreedom] = {}
     for link in chain.links:
         ends = chain.around(link)
-        axles = [p for p in ends if p.kind in AXLES and FRAME not in (p.i, p.j)]
-        contact = [p for p in ends if p.kind in CONTACTS]
+        axles = [p for p in ends if p.kind in AXLE_FREEDOMS and FRAME not in (p.i, p.j)]
+        contact = [p for p in ends if p.kind in CONTACT_PAIRS]
         if len(ends) == 2 and len(axles) == len(contact) == 1 and axles[0].other(link) != contact[0].other(link):
-            contacts[contact[0].name] = LocalFreedom((link,), AXLES[axles[0].kind], ends)
+            contacts[contact[0].name] = LocalFreedom((link,), AXLE_FREEDOMS[axles[0].kind], ends)
     return contacts.values()
 
 
-def _certain(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
+def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
     """Freedoms of parts in series, or of one link, with all neighbours held."""
     if len(ends) < 2:
         return 0  # the open end of a chain: what it does is not local
@@ -287,4 +287,4 @@ class ChainResults:
     """What was counted of a chain; it has no dimensions, so nothing else is computed. problem: as in Results."""
 
     problem: Any
-    chain: Findings
+    chain: ChainCount

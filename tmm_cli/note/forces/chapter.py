@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.language import _, filled
 from tmm_cli.mechanics.forces import Lettered, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
-from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest, without_rounding
+from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest_magnitude, without_rounding
 from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
 from tmm_cli.note.forces import lever, loads, sections
 from tmm_cli.note.forces.equations import MU
@@ -263,6 +263,6 @@ def balancing(subject: Subject) -> Iterable[Block]:
 
 def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
     """Values of all positions; a dash where it cannot move."""
-    values = without_rounding(column, largest(column))
+    values = without_rounding(column, largest_magnitude(column))
     there = np.isfinite(values) & subject.motion.moving
     return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]

@@ -9,9 +9,9 @@ import numpy as np
 from tmm_cli.drawing.paper import SheetPicture
 from tmm_cli.language import _, symbol
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.mechanics.kinematics import Strokes, Travel
+from tmm_cli.mechanics.kinematics import OutputTravel, Strokes
 from tmm_cli.mechanics.linkage import FRAME, Driver
-from tmm_cli.mechanics.numerics import NO_VECTOR, Real, largest, without_rounding
+from tmm_cli.mechanics.numerics import NO_VECTOR, Real, largest_magnitude, without_rounding
 from tmm_cli.mechanics.plans import Along, Step, steps
 from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Ref, Rows, listed, said, tabled
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
@@ -186,7 +186,7 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     yield Found(Symbol("k"), ratio, strokes.k)
 
 
-def _travel(subject: Subject, travel: Travel) -> Iterable[Block]:
+def _travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
     slides = travel.kind == "slide"
     ends = (travel.low, travel.high)
     low, high = (f"{subject.text(end)} {_('m')}" if slides else f"{subject.text(_degrees(end))}°" for end in ends)
@@ -230,7 +230,7 @@ def tables(subject: Subject) -> Iterable[Block]:
         units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
         columns = []
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
-            own = without_rounding(values, largest(values))
+            own = without_rounding(values, largest_magnitude(values))
             columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
         caption = _("Motion of the output, {output}").format(output=output(subject, link))
         text = _("The motion of the output in all positions is given in table {table}.")
@@ -265,12 +265,12 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
     """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
     motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
-    most = max(map(largest, every.values()), default=0.0)
+    most = max(map(largest_magnitude, every.values()), default=0.0)
     together: list[tuple[list[str], Real]] = []
     for link, values in every.items():
-        if not largest(values) > NO_VECTOR * most:
+        if not largest_magnitude(values) > NO_VECTOR * most:
             continue
-        own = next((links for links, one in together if largest(values - one) <= NO_VECTOR * most), None)
+        own = next((links for links, one in together if largest_magnitude(values - one) <= NO_VECTOR * most), None)
         if own is None:
             together.append(([link], without_rounding(values, most)))
         else:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.mechanics.groups import axis
+from tmm_cli.mechanics.groups import carrier_axis
 from tmm_cli.mechanics.linkage import FRAME, Mesh
 from tmm_cli.mechanics.plans import Along, OnGuide, Ratio, Step
 from tmm_cli.note.blocks import Block, Equation, said
@@ -63,7 +63,7 @@ def _less(one: Expression | None, other: Expression | None) -> Expression | None
 def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     """The ratio of the wheels while their carrier rests."""
     linkage = here.motion.linkage
-    a, b = (complex(axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
+    a, b = (complex(carrier_axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
     radii = Leaf(Symbol("r", mesh.i), abs(pitch - a)) / Leaf(Symbol("r", mesh.j), abs(pitch - b))
     carried = _turning(here, mesh.carrier, "ω") is not None

@@ -12,7 +12,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import FRAME, Driver, Link, Request, Sketch, SpeedTable
-from tmm_cli.mechanics.numerics import SAME_PLACE, SAME_RATIO, Table, rounded
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SAME_RATIO, InterpolationTable, to_float
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -22,7 +22,7 @@ from tmm_cli.mechanics.quantities import (
     SPEED,
     Dimension,
 )
-from tmm_cli.mechanics.structure import MOST
+from tmm_cli.mechanics.structure import MOST_TURNS
 from tmm_cli.problem import schema
 from tmm_cli.problem.blocks.links import LinksAndPairs
 from tmm_cli.problem.errors import Path, ProblemError, quote, unknown_position_error
@@ -47,9 +47,9 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     if not any(speeds):
         raise ProblemError(_("the driver stands still in all rows"), path=path, key=True)
     closed = _is_closed(section, "speed", angles, speeds, turns)
-    squares = Table(angles, tuple(speed * speed for speed in speeds), keys.speed.between, closed)
+    squares = InterpolationTable(angles, tuple(speed * speed for speed in speeds), keys.speed.between, closed)
     row, least = _find_least(squares)
-    if least < -ROUNDING_OF_REST * float(rounded(max(speeds))) ** 2:
+    if least < -ROUNDING_OF_REST * float(to_float(max(speeds))) ** 2:
         below = _("between this row and the next the smooth curve of squares of speeds goes below zero")
         found, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows there")
         raise ProblemError(below, path=(*path, row, 0), found=found, allowed=allowed)
@@ -59,7 +59,7 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     closed_too = _is_closed(section, "acceleration", angles, gains, turns)
     if closed_too != closed or angles[0] > squares.arguments[0] or angles[-1] < squares.arguments[-1]:
         raise section.refusal("acceleration", _("accelerations are given over the same angles as speeds"), at_key=True)
-    return SpeedTable(squares, Table(angles, gains, keys.acceleration.between, closed_too))
+    return SpeedTable(squares, InterpolationTable(angles, gains, keys.acceleration.between, closed_too))
 
 
 def _mean_speed(section: FileSection) -> float:
@@ -79,12 +79,12 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
     table, path, units = getattr(section.keys, key).table, (*section.path, key, "table"), section.values.units
     cycle = math.tau * turns
     end = units.format_value(float(angles[0]) + cycle, ANGLE)
-    beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_PLACE)
+    beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_DRIVER_POSITION)
     if (row := next(iter(beyond), None)) is not None:
         longer = _("at most {end}; a longer cycle is told by cycle: {turns} turns").format(end=end, turns=turns + 1)
         never = _("this row is never reached: it is more than a cycle after the first one")
         raise ProblemError(never, path=(*path, row, 0), found=quote(table[row][0]), allowed=longer)
-    if angles[-1] - angles[0] < cycle - SAME_PLACE:
+    if angles[-1] - angles[0] < cycle - SAME_DRIVER_POSITION:
         return False
     if abs(values[-1] - values[0]) > SAME_RATIO * max(abs(value) for value in values):
         raise ProblemError(
@@ -96,10 +96,10 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
     return True
 
 
-def _find_least(table: Table) -> tuple[int, float]:
+def _find_least(table: InterpolationTable) -> tuple[int, float]:
     """After which row a table is least between rows, and how little it is there."""
-    rows = np.array([float(rounded(row)) for row in table.arguments])
-    found = rounded(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
+    rows = np.array([float(to_float(row)) for row in table.arguments])
+    found = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
     row = int(np.argmin(np.min(found, axis=1)))
     return row, float(np.min(found))
 
@@ -217,12 +217,12 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
         )
     turns = values.number(shape.cycle, ANGLE, ("cycle",)) / (2 * cmath.pi)
     whole = round(float(turns))
-    if not 1 <= whole <= MOST or abs(turns - whole) > SAME_PLACE:
+    if not 1 <= whole <= MOST_TURNS or abs(turns - whole) > SAME_DRIVER_POSITION:
         raise ProblemError(
             _("a cycle is a whole number of turns"),
             path=("cycle",),
             found=quote(shape.cycle),
-            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST),
+            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST_TURNS),
         )
     return whole
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.linkage import FRAME, Hinge, Link, Linkage, Slide, hinged
+from tmm_cli.mechanics.linkage import FRAME, Hinge, Link, Linkage, Slide, common_hinge
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import schema
 from tmm_cli.problem.errors import Path, ProblemError, nearest_name, quote, to_latin, unknown_name_error
 from tmm_cli.problem.values import FileSection, ValueReader, check_name, make_complex, unit_vector, vector_angle
@@ -28,7 +28,7 @@ class LinksAndPairs:
 
     def hinge(self, link: str, base: str) -> str | None:
         """The point in which two links are hinged."""
-        return hinged(self.hinges, link, base)
+        return common_hinge(self.hinges, link, base)
 
     def slide(self, link: str, base: str) -> Slide | None:
         """The sliding pair of two links."""
@@ -104,7 +104,7 @@ def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
         for to in ("", link)
     )
     driven = [{d.base, d.link} for d in linkage.drivers if d.kind == "turn" and d.joint == hinge.point]
-    groups = [{frozenset(group.links) for group in analyse(changed).groups} for changed in (usual, attached)]
+    groups = [{frozenset(group.links) for group in analyse_structure(changed).groups} for changed in (usual, attached)]
     return groups[0] == groups[1] and all(link in ends for ends in driven)
 
 

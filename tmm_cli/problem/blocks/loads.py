@@ -14,7 +14,7 @@ from pydantic_core import PydanticKnownError
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import Link, Linkage, Load as LoadRecord, LoadTable
-from tmm_cli.mechanics.numerics import SAME_PLACE, SAME_RATIO, pi, square
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SAME_RATIO, pi, squared_length
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
@@ -28,7 +28,7 @@ from tmm_cli.mechanics.quantities import (
     PRESSURE,
     Dimension,
 )
-from tmm_cli.mechanics.structure import analyse, output_link
+from tmm_cli.mechanics.structure import analyse_structure, output_link
 from tmm_cli.problem.errors import Path, ProblemError, quote
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value, checked_vector
 from tmm_cli.problem.values import FileSection, ValueReader, check_name, make_complex, unit_vector
@@ -211,7 +211,7 @@ def _add_point_masses(link: Link, section: FileSection) -> Link:
     mass = sum(m for m, __ in bodies)
     centre = sum(m * at for m, at in bodies) / mass
     return replace(
-        link, mass=mass, centre=centre, inertia=link.inertia + sum(m * square(at - centre) for m, at in bodies)
+        link, mass=mass, centre=centre, inertia=link.inertia + sum(m * squared_length(at - centre) for m, at in bodies)
     )
 
 
@@ -219,7 +219,7 @@ def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: File
     """S3 is the centre of mass of link 3 in tables, plans and formulas; a point of this name is there too."""
     point, own = f"S{name}", links[name]
     of = [link for link in links if point in links[link].points]
-    if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_PLACE):
+    if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_DRIVER_POSITION):
         raise section.refusal(
             "centre",
             _("this centre of mass is called {point}, and so is another point").format(point=point),
@@ -299,7 +299,7 @@ def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) 
         link = section.values.known_name(named[2] or named[3], linkage.moving, section.at(key), "moving link")
     if not link:
         return ""
-    output = output_link(linkage, analyse(linkage).groups)
+    output = output_link(linkage, analyse_structure(linkage).groups)
     is_output = output is not None and (link == output or (not named and link == linkage.output_carrier(output)))
     return "" if is_output else link
 
@@ -376,7 +376,7 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
     )
     end = section.values.units.format_value(cycle, ANGLE)
     for k, place in enumerate((low, high)):
-        if not -SAME_PLACE <= place + cycle <= 2 * cycle + SAME_PLACE:
+        if not -SAME_DRIVER_POSITION <= place + cycle <= 2 * cycle + SAME_DRIVER_POSITION:
             raise ProblemError(
                 _("the crank does not come to this angle in its cycle"),
                 path=(*section.path, "when", k),
@@ -386,7 +386,7 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
                 ),
             )
     length = (high - low) % cycle
-    if length < SAME_PLACE or cycle - length < SAME_PLACE:
+    if length < SAME_DRIVER_POSITION or cycle - length < SAME_DRIVER_POSITION:
         raise section.refusal(
             "when",
             _("between these two angles there is nothing, or all"),
@@ -428,7 +428,7 @@ def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded
 
 def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
     """The dimension of the stroke of a link, or of the main output if it is empty: an angle if the link swings."""
-    link = stroke_link or output_link(linkage, analyse(linkage).groups)
+    link = stroke_link or output_link(linkage, analyse_structure(linkage).groups)
     return ANGLE if link is None or linkage.output_swings(link) else LENGTH
 
 
@@ -447,4 +447,4 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
 def _is_whole_turns(way: float) -> bool:
     """Whether a table by the crank ends where it begins."""
     turns = float(way) / (2 * np.pi)
-    return abs(turns - round(turns)) * 2 * np.pi < SAME_PLACE
+    return abs(turns - round(turns)) * 2 * np.pi < SAME_DRIVER_POSITION

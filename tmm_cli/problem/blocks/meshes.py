@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.groups import CamLaw, Piece
+from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
 from tmm_cli.mechanics.linkage import FRAME, Mesh
 from tmm_cli.mechanics.numerics import IN_PHASE, PITCHES_TOUCH, WHOLE_TEETH, cross, unit
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER
@@ -274,7 +274,7 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
         _axis_on_carrier(follower, FRAME, members, (*section.path, "follower"))
     want = ANGLE if slide is None else LENGTH
     sections = [FileSection(piece, (*section.path, "law", k), section.values) for k, piece in enumerate(keys.law)]
-    pieces = tuple(Piece(p.positive("over", ANGLE), p.number("rise", want), p.keys.law) for p in sections)
+    pieces = tuple(CamLawPiece(p.positive("over", ANGLE), p.number("rise", want), p.keys.law) for p in sections)
     turn, rise = sum(p.over for p in pieces), sum(p.rise for p in pieces)
     if abs(turn - 2 * math.pi) > 1e-9:
         found = f"{math.degrees(turn):.6g} deg"

@@ -21,7 +21,7 @@ from tmm_cli.mechanics.quantities import (
     TORSION,
     TORSION_DAMPING,
 )
-from tmm_cli.mechanics.structure import analyse
+from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value
 from tmm_cli.problem.values import FileSection, ValueReader, check_name
 
@@ -127,7 +127,7 @@ def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -
         common.positive("coefficient", NUMBER, zero=True),
         common.positive("radius", LENGTH, zero=True),
     )
-    pairs = {p.name: p for p in analyse(linkage).pairs if p.lower}
+    pairs = {p.name: p for p in analyse_structure(linkage).pairs if p.lower}
     own = {name: FileSection(one, ("friction", "pairs", name), values) for name, one in keys.pairs.items()}
     for name, section in own.items():
         values.known_name(name, pairs, section.path, "turning or sliding pair", key=True)

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics import SAME_PLACES, least
+from tmm_cli.mechanics.numerics import SAME_POINTS, find_minima
 from tmm_cli.synthesis.coupler_positions.burmester import (
     SIDES,
     CouplerPoses,
@@ -181,9 +181,9 @@ def _refine_best(
     def of_best(x: Any) -> tuple[Any, Any]:
         """The best places of DC for places of AB, those of all starts again and again; how bad they are."""
         again = len(x) // len(kept)
-        return least(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
+        return find_minima(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
 
-    x, bad = least(lambda x: of_best(x)[1], low, high)
+    x, bad = find_minima(lambda x: of_best(x)[1], low, high)
     return x, of_best(x)[0], -bad
 
 
@@ -214,7 +214,7 @@ NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 
 def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
     """Dyads AB and DC, and what they are worth. Raises Infeasible."""
     one, other = solve_both_dyads(task)
-    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_PLACES * task.size:
+    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_POINTS * task.size:
         raise Infeasible(_given_key(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
     mark = rate_guidance(task.poses, one, other)
     if mark.defect and not task.keep:
@@ -251,11 +251,11 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     point = name[1] if pin_given else name[0]
     given = side.pin if pin_given else side.pivot
     places = poses.on_frame(given) if pin_given else poses.in_plane(given)
-    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_PLACES * task.size:
+    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_POINTS * task.size:
         raise Infeasible(point, _(POLE_REASON).format(point=point))
     if len(places) == 3:
         found = circle_centre(places)
-        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_PLACES:
+        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_POINTS:
             reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
             raise Infeasible(point, reason.format(point=point))
     else:
@@ -297,7 +297,7 @@ def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     step, found = grid[1] - grid[0], []
     for branch in (0, 1):
         turn = float(grid[int(np.argmin(away(grid, branch)))])
-        turn, distance = least(partial(away, branch=branch), turn - step, turn + step)
+        turn, distance = find_minima(partial(away, branch=branch), turn - step, turn + step)
         found.append((distance, turn, branch))
     distance, turn, branch = min(found)
     if not np.isfinite(distance):
@@ -310,7 +310,7 @@ def are_sensible(task: CouplerPositionsTask, found: Dyads) -> Any:
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
         length = np.abs(task.poses.on_frame(found.pin)[..., 0] - found.pivot)
-        return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_PLACES * task.size)
+        return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_POINTS * task.size)
 
 
 def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
@@ -347,7 +347,7 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     if not (np.isfinite(radius) and radius < FAR * task.size):
         reason = _("the coupler does not turn, and its places lie on a line: links would be infinitely long")
         raise Infeasible("positions", reason, search=False)
-    if np.max(np.abs(np.abs(arms) - radius)) > SAME_PLACES * radius:
+    if np.max(np.abs(np.abs(arms) - radius)) > SAME_POINTS * radius:
         reason = _(
             "the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
             "through the others"
@@ -355,7 +355,7 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
         raise Infeasible(("positions", 3), reason, search=False)
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():
-        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_PLACES:
+        if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_POINTS:
             reason = _("the coupler does not turn: both links turn as its places do on their circle")
             raise Infeasible(f"{name}_turn", reason, (turn, "angle", 0))
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)

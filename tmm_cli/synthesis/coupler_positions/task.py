@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from tmm_cli.language import N_, Phrase, _
-from tmm_cli.mechanics.numerics import SAME_POSITION, settled
+from tmm_cli.mechanics.numerics import SAME_POSITION, zero_within_rounding
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, make_complex
 from tmm_cli.synthesis import four_bar
@@ -232,9 +232,9 @@ def _parameter_values(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> d
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
     a, d = one.pivot, other.pivot
     size = task.size + np.max(np.abs(np.asarray(task.places))) + np.abs(a) + np.abs(d)
-    a, b, c, d = (settled(x, size) for x in (a, b, c, d))
+    a, b, c, d = (zero_within_rounding(x, size) for x in (a, b, c, d))
     span = other.pin - one.pin
-    p = settled(-one.pin * np.conj(span) / np.abs(span), size)
+    p = zero_within_rounding(-one.pin * np.conj(span) / np.abs(span), size)
     found = {"Ax": a.real, "Ay": a.imag, "Dx": d.real, "Dy": d.imag, "Px": p.real, "Py": p.imag}
     found |= {"l1": np.abs(b - a), "l2": np.abs(span), "l3": np.abs(c - d), "l4": np.abs(d - a)}
     return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}

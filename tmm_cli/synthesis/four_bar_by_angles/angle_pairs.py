@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _, translated
-from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, least
+from tmm_cli.mechanics.numerics import DEAD_COSINE_DOUBLE, PI, find_minima
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest_name, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
@@ -243,7 +243,7 @@ def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
     best = RATIOS[k]
     low, high = (RATIOS[min(max(k + step, 0), len(RATIOS) - 1)] for step in (-1, 1))
     if low * high > 0:
-        place, value = least(badness, low, high)
+        place, value = find_minima(badness, low, high)
         best = place if value <= values[k] else best
     return four_bars_of_ratios(task, np.array([best]))
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _
-from tmm_cli.mechanics.numerics import least, settled
+from tmm_cli.mechanics.numerics import find_minima, zero_within_rounding
 from tmm_cli.synthesis import four_bar
 from tmm_cli.synthesis.construction import (
     Arc,
@@ -56,7 +56,7 @@ def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> 
     phi = _scan_angles(function)
     size = np.abs(error(phi))
     inner = (size[1:-1] >= size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > NEAR * np.max(size))
-    peaks = [least(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
+    peaks = [find_minima(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
     places = np.array([place for place, __ in peaks])
     return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
 
@@ -282,7 +282,7 @@ def _found_values(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality
     numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
     first = task.psi[0] + (output_errors(one, task)[0] if task.approximate else 0.0)
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
-    numbers |= {key: settled(angle, np.pi) for key, angle in angles.items()}
+    numbers |= {key: zero_within_rounding(angle, np.pi) for key, angle in angles.items()}
     return [
         *(NamedValue(key, float(numbers[key]), *what) for key, what in FOUND.items()),
         NamedValue("", mark.least, "angle", N_("least transmission angle over the range")),

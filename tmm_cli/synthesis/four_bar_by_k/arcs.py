@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.mechanics.numerics import settled, unit
+from tmm_cli.mechanics.numerics import unit, zero_within_rounding
 from tmm_cli.synthesis.four_bar import cosine_bcd as cosine_of
 from tmm_cli.synthesis.measures import theta_of
 
@@ -112,7 +112,7 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
     middle = (np.asarray(task.psi1) + task.psi2) / 2
     frame = unit(middle)
     a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
-    a = settled(task.support + a, l4 + np.abs(task.support))
+    a = zero_within_rounding(task.support + a, l4 + np.abs(task.support))
     return FourBarByKSolution(
         w,
         side,

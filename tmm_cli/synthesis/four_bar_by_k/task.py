@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from tmm_cli.language import N_, _
-from tmm_cli.mechanics.numerics import find_roots, settled, unit
+from tmm_cli.mechanics.numerics import find_roots, unit, zero_within_rounding
 from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector
 from tmm_cli.synthesis.blocks import TaskBlock, read_numbers
@@ -297,7 +297,7 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
         reason = _("the nearest place of the admissible arcs is an end of them, where the rocker is dead")
         raise Infeasible("near", reason)
     f = four_bar_at(centred, w, side)
-    return replace(f, a=settled(task.support + f.a, f.l4 + np.abs(task.support)))
+    return replace(f, a=zero_within_rounding(task.support + f.a, f.l4 + np.abs(task.support)))
 
 
 def _pressure_refusal(task: FourBarByKTask) -> Infeasible:

@@ -13,9 +13,9 @@ from pydantic import BeforeValidator, Field
 
 from tmm_cli.batch import Range, TracedNumber, Two, Variant, two
 from tmm_cli.language import _
-from tmm_cli.mechanics.assembly import mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import MobilityError
-from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH
+from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, LENGTH
 from tmm_cli.problem import (
     Name,
     Path,
@@ -136,7 +136,7 @@ def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> Optima
     asked = files.asked(shape.objective, ("objective",), middles, middle)
     objective, target = _read_quantity(shape.objective, middle, sense, ("objective",), asked), shape.objective.target
     if target is not None:
-        target = sense.number(target, KINDS[_kind_of(objective, middle)].dimension, ("objective", "target"))
+        target = sense.number(target, DIMENSIONS[_kind_of(objective, middle)].dimension, ("objective", "target"))
     return OptimalTask(
         parameters,
         files.variant,
@@ -171,7 +171,7 @@ class _FileVariants:
 
     def _given(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
         found = {
-            self.names.get(p.name, p.name): PhysicalValue(x, KINDS[p.kind].dimension)
+            self.names.get(p.name, p.name): PhysicalValue(x, DIMENSIONS[p.kind].dimension)
             for p, x in zip(self.parameters, numbers, strict=True)
         }
         return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
@@ -198,7 +198,7 @@ class _FileVariants:
         except TriedFileError as error:
             refused, told = copy(error.error), []
             for p, number in zip(self.parameters, numbers, strict=True):
-                value, dimension = getattr(number, "value", number), KINDS[p.kind].dimension
+                value, dimension = getattr(number, "value", number), DIMENSIONS[p.kind].dimension
                 shown = f"{self.units.from_si(float(value), dimension):.6g} {self.units.symbol(dimension)}"
                 told.append(f"{p.name} = {shown.rstrip()}")
             refused.message = _("with {numbers} the file is refused: {reason}").format(
@@ -218,7 +218,7 @@ class _FileVariants:
 def _check_mobility(variant: Variant) -> None:
     """What has passive links moves with exact dimensions only, which a parameter may spoil. Raises ProblemError."""
     try:
-        mobile(variant.linkage)
+        analyse_mobile_structure(variant.linkage)
     except MobilityError as refusal:
         told = mobility_error(refusal.structure)
         raise ProblemError(
@@ -234,7 +234,7 @@ def _read_constraint(
 ) -> task.QuantityConstraint:
     path: Path = ("constraints", n)
     quantity = _read_quantity(given, variant, sense, path, asked)
-    dimension = KINDS[_kind_of(quantity, variant)].dimension
+    dimension = DIMENSIONS[_kind_of(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
         for key in ("least", "most", "equal")
@@ -251,7 +251,7 @@ def _read_constraint(
 
 
 def _kind_of(quantity: MechanismQuantity, variant: Variant) -> str:
-    return quantity.kind(variant.linkage, mobile(variant.linkage).solved)
+    return quantity.kind(variant.linkage, analyse_mobile_structure(variant.linkage).solved)
 
 
 def _read_quantity(
@@ -273,7 +273,7 @@ def _read_quantity(
     if kind.named:
         name = getattr(given, kind.named)
         known: dict[str, list[str]] = {
-            "pair": [pair.name for pair in mobile(linkage).pairs],
+            "pair": [pair.name for pair in analyse_mobile_structure(linkage).pairs],
             "link": list(linkage.moving),
             "point": [point for link in linkage.moving for point in linkage.links[link].points],
         }

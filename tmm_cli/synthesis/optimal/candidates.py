@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch import WANTED, OneByOne, Places, Taped, alike, sketch_of, variants_of
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
@@ -54,7 +54,7 @@ class Candidates:
         check_task(task, self.first)
         self.variant = task.make(self.first)
         self.linkage = self.variant.linkage
-        self.groups = mobile(self.linkage).solved
+        self.groups = analyse_mobile_structure(self.linkage).solved
         self._program()
         self._places()
 
@@ -202,7 +202,7 @@ class Candidates:
         own = self.program.sketch(numbers)
         try:
             linkage = self.task.make(numbers.tolist()).linkage
-            shown = sketch_of(linkage, assemble(linkage, mobile(linkage)))
+            shown = sketch_of(linkage, assemble(linkage, analyse_mobile_structure(linkage)))
         except LinkageError:
             return own
         return None if alike(own, shown) else own

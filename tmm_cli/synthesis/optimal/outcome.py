@@ -12,7 +12,7 @@ import numpy as np
 
 from tmm_cli.batch import Places
 from tmm_cli.language import N_, Phrase
-from tmm_cli.mechanics.numerics import NO_VIOLATION, Real, Vector, least
+from tmm_cli.mechanics.numerics import NO_VIOLATION, Real, Vector, find_minima
 from tmm_cli.synthesis.construction import Diagram, DiagramLine
 from tmm_cli.synthesis.measures import driver_completes_range
 from tmm_cli.synthesis.optimal import many_starts
@@ -170,7 +170,7 @@ def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool
     near = shares[np.argmin(np.abs(path(shares) - wanted[:, None]), axis=1)]
     low, high = near - step, near + step
     ends = (low, high) if closed else (np.maximum(low, 0.0), np.minimum(high, 1.0))
-    found: Real = least(lambda some: np.abs(path(some) - np.resize(wanted, len(some))), *ends)[0]
+    found: Real = find_minima(lambda some: np.abs(path(some) - np.resize(wanted, len(some))), *ends)[0]
     return found
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.batch import MOST, SAME, Chosen, Range, Variant, two
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import Driver
-from tmm_cli.mechanics.quantities import ANGLE, KINDS, LENGTH, Dimension
+from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, LENGTH, Dimension
 from tmm_cli.problem import (
     Path,
     PhysicalValue,
@@ -44,7 +44,7 @@ def _range_values(own: Range) -> list[Any]:
 
 def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Parameter:
     at: Path = ("vary", name)
-    dimension = KINDS[kind].dimension
+    dimension = DIMENSIONS[kind].dimension
 
     def si(value: Any, *inside: str | int) -> float:
         return float(sense.number(value, dimension, (*at, *inside)))
@@ -93,7 +93,7 @@ def _find_kinds(
     def value(name: str, kind: str) -> PhysicalValue:
         if not kind:  # as a bare number
             return evaluate_quantity(given[name][0], sense.parameters, sense.units)
-        dimension = KINDS[kind].dimension
+        dimension = DIMENSIONS[kind].dimension
         return PhysicalValue(float(sense.number(given[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
@@ -117,7 +117,7 @@ def _find_kinds(
         return lengths | {name: "number" for name, kind in found.items() if not kind and is_share(name, lengths)}
     plain = dict(found)
     for name in (name for name, kind in plain.items() if not kind):
-        found[name] = min(("length", *KINDS), key=lambda kind: minded(plain | {name: kind}))
+        found[name] = min(("length", *DIMENSIONS), key=lambda kind: minded(plain | {name: kind}))
     return found
 
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from tmm_cli.batch import Make, numbers as numbers_of
 from tmm_cli.language import _
-from tmm_cli.mechanics.assembly import assemble, mobile
+from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.kinematics import cycle_of
+from tmm_cli.mechanics.kinematics import cycle_turns
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
@@ -136,7 +136,7 @@ def find_first(task: OptimalTask) -> list[float]:
         numbers: list[float] = nearest_allowed(low + share * (high - low), task.parameters).tolist()
         linkage = task.make(numbers).linkage
         try:
-            assemble(linkage, mobile(linkage))
+            assemble(linkage, analyse_mobile_structure(linkage))
         except LinkageError:
             continue
         return numbers
@@ -155,7 +155,7 @@ def check_task(task: OptimalTask, first: Sequence[float]) -> None:
         other[k] = p.low if abs(first[k] - p.low) > abs(first[k] - p.high) else p.high
         if dict(numbers_of(task.make(other))) == before:
             raise Infeasible(("vary", p.name), _("nothing in the file rests on this parameter"))
-    groups, closed = mobile(variant.linkage).solved, variant.ends is None
+    groups, closed = analyse_mobile_structure(variant.linkage).solved, variant.ends is None
     for at, quantity in ((("objective",), task.objective), *((c.at, c.quantity) for c in task.constraints)):
         unfit = quantity.unfit(variant.linkage, groups, closed=closed)
         if unfit is not None:
@@ -173,13 +173,13 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
     moves = any(quantity.moves for quantity in (task.objective, *(c.quantity for c in task.constraints)))
     if not geared or not moves:
         return
-    kernels = assemble(linkage, mobile(linkage))
+    kernels = assemble(linkage, analyse_mobile_structure(linkage))
     for k, p in enumerate(task.parameters):
         own = p.values or [p.low + share * (p.high - p.low) for share in SHARES]
         turns: set[Any] = set()  # or ratios with which all never comes round again
         for numbers in task.with_one(first, k, own[:: -(-len(own) // MOST_LOOKED)]):
             other = task.make(numbers).linkage
-            turns.add(cycle_of(other, kernels) or _speed_ratios(other))
+            turns.add(cycle_turns(other, kernels) or _speed_ratios(other))
         if len(turns) > 1:
             reason = _("after how many turns all comes round again rests on this parameter")
             raise Infeasible(("vary", p.name), reason)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise, permutations
 
-from tmm_cli.mechanics.structure import reach
+from tmm_cli.mechanics.structure import reachable_nodes
 
 GraphForm = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 """Colours of the vertices in canonical order, and the edges (i, j, kind), i < j, in that numbering."""
@@ -271,4 +271,4 @@ def _is_connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
         if i in links and j in links:
             beside[i].append(j)
             beside[j].append(i)
-    return len(reach(beside, next(iter(links)))) == len(links)
+    return len(reachable_nodes(beside, next(iter(links)))) == len(links)

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable
 
-from tmm_cli.mechanics.groups.pairs.higher import Cam, Gear, Rack
-from tmm_cli.mechanics.groups.pairs.lower import Constraint, Sliding, Turning
+from tmm_cli.mechanics.groups.pairs.higher import CamConstraint, GearConstraint, RackConstraint
+from tmm_cli.mechanics.groups.pairs.lower import HingeConstraint, PairConstraint, SlideConstraint
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.structure import Pair
 
-PAIRS: dict[str, Callable[[Pair, Linkage], Constraint]] = {
-    "R": Turning.of,
-    "P": Sliding.of,
-    "G": Gear.of,
-    "K": Rack.of,
-    "C": Cam.of,
+PAIR_CONSTRAINTS: dict[str, Callable[[Pair, Linkage], PairConstraint]] = {
+    "R": HingeConstraint.of,
+    "P": SlideConstraint.of,
+    "G": GearConstraint.of,
+    "K": RackConstraint.of,
+    "C": CamConstraint.of,
 }

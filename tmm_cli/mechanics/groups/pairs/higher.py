@@ -9,15 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.pairs.lower import Guided, HigherPair, JacobianRow, Teeth, axis
-from tmm_cli.mechanics.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.mechanics.groups.pairs.lower import (
+    GuideGeometry,
+    HigherPairConstraint,
+    JacobianRow,
+    ToothConstraint,
+    carrier_axis,
+)
+from tmm_cli.mechanics.groups.state import DriverStates, PairReaction, Poses, Rates
 from tmm_cli.mechanics.linkage import Linkage, Slide
 from tmm_cli.mechanics.numerics import AT_EDGE_OF_CAM, NO_JUMP_OF_CAM, Real, Vector, dot, pi, unit
 from tmm_cli.mechanics.structure import Pair
 
 
 @dataclass(frozen=True)
-class Gear(Teeth):
+class GearConstraint(ToothConstraint):
     """Row: angle of j from the carrier less offset and ratio times that of i.
 
     The teeth push at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the wheels i and j, where
@@ -33,16 +39,18 @@ class Gear(Teeth):
     away = 1j
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Gear:
+    def of(cls, pair: Pair, linkage: Linkage) -> GearConstraint:
         mesh = pair.mesh
         assert mesh is not None
-        return cls(pair.name, mesh, axis(linkage, mesh.i, mesh.carrier), axis(linkage, mesh.j, mesh.carrier))
+        return cls(
+            pair.name, mesh, carrier_axis(linkage, mesh.i, mesh.carrier), carrier_axis(linkage, mesh.j, mesh.carrier)
+        )
 
     @property
     def lengths(self) -> tuple[bool, ...]:
         return (False,)
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
         mesh = self.mesh
         i, j, c = (poses[name].turned for name in (mesh.i, mesh.j, mesh.carrier))
         return ((j - c) - mesh.ratio * (i - c) - mesh.offset,)
@@ -55,7 +63,7 @@ class Gear(Teeth):
             self.mesh.carrier: ((0j, ratio - 1.0),),
         }
 
-    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
+    def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any:
         mesh = self.mesh
         if link == mesh.carrier:
             return (angles[mesh.j] - mesh.ratio * angles[mesh.i] - mesh.offset) / (1 - mesh.ratio)
@@ -78,7 +86,7 @@ class Gear(Teeth):
 
 
 @dataclass(frozen=True)
-class Rack(Teeth):
+class RackConstraint(ToothConstraint):
     """Row: run of the rack on the carrier less offset and ratio (m a radian) times the angle of the wheel from it.
 
     The slide may have the rack as its runner or as its carrier. The teeth push at the pitch point, where wheel and rack
@@ -92,34 +100,34 @@ class Rack(Teeth):
     away = -1j
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Rack:
+    def of(cls, pair: Pair, linkage: Linkage) -> RackConstraint:
         mesh = pair.mesh
         assert mesh is not None
-        return cls(pair.name, mesh, linkage.slide(mesh.slide), axis(linkage, mesh.i, mesh.carrier))
+        return cls(pair.name, mesh, linkage.slide(mesh.slide), carrier_axis(linkage, mesh.i, mesh.carrier))
 
     @property
     def lengths(self) -> tuple[bool, ...]:
         return (True,)
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
-        here = Guided.at(self.slide, poses)
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
+        here = GuideGeometry.at(self.slide, poses)
         turned = poses[self.mesh.i].turned - poses[self.mesh.carrier].turned
         return (dot(here.u, here.off) - self.mesh.ratio * turned - self.mesh.offset,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         rows = {name: [row] for name, row in here.jacobian_rows(self.slide, here.u).items()}
         c, m = rows[self.mesh.carrier][0]
         rows[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
         return rows | {self.mesh.i: [(0j, -self.mesh.ratio)]}
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)),)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """The pitch point, and the direction in which the rack's run grows."""
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
 
@@ -128,7 +136,7 @@ class Rack(Teeth):
 
 
 @dataclass(frozen=True)
-class Cam(HigherPair):
+class CamConstraint(HigherPairConstraint):
     """Row: run (or angle) of the follower on the carrier less offset and the law of the cam's angle from the carrier.
 
     The carrier is the frame, or a moving link with the guide of the follower: then the cam changes a length of it. The
@@ -143,11 +151,11 @@ class Cam(HigherPair):
     kind = "C"
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Cam:
+    def of(cls, pair: Pair, linkage: Linkage) -> CamConstraint:
         mesh = pair.mesh
         assert mesh is not None
         slide = linkage.slide(mesh.slide) if mesh.slide else None
-        return cls(pair.name, mesh, slide, axis(linkage, mesh.i, mesh.carrier))
+        return cls(pair.name, mesh, slide, carrier_axis(linkage, mesh.i, mesh.carrier))
 
     @property
     def lengths(self) -> tuple[bool, ...]:
@@ -157,12 +165,12 @@ class Cam(HigherPair):
         assert self.mesh.law is not None
         return self.mesh.law(poses[self.mesh.i].turned - poses[self.mesh.carrier].turned)
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
         want = self._law(poses)[0] + self.mesh.offset
         if self.slide is None:
             residual = poses[self.mesh.j].z * np.conj(unit(want))
             return (np.arctan2(residual.imag, residual.real),)
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
@@ -171,7 +179,7 @@ class Cam(HigherPair):
         if self.slide is None:
             own: Mapping[str, JacobianRow] = {self.mesh.j: (0j, 1.0)}
         else:
-            here = Guided.at(self.slide, poses)
+            here = GuideGeometry.at(self.slide, poses)
             own = here.jacobian_rows(self.slide, here.u)
         for name, (place, angle) in own.items():
             other = rows.get(name, (0j, 0.0))
@@ -182,13 +190,13 @@ class Cam(HigherPair):
         bend = -self._law(poses)[2] * (rates[self.mesh.i].w - rates[self.mesh.carrier].w) ** 2
         if self.slide is None:
             return (bend,)
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)) + bend,)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """Where a flat-faced follower touches, and the direction in which its run grows."""
         assert self.slide is not None
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self._law(poses)[1] * forward, forward
 
@@ -254,7 +262,7 @@ def _polynomial7(x: Any) -> tuple[Any, Any, Any]:
     )
 
 
-SHAPES: dict[str, Rise] = {
+RISE_LAWS: dict[str, Rise] = {
     "linear": _linear,
     "parabolic": _parabolic,
     "cosine": _cosine,
@@ -265,7 +273,7 @@ SHAPES: dict[str, Rise] = {
 
 
 @dataclass(frozen=True)
-class Piece:
+class CamLawPiece:
     """A rise (m or rad, negative for a return, zero for a dwell) over an angle of the cam (rad)."""
 
     over: float
@@ -280,7 +288,7 @@ class CamLaw:
     sense: in which the cam turns. Where pieces meet, the acceleration is that of the piece which then begins.
     """
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[CamLawPiece, ...]
     start: float = 0.0
     sense: int = 1
 
@@ -301,7 +309,7 @@ class CamLaw:
 
     def jumps(self) -> tuple[float, ...]:
         """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
-        slopes = [SHAPES[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
+        slopes = [RISE_LAWS[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
         ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
         most = max(abs(piece.rise) for piece in self.pieces)
         found = [
@@ -322,17 +330,17 @@ class CamLaw:
         starts, overs, lows, rises = self._table
         passed = np.searchsorted(starts, ahead, side="right") if starts.ndim == 1 else np.sum(starts <= ahead, axis=0)
         number = np.clip(passed - 1, 0, len(self.pieces) - 1)
-        over, rise, start, low = (_of(part, number) for part in (overs, rises, starts, lows))
+        over, rise, start, low = (_select_pieces(part, number) for part in (overs, rises, starts, lows))
         x = np.clip((turned - start) / over, 0.0, 1.0)
         value, first, second = (np.zeros(np.shape(turned)) for _ in range(3))
         shapes = [p.shape for p in self.pieces]
         for shape in dict.fromkeys(shapes):
             here = np.array([name == shape for name in shapes])[number]
-            s, ds, dds = SHAPES[shape](x)
+            s, ds, dds = RISE_LAWS[shape](x)
             value, first, second = np.where(here, s, value), np.where(here, ds, first), np.where(here, dds, second)
         return low + rise * value, rise / over * first, rise / over**2 * second
 
 
-def _of(part: Real, number: Real) -> Real:
+def _select_pieces(part: Real, number: Real) -> Real:
     """Numbers of the pieces with these numbers."""
     return part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]

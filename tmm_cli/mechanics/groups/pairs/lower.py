@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.state import Drives, PairReaction, Poses, Rates
+from tmm_cli.mechanics.groups.state import DriverStates, PairReaction, Poses, Rates
 from tmm_cli.mechanics.linkage import Driver, Linkage, Mesh, Slide
 from tmm_cli.mechanics.numerics import Real, Vector, cross, dot, unit
 from tmm_cli.mechanics.structure import Pair
@@ -25,7 +25,7 @@ JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
 
 
 @dataclass(frozen=True)
-class Constraint(ABC):
+class PairConstraint(ABC):
     """One pair (or one driver) of a group."""
 
     name: str
@@ -43,7 +43,7 @@ class Constraint(ABC):
         """For each row, whether it is in metres (else in radians)."""
 
     @abstractmethod
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
         """What each row is short of zero."""
 
     @abstractmethod
@@ -54,11 +54,11 @@ class Constraint(ABC):
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         """Second derivative of each row when no link accelerates."""
 
-    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any | None:
+    def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
         """The angle of one of its links (rad) that its first row asks for, from those of the others; None for most."""
         return None
 
-    def asked(self, drives: Drives, order: int) -> Sequence[Real | float]:
+    def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
         """First or second derivative that each row must have; zero but for drivers."""
         return [0.0] * len(self.lengths)
 
@@ -76,7 +76,7 @@ class Constraint(ABC):
 
 
 @dataclass(frozen=True)
-class HigherPair(Constraint):
+class HigherPairConstraint(PairConstraint):
     """One row for links that touch, i and j of the mesh; their carrier gets nothing but through its hinges."""
 
     mesh: Mesh
@@ -104,7 +104,7 @@ class HigherPair(Constraint):
 
 
 @dataclass(frozen=True)
-class Teeth(HigherPair):
+class ToothConstraint(HigherPairConstraint):
     """They touch in the pitch point, where both links have one velocity, and push j away from the axis of i besides."""
 
     away: ClassVar[complex]  # where that is from the direction of contact, at a ratio above zero
@@ -115,7 +115,7 @@ class Teeth(HigherPair):
         return point, away * np.abs(multipliers[0]) * np.tan(self.mesh.pressure)
 
 
-def axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
+def carrier_axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
     """Where a wheel or cam is hinged to its carrier, in the carrier's axes (m)."""
     point = linkage.shared(carrier, wheel)
     assert point is not None
@@ -126,7 +126,7 @@ def axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
 
 
 @dataclass(frozen=True)
-class Turning(Constraint):
+class HingeConstraint(PairConstraint):
     """Rows: x and y of the point of j less that of i."""
 
     i: str
@@ -137,7 +137,7 @@ class Turning(Constraint):
     kind = "R"
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Turning:
+    def of(cls, pair: Pair, linkage: Linkage) -> HingeConstraint:
         return cls(pair.name, pair.i, pair.j, linkage.local(pair.i, pair.point), linkage.local(pair.j, pair.point))
 
     @property
@@ -151,7 +151,7 @@ class Turning(Constraint):
     def _arms(self, poses: Poses) -> tuple[Vector, Vector]:
         return self.at_i * poses[self.i].z, self.at_j * poses[self.j].z
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
         arm_i, arm_j = self._arms(poses)
         residual = (poses[self.j].x - poses[self.i].x) + (arm_j - arm_i)
         return residual.real, residual.imag
@@ -176,7 +176,7 @@ class Turning(Constraint):
 
 
 @dataclass(frozen=True)
-class Guided:
+class GuideGeometry:
     """The geometry of a sliding pair at some poses: the guide's direction u and the running point from both origins."""
 
     u: Vector
@@ -185,7 +185,7 @@ class Guided:
     on_runner: Vector
 
     @classmethod
-    def at(cls, slide: Slide, poses: Poses) -> Guided:
+    def at(cls, slide: Slide, poses: Poses) -> GuideGeometry:
         carrier, runner = poses[slide.carrier], poses[slide.runner]
         on_runner = slide.at * runner.z
         on_carrier = (runner.x - carrier.x) + on_runner
@@ -210,7 +210,7 @@ class Guided:
 
 
 @dataclass(frozen=True)
-class Sliding(Constraint):
+class SlideConstraint(PairConstraint):
     """Rows: angle of the runner from the carrier, distance of the running point from the guide."""
 
     slide: Slide
@@ -218,7 +218,7 @@ class Sliding(Constraint):
     kind = "P"
 
     @classmethod
-    def of(cls, pair: Pair, linkage: Linkage) -> Sliding:
+    def of(cls, pair: Pair, linkage: Linkage) -> SlideConstraint:
         assert pair.slide is not None
         return cls(pair.name, pair.slide)
 
@@ -230,31 +230,31 @@ class Sliding(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return False, True
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
-        here = Guided.at(self.slide, poses)
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
+        here = GuideGeometry.at(self.slide, poses)
         turned = poses[self.slide.runner].z * np.conj(poses[self.slide.carrier].z * unit(self.slide.turned))
         return np.arctan2(turned.imag, turned.real), cross(here.u, here.off)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         across = here.jacobian_rows(self.slide, 1j * here.u)
         return {
             self.slide.carrier: ((0j, -1.0), across[self.slide.carrier]),
             self.slide.runner: ((0j, 1.0), across[self.slide.runner]),
         }
 
-    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any:
+    def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any:
         if link == self.slide.runner:
             return angles[self.slide.carrier] + self.slide.turned
         return angles[self.slide.runner] - self.slide.turned
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         coriolis = 2 * rates[self.slide.carrier].w * here.sliding(self.slide, rates)
         return np.zeros(np.shape(coriolis)), cross(here.u, here.bend(self.slide, rates)) - coriolis
 
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return PairReaction(1j * here.u * multipliers[1], multipliers[0])
 
 
@@ -262,7 +262,7 @@ class Sliding(Constraint):
 
 
 @dataclass(frozen=True)
-class Driven(Constraint):
+class DriverConstraint(PairConstraint):
     """Row: angle of the driven link from its base, or run in their sliding pair, less the driver's place."""
 
     driver: Driver
@@ -271,7 +271,7 @@ class Driven(Constraint):
     kind = "D"
 
     @classmethod
-    def of(cls, driver: Driver, linkage: Linkage) -> Driven:
+    def of(cls, driver: Driver, linkage: Linkage) -> DriverConstraint:
         """The row of a driver."""
         return cls(driver.link, driver, linkage.slide(driver.joint) if driver.kind == "slide" else None)
 
@@ -283,22 +283,22 @@ class Driven(Constraint):
     def lengths(self) -> tuple[bool, ...]:
         return (self.slide is not None,)
 
-    def residuals(self, poses: Poses, drives: Drives) -> Sequence[Real]:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
         want = drives[self.driver.link].value
         if self.slide is None:
             turned = poses[self.driver.link].z * np.conj(poses[self.driver.base].z)
             residual = turned * unit(-want)
             return (np.arctan2(residual.imag, residual.real),)
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return (dot(here.u, here.off) - want,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         if self.slide is None:
             return {self.driver.base: ((0j, -1.0),), self.driver.link: ((0j, 1.0),)}
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return {name: (row,) for name, row in here.jacobian_rows(self.slide, here.u).items()}
 
-    def turned(self, link: str, angles: Mapping[str, Any], drives: Drives) -> Any | None:
+    def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
         if self.slide is not None:
             return None
         place = drives[self.driver.link].value
@@ -307,10 +307,10 @@ class Driven(Constraint):
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         if self.slide is None:
             return (np.zeros(np.shape(rates[self.driver.link].w)),)
-        here = Guided.at(self.slide, poses)
+        here = GuideGeometry.at(self.slide, poses)
         return (dot(here.u, here.bend(self.slide, rates)),)
 
-    def asked(self, drives: Drives, order: int) -> Sequence[Real | float]:
+    def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
         drive = drives[self.driver.link]
         return (drive.first if order == 1 else drive.second,)
 
@@ -318,4 +318,4 @@ class Driven(Constraint):
         n = multipliers[0]
         if self.slide is None:
             return PairReaction(n * 0j, couple=n)
-        return PairReaction(Guided.at(self.slide, poses).u * n, at=poses[self.slide.runner].at(self.slide.at))
+        return PairReaction(GuideGeometry.at(self.slide, poses).u * n, at=poses[self.slide.runner].at(self.slide.at))

@@ -19,7 +19,7 @@ from tmm_cli.mechanics.analysis import Results, at_positions
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import Real, highest, least, peak, peaks_of, top
+from tmm_cli.mechanics.numerics import Real, find_minima, highest_peaks, highest_value, locate_extreme, window_peak
 from tmm_cli.mechanics.structure import output_link
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import DriverEnds
@@ -173,17 +173,17 @@ class PeakQuantity(MechanismQuantity):
         return -found if self.lowest else found
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
-        return [("y", k) for k in peaks_of(read("y")[0], MOST_PEAKS, over.closed)]
+        return [("y", k) for k in highest_peaks(read("y")[0], MOST_PEAKS, over.closed)]
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         ys = [self.levelled(read(name)) for name, _, read in parts]
         rough = over.rough and self.forces
-        found: Real = np.stack([np.max(y, axis=1) if rough else peak(y) for y in ys], axis=1)
+        found: Real = np.stack([np.max(y, axis=1) if rough else window_peak(y) for y in ys], axis=1)
         return -found if self.lowest else found
 
     def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         if over.rough and self.forces:
-            return highest(lambda shares: curve("y", shares), scan, closed=over.closed)
+            return highest_value(lambda shares: curve("y", shares), scan, closed=over.closed)
         return value
 
     def measured(self, results: Results, ends: DriverEnds) -> float:
@@ -211,6 +211,6 @@ def highest_over_range(curve: Callable[[Real], Real], results: Results, ends: Dr
     k, step = int(np.nanargmax(y)), q[1] - q[0]
     if (ends or driver.acceleration) and k in (0, len(q) - 1):
         return float(y[k])
-    place, value = least(lambda x: -curve(x), q[k] - step, q[k] + step)
-    place = top(lambda x: -curve(x), place, step)
+    place, value = find_minima(lambda x: -curve(x), q[k] - step, q[k] + step)
+    place = locate_extreme(lambda x: -curve(x), place, step)
     return float(max(curve(np.array([place]))[0], -value, y[k]))

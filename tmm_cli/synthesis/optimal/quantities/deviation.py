@@ -12,9 +12,9 @@ from tmm_cli.batch import WANTED
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Reactions
-from tmm_cli.mechanics.kinematics import Motion, output_place
+from tmm_cli.mechanics.kinematics import Motion, output_coordinate
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import FIT, SIDE, Real, dot, peak, value
+from tmm_cli.mechanics.numerics import WINDOW_FIT, WINDOW_SIDE, Real, dot, polynomial_value, window_peak
 from tmm_cli.synthesis.measures import DriverEnds
 from tmm_cli.synthesis.optimal.quantities.base import (
     MechanismQuantity,
@@ -95,7 +95,7 @@ class LawDeviation(Deviation):
         return "length" if self.slides(linkage, groups) else "angle"
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        return {"run": output_place(motion, self.name)}
+        return {"run": output_coordinate(motion, self.name)}
 
     def deviations(self, read: Read, over: QuantityRange) -> Real:
         off = read("run") - read(WANTED)
@@ -109,7 +109,7 @@ class LawDeviation(Deviation):
         return read("run")
 
     def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
-        run = output_place(motion_at(results, np.array(self.places)), self.name)
+        run = output_coordinate(motion_at(results, np.array(self.places)), self.name)
         over = QuantityRange(results.linkage, results.linkage.output_swings(self.name))
         found: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
         return found
@@ -151,7 +151,7 @@ class PathDeviation(Deviation):
         if self.places:
             return super().fine(parts, exact, over, step)
         squares = [-((read("px") - w.real) ** 2 + (read("py") - w.imag) ** 2) for w, __, read in parts]
-        off = np.sqrt(np.maximum(np.stack([-peak(square) for square in squares], axis=1), 0))
+        off = np.sqrt(np.maximum(np.stack([-window_peak(square) for square in squares], axis=1), 0))
         return off if self.norm == "largest" else self.counted(off)[:, None]
 
     def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
@@ -175,22 +175,24 @@ def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
     sets, __, count = place.shape
     lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
     near = nearest_corners(lead.real.copy(), lead.imag.copy(), wanted)
-    middle = near if closed else np.clip(near, SIDE, count - 1 - SIDE)
-    about = (np.arange(-SIDE, SIDE + 1)[:, None, None] + middle) % count  # (corners, points, sets)
+    middle = near if closed else np.clip(near, WINDOW_SIDE, count - 1 - WINDOW_SIDE)
+    about = (np.arange(-WINDOW_SIDE, WINDOW_SIDE + 1)[:, None, None] + middle) % count  # (corners, points, sets)
     off = place[np.arange(sets), :, about] - wanted[:, None, None]  # (corners, points, sets, variants)
-    fit = np.moveaxis(np.tensordot(FIT.T, off[..., 0], 1), 0, -1)
+    fit = np.moveaxis(np.tensordot(WINDOW_FIT.T, off[..., 0], 1), 0, -1)
     u = (near - middle).astype(float)
     low, high = u - 1, u + 1
     if not closed:
         low, high = np.maximum(low, -middle), np.minimum(high, count - 1 - middle)
     for __ in range(FOOT_STEPS):
-        at, along, bend = (value(fit, u, order) for order in range(3))
+        at, along, bend = (polynomial_value(fit, u, order) for order in range(3))
         slope, curve = dot(at, along), dot(along, along) + dot(at, bend)
         u = np.clip(u - np.where(curve > 0, slope / curve, 0.0), low, high)
-    at, along = value(fit, u), value(fit, u, 1)
+    at, along = polynomial_value(fit, u), polynomial_value(fit, u, 1)
     end = np.abs(dot(at, along)) > FOOT * np.abs(at) * np.abs(along)
     normal = np.where(end, at / np.abs(at), 1j * along / np.abs(along))
-    share = np.tensordot(FIT, np.cumprod([np.ones_like(u), *[u] * (2 * SIDE)], axis=0), 1)  # of each corner
+    share = np.tensordot(
+        WINDOW_FIT, np.cumprod([np.ones_like(u), *[u] * (2 * WINDOW_SIDE)], axis=0), 1
+    )  # of each corner
     found: Real = dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
     return found.transpose(1, 2, 0)
 

@@ -13,7 +13,7 @@ from tmm_cli.language import N_
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import Real, peak, peaks_of
+from tmm_cli.mechanics.numerics import Real, highest_peaks, window_peak
 from tmm_cli.synthesis.optimal.quantities.base import (
     CLOSELY,
     MOST_PEAKS,
@@ -76,7 +76,7 @@ class MotionBox(PeakQuantity):
         found: list[tuple[Any, int]] = []
         for side, (axis, sign) in enumerate(SIDES):
             ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_moving_points(over.linkage)))}
-            tops = [(y[at], k, at) for k, y in ys.items() for at in peaks_of(y, MOST_PEAKS, over.closed)]
+            tops = [(y[at], k, at) for k, y in ys.items() for at in highest_peaks(y, MOST_PEAKS, over.closed)]
             found += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
         return found
 
@@ -84,7 +84,7 @@ class MotionBox(PeakQuantity):
         """Sums of one peak of each side, in all ways: the largest is the sum of the largest ones."""
         runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
-        for ((side, __), *__), top in zip(parts, peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):
+        for ((side, __), *__), top in zip(parts, window_peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):
             sides[side].append(top)
         return np.stack([np.sum(some, axis=0) for some in product(*sides)], axis=1)
 

@@ -11,9 +11,9 @@ import numpy as np
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Reactions
-from tmm_cli.mechanics.kinematics import Motion, output_place, output_slope
+from tmm_cli.mechanics.kinematics import Motion, output_coordinate, output_slope
 from tmm_cli.mechanics.linkage import Linkage
-from tmm_cli.mechanics.numerics import Real, highest, peak, zero
+from tmm_cli.mechanics.numerics import Real, highest_value, locate_zero, window_peak
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import DriverEnds, time_ratio_of_curve
 from tmm_cli.synthesis.optimal.quantities.base import Curve, MechanismQuantity, QuantityRange, Read, Windows
@@ -36,7 +36,7 @@ class StrokeQuantity(MechanismQuantity):
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         output = self.output(motion.linkage, tuple(kernel.group for kernel in motion.kernels))
         assert output is not None
-        return {"slope": output_slope(motion, output), "run": output_place(motion, output)}
+        return {"slope": output_slope(motion, output), "run": output_coordinate(motion, output)}
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         slope = read("slope")[0]
@@ -76,7 +76,7 @@ class OutputStroke(StrokeQuantity):
         if over.closed and len(parts) > FOUR:
             return stroke_lengths(runs).T
         whole = np.vstack(runs)
-        tops, lows = (peak(side * whole).reshape(len(runs), -1) for side in (1, -1))
+        tops, lows = (window_peak(side * whole).reshape(len(runs), -1) for side in (1, -1))
         travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
         return travel[:, None]
 
@@ -84,8 +84,8 @@ class OutputStroke(StrokeQuantity):
         several = over.closed and count_reversals(curve("slope", scan)[None])[0] > FOUR
         if over.swings or not over.taped or several or np.isnan(value):
             return value
-        top = highest(lambda shares: curve("run", shares), scan, closed=over.closed)
-        return top + highest(lambda shares: -curve("run", shares), scan, closed=over.closed)
+        top = highest_value(lambda shares: curve("run", shares), scan, closed=over.closed)
+        return top + highest_value(lambda shares: -curve("run", shares), scan, closed=over.closed)
 
     def measured(self, results: Results, ends: DriverEnds) -> float:
         return measures.output_stroke(results, ends)
@@ -103,7 +103,7 @@ class TimeRatio(StrokeQuantity):
         forward: Any = 0.0
         for __, start, read in parts:
             slope = read("slope")
-            forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * zero(slope))
+            forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * locate_zero(slope))
         return time_ratio_of_share(np.mod(forward, 1.0))[:, None]
 
     def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
@@ -193,7 +193,10 @@ def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
 
 def stroke_lengths(runs: list[Real]) -> Real:
     """Lengths of the strokes between windows, (strokes, variants)."""
-    ends = [np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), peak(run), -peak(-run)) for run in runs]
+    ends = [
+        np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), window_peak(run), -window_peak(-run))
+        for run in runs
+    ]
     return np.abs(np.diff([*ends, ends[0]], axis=0))
 
 

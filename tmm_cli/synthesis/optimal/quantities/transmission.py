@@ -11,7 +11,7 @@ import numpy as np
 from tmm_cli.language import N_
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Reactions
-from tmm_cli.mechanics.kinematics import Motion, followers, sides
+from tmm_cli.mechanics.kinematics import Motion, driven_links, pressure_sine_and_cosine
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import BALANCING, REACTION_SIZE
 from tmm_cli.synthesis import measures
@@ -54,11 +54,11 @@ class LargestPressureAngle(PeakQuantity):
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         groups = tuple(kernel.group for kernel in motion.kernels)
         output = self.output(motion.linkage, groups)
-        outer = [(n, lead) for n, group in enumerate(groups) for lead in followers(group)]
+        outer = [(n, lead) for n, group in enumerate(groups) for lead in driven_links(group)]
         outer = [x for x in outer if x[1][0] == output] or outer
         tangents = []
         for n, lead in outer:
-            sine, cosine = sides(motion, motion.kernels[n], motion.placements[n], lead)
+            sine, cosine = pressure_sine_and_cosine(motion, motion.kernels[n], motion.placements[n], lead)
             tangents.append(sine / cosine)
         return {"y": reduce(np.maximum, tangents)}
 

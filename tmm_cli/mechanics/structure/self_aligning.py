@@ -31,10 +31,10 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import DEPENDENT, Real
 from tmm_cli.mechanics.structure.assur import Structure
 from tmm_cli.mechanics.structure.group import Pair
-from tmm_cli.mechanics.structure.spatial import KINDS, SpatialChain, SpatialPair
+from tmm_cli.mechanics.structure.spatial import PAIR_FREEDOMS, SpatialChain, SpatialPair
 
 TOUCHING = ("cylinder on plane", "sphere on plane")
-CHOICES = {
+PAIR_CHOICES = {
     "R": ("turning", "cylindrical", "spherical"),
     "P": ("sliding", "cylindrical", "planar"),
     "G": TOUCHING,
@@ -48,7 +48,7 @@ MOST_TRIES = 12
 
 
 @dataclass(frozen=True)
-class Replacement:
+class PairReplacement:
     """A pair that is to become one with more freedoms."""
 
     pair: Pair
@@ -57,11 +57,11 @@ class Replacement:
 
     @property
     def freedoms(self) -> int:
-        return KINDS[self.kind]
+        return PAIR_FREEDOMS[self.kind]
 
 
 @dataclass(frozen=True)
-class Rank:
+class OutOfPlaneRank:
     """Out of the plane: conditions that repeat others, freedoms that are left, and how many of these are local."""
 
     redundant: int
@@ -70,7 +70,7 @@ class Rank:
 
 
 @dataclass(frozen=True)
-class Space:
+class SpatialCount:
     """A planar linkage counted in space, as it is and as proposed.
 
     wanted: its mobility Wo. replacements is None when no proposal was found. rank is of the proposal.
@@ -78,9 +78,9 @@ class Space:
 
     chain: SpatialChain
     wanted: int
-    replacements: tuple[Replacement, ...] | None
+    replacements: tuple[PairReplacement, ...] | None
     proposed: SpatialChain
-    rank: Rank
+    rank: OutOfPlaneRank
 
     @property
     def local(self) -> int:
@@ -98,48 +98,52 @@ class Space:
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
-def space(linkage: Linkage, structure: Structure) -> Space:
+def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
     """Count the linkage in space and propose pairs without redundant constraints; wanted: one freedom a driver."""
     chain, wanted = spatial_chain(structure, {}), len(structure.drivers)
-    heights = Heights(linkage)
+    heights = OutOfPlaneConditions(linkage)
     for pins_first in (True, False):
-        kinds = _choose_all(heights, structure, pins_first)
+        kinds = _choose_kinds(heights, structure, pins_first)
         if kinds is not None:
-            rank = rank_of(linkage, structure, kinds)
+            rank = out_of_plane_rank(linkage, structure, kinds)
             if not rank.redundant and rank.free == rank.local:
                 replaced = tuple(
-                    Replacement(p, CHOICES[p.kind][0], kinds[p.name])
+                    PairReplacement(p, PAIR_CHOICES[p.kind][0], kinds[p.name])
                     for p in structure.pairs
-                    if kinds.get(p.name, CHOICES[p.kind][0]) != CHOICES[p.kind][0]
+                    if kinds.get(p.name, PAIR_CHOICES[p.kind][0]) != PAIR_CHOICES[p.kind][0]
                 )
-                return Space(chain, wanted, replaced, spatial_chain(structure, kinds), rank)
-    return Space(chain, wanted, None, chain, rank_of(linkage, structure, {}))
+                return SpatialCount(chain, wanted, replaced, spatial_chain(structure, kinds), rank)
+    return SpatialCount(chain, wanted, None, chain, out_of_plane_rank(linkage, structure, {}))
 
 
 def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
     """The linkage as a chain in space; `kinds` are those of pairs that are replaced, by name."""
-    named = ((p, kinds.get(p.name, CHOICES[p.kind][0])) for p in structure.pairs)
-    return SpatialChain(structure.links, tuple(SpatialPair(p.name, p.i, p.j, KINDS[kind], kind) for p, kind in named))
+    named = ((p, kinds.get(p.name, PAIR_CHOICES[p.kind][0])) for p in structure.pairs)
+    return SpatialChain(
+        structure.links, tuple(SpatialPair(p.name, p.i, p.j, PAIR_FREEDOMS[kind], kind) for p, kind in named)
+    )
 
 
-def rank_of(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> Rank:
+def out_of_plane_rank(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> OutOfPlaneRank:
     """Count conditions out of the plane by rank, with the kinds of replaced pairs given by name."""
-    heights = Heights(linkage)
-    rows = {p.name: heights.rows(p, kinds.get(p.name, CHOICES[p.kind][0]), structure.links) for p in structure.pairs}
-    matrix = _stacked(rows.values(), CONDITIONS * len(structure.links))
+    heights = OutOfPlaneConditions(linkage)
+    rows = {
+        p.name: heights.rows(p, kinds.get(p.name, PAIR_CHOICES[p.kind][0]), structure.links) for p in structure.pairs
+    }
+    matrix = _stack(rows.values(), CONDITIONS * len(structure.links))
     rank = _rank(matrix)
-    return Rank(len(matrix) - rank, matrix.shape[1] - rank, _local(matrix))
+    return OutOfPlaneRank(len(matrix) - rank, matrix.shape[1] - rank, _count_local_freedoms(matrix))
 
 
-class Heights:
+class OutOfPlaneConditions:
     """Conditions of pairs on the heights (a, b, c) of links, each in the axes of its link, lengths over the size."""
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage
-        lengths = [abs(_one(p)) for link in linkage.links.values() for p in link.points.values()]
-        lengths += [abs(_one(where)) for s in linkage.slides for where in (s.through, s.at)]
+        lengths = [abs(_first_value(p)) for link in linkage.links.values() for p in link.points.values()]
+        lengths += [abs(_first_value(where)) for s in linkage.slides for where in (s.through, s.at)]
         self.size = max(lengths, default=0.0) or 1.0
-        self.angle = _angles(linkage)
+        self.angle = _generic_angles(linkage)
 
     def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
         """Conditions that a pair of this kind puts on the given links, shape (conditions, 3 links); others lie flat."""
@@ -148,13 +152,13 @@ class Heights:
             places = dict.fromkeys((pair.i, pair.j), 0j)
             ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
         elif slide is None:
-            places = {link: _one(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
+            places = {link: _first_value(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
             ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
         else:
-            along = cmath.exp(1j * _one(slide.direction))
-            ahead = {slide.carrier: along, slide.runner: along * cmath.exp(-1j * _one(slide.turned))}
+            along = cmath.exp(1j * _first_value(slide.direction))
+            ahead = {slide.carrier: along, slide.runner: along * cmath.exp(-1j * _first_value(slide.turned))}
             run = GOLDEN * self.size  # anywhere: the condition holds along the whole guide or nowhere
-            places = {slide.carrier: _one(slide.through) + run * along, slide.runner: _one(slide.at)}
+            places = {slide.carrier: _first_value(slide.through) + run * along, slide.runner: _first_value(slide.at)}
         height = {link: (1.0, place.real / self.size, place.imag / self.size) for link, place in places.items()}
         slope = {link: (0.0, e.real, e.imag) for link, e in ahead.items()}
         across = {link: (0.0, -e.imag, e.real) for link, e in ahead.items()}
@@ -176,12 +180,12 @@ class Heights:
         return found
 
 
-def _one(number: Any) -> complex:
+def _first_value(number: Any) -> complex:
     """A length as one number, where it is given for many variants."""
     return complex(np.ravel(number)[0])
 
 
-def _angles(linkage: Linkage) -> dict[str, float]:
+def _generic_angles(linkage: Linkage) -> dict[str, float]:
     """Angles of links in an arbitrary place; those that slides keep parallel stay so."""
     angle = {link: GOLDEN * number for number, link in enumerate(linkage.links)}
     fixed = {FRAME}
@@ -192,13 +196,13 @@ def _angles(linkage: Linkage) -> dict[str, float]:
             for slide in linkage.slides:
                 for near, far, sign in ((slide.carrier, slide.runner, 1), (slide.runner, slide.carrier, -1)):
                     if near == link and far not in fixed:
-                        angle[far] = angle[link] + sign * _one(slide.turned).real
+                        angle[far] = angle[link] + sign * _first_value(slide.turned).real
                         fixed.add(far)
                         todo.append(far)
     return angle
 
 
-def _choose_all(heights: Heights, structure: Structure, pins_first: bool) -> dict[str, str] | None:
+def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_first: bool) -> dict[str, str] | None:
     """Kinds for the pairs of all groups, by name; None when one group has no proposal.
 
     pins_first: pairs of a compound hinge are the first to be cylindrical, as they share one pin.
@@ -207,14 +211,16 @@ def _choose_all(heights: Heights, structure: Structure, pins_first: bool) -> dic
     shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
     kinds = {p.name: TOUCHING[1] for p in structure.pairs if not p.lower}
     for group in structure.all_groups:
-        chosen = _choose(heights, group.links, (*group.inner, *group.outer), shared)
+        chosen = _choose_kinds_of_group(heights, group.links, (*group.inner, *group.outer), shared)
         if chosen is None:
             return None
         kinds |= chosen
     return kinds
 
 
-def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pins: set[str]) -> dict[str, str] | None:
+def _choose_kinds_of_group(
+    heights: OutOfPlaneConditions, links: tuple[str, ...], own: tuple[Pair, ...], pins: set[str]
+) -> dict[str, str] | None:
     """Kinds for the pairs of one group, the links before it lying flat: fewest changes, then fewest freedoms.
 
     A group by itself, because a pair that served two groups could lose its grip in some position. Pairs with the
@@ -224,20 +230,20 @@ def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pin
     on_frame = {p.other(FRAME) for p in own if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
     pairs = [p for p in own if p.lower and FRAME not in (p.i, p.j)]
-    blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in CHOICES[p.kind]}
+    blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in PAIR_CHOICES[p.kind]}
 
     def matrix(kinds: Mapping[str, str]) -> Real:
-        return _stacked((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
+        return _stack((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
 
     def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
         """The freest pairs made what CHOICES says, one after another, while that holds something that was free."""
         for pair in order:
-            trial = kinds | {pair.name: CHOICES[pair.kind][choice]}
-            if kinds[pair.name] == CHOICES[pair.kind][2] and _independent(matrix(trial)):
+            trial = kinds | {pair.name: PAIR_CHOICES[pair.kind][choice]}
+            if kinds[pair.name] == PAIR_CHOICES[pair.kind][2] and _independent(matrix(trial)):
                 kinds = trial
         return kinds
 
-    freest = {p.name: CHOICES[p.kind][2] for p in pairs}
+    freest = {p.name: PAIR_CHOICES[p.kind][2] for p in pairs}
     if not _independent(matrix(freest)):
         return None
     proposals = []
@@ -245,13 +251,13 @@ def _choose(heights: Heights, links: tuple[str, ...], own: tuple[Pair, ...], pin
         kinds = held(freest, [pairs[first], *pairs[:first], *pairs[first + 1 :]], 0)
         kinds = held(kinds, sorted(pairs, key=lambda p: p.name not in pins), 1)
         found = matrix(kinds)
-        if found.shape[1] - len(found) == _local(found):  # nothing but single links is left free
-            changed = [kind for p in pairs if (kind := kinds[p.name]) != CHOICES[p.kind][0]]
-            proposals.append(((len(changed), sum(KINDS[kind] for kind in changed)), kinds))
+        if found.shape[1] - len(found) == _count_local_freedoms(found):  # nothing but single links is left free
+            changed = [kind for p in pairs if (kind := kinds[p.name]) != PAIR_CHOICES[p.kind][0]]
+            proposals.append(((len(changed), sum(PAIR_FREEDOMS[kind] for kind in changed)), kinds))
     return min(proposals, key=lambda proposal: proposal[0])[1] if proposals else {} if not pairs else None
 
 
-def _stacked(blocks: Iterable[Real], columns: int) -> Real:
+def _stack(blocks: Iterable[Real], columns: int) -> Real:
     return np.vstack([np.zeros((0, columns)), *blocks])
 
 
@@ -263,7 +269,7 @@ def _independent(matrix: Real) -> bool:
     return len(matrix) <= matrix.shape[1] and _rank(matrix) == len(matrix)
 
 
-def _local(matrix: Real) -> int:
+def _count_local_freedoms(matrix: Real) -> int:
     """Freedoms that links have one by one, all others held."""
     columns = matrix.shape[1]
     return sum(CONDITIONS - _rank(matrix[:, at : at + CONDITIONS]) for at in range(0, columns, CONDITIONS))

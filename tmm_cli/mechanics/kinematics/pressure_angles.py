@@ -19,7 +19,7 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.groups import Kernel, LinkStates, Placement, Wrench, link_states, towards
+from tmm_cli.mechanics.groups import GroupSolver, LinkStates, Placement, Wrench, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics.driver_range import SCAN, DriverRange
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import (
@@ -33,15 +33,15 @@ from tmm_cli.mechanics.numerics import (
     Real,
     cross,
     dot,
-    least,
-    top,
+    find_minima,
+    locate_extreme,
     unit,
 )
 from tmm_cli.mechanics.structure import Group, Pair
 
 
 @dataclass(frozen=True)
-class Pressure:
+class PressureAngle:
     """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
 
     pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
@@ -79,15 +79,15 @@ class Pressure:
 
 FLAT = 3  # places of the scan: beside a top that is bent no more than two are as high
 
-Lead = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
+DrivenLink = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
 
 
-def named(lead: Lead) -> str:
+def driving_pair_names(lead: DrivenLink) -> str:
     """The pairs in which a link is driven."""
     return ", ".join(pair.name for pair in lead[2])
 
 
-def followers(group: Group) -> Iterable[Lead]:
+def driven_links(group: Group) -> Iterable[DrivenLink]:
     """Links of a group that it drives: with the pair that holds them and those in which they are driven.
 
     Those held by the frame count, or the last one where none is.
@@ -103,22 +103,24 @@ def followers(group: Group) -> Iterable[Lead]:
     return on_frame or leads[-1:]
 
 
-def angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+def pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
     """Pressure angle of a driven link at every position, rad; nan where there is none."""
-    found: Real = np.arctan2(*sides(motion, kernel, at, lead))
+    found: Real = np.arctan2(*pressure_sine_and_cosine(motion, kernel, at, lead))
     return np.where(found < NO_PRESSURE, 0.0, found)
 
 
-def signed_angle(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Real:
+def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
     """Pressure angle with the side to which the force leans from the velocity, rad, for a link driven in one pair."""
-    across, along = _of_one_pair(motion, kernel, at, lead)
+    across, along = _single_pair_components(motion, kernel, at, lead)
     angles: Real = np.arctan2(across * np.sign(along), np.abs(along))
     return angles
 
 
-def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+def pressure_sine_and_cosine(
+    motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
+) -> tuple[Real, Real]:
     """What is to each other as sine and cosine of the pressure angle: both above zero."""
-    parts = list(_components(motion, kernel, at, lead))
+    parts = list(_force_components(motion, kernel, at, lead))
     if len(parts) == 1:
         ((power, aside),) = parts
         return np.abs(aside), np.abs(power)
@@ -131,13 +133,17 @@ def sides(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tupl
     return np.sqrt(lost * (loose + along)), np.abs(along)
 
 
-def _of_one_pair(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> tuple[Real, Real]:
+def _single_pair_components(
+    motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
+) -> tuple[Real, Real]:
     """Components of the driving force across and along the velocity of its point."""
-    ((power, aside),) = _components(motion, kernel, at, lead)
+    ((power, aside),) = _force_components(motion, kernel, at, lead)
     return aside, power
 
 
-def _components(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -> Iterable[tuple[Real, Real]]:
+def _force_components(
+    motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
+) -> Iterable[tuple[Real, Real]]:
     """Of the force in each pair in which a link is driven: its component along the velocity of its point, and across.
 
     The link is resisted by a unit moment, or a unit force along its guide. Against the resistance the components along
@@ -171,8 +177,8 @@ def _components(motion: LinkStates, kernel: Kernel, at: Placement, lead: Lead) -
 
 
 def find_pressure(
-    linkage: Linkage, kernels: tuple[Kernel, ...], driver_range: DriverRange, allowed: tuple[float, float]
-) -> tuple[Pressure, ...]:
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, allowed: tuple[float, float]
+) -> tuple[PressureAngle, ...]:
     """The largest pressure angle of every driven link; allowed: of sliding and of turning links (rad)."""
     ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
     q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
@@ -180,26 +186,34 @@ def find_pressure(
     found = []
     with np.errstate(all="ignore"):
         for number, kernel in enumerate(kernels):
-            upto = towards(kernels, kernel.group.links)
-            for lead in followers(kernel.group):
-                angles = angle(scan, kernel, scan.placements[number], lead)
+            upto = solvers_towards(kernels, kernel.group.links)
+            for lead in driven_links(kernel.group):
+                angles = pressure_angle(scan, kernel, scan.placements[number], lead)
                 if not np.any(np.isfinite(angles)):
                     continue
                 k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of those that are equal
                 place, value = float(q[k]), float(angles[k])
-                right = [end for end, inward in _ends(driver_range) if _right(linkage, upto, lead, end, inward * ends)]
+                right = [
+                    end
+                    for end, inward in _blocked_ends(driver_range)
+                    if _tends_to_right_angle(linkage, upto, lead, end, inward * ends)
+                ]
                 if right:
                     place, value = right[0], np.pi / 2
-                elif value > 0 and not _flat(angles[k : k + FLAT]):  # else rounding would tell where it is the largest
+                elif value > 0 and not _is_constant(
+                    angles[k : k + FLAT]
+                ):  # else rounding would tell where it is the largest
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
-                    back = partial(_negative, linkage, upto, lead)
-                    place, value = least(back, low, high)
-                    place, value = top(back, place, min(high - place, place - low)), -value
+                    back = partial(_negative_angle, linkage, upto, lead)
+                    place, value = find_minima(back, low, high)
+                    place, value = locate_extreme(back, place, min(high - place, place - low)), -value
                     if value - angles[k] < ROUNDINGS * ROUNDOFF:
                         place = float(q[k])
                 slides = lead[1].kind == "P"
                 limit = allowed[0 if slides else 1]
-                largest = Pressure(kernel.group.title, lead[0], named(lead), slides, value, place, limit)
+                largest = PressureAngle(
+                    kernel.group.title, lead[0], driving_pair_names(lead), slides, value, place, limit
+                )
                 other = _other_extreme(linkage, upto, lead, scan, number, place) if value > 0 else None
                 if other is not None:
                     largest = replace(largest, other=other[0], other_place=other[1])
@@ -208,13 +222,13 @@ def find_pressure(
 
 
 def _other_extreme(
-    linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, scan: LinkStates, number: int, place: float
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, scan: LinkStates, number: int, place: float
 ) -> tuple[float, float] | None:
     """The extreme of the pressure angle (rad) on the other side than that at `place`, and the driver's place there."""
     if len(lead[2]) > 1:
         return None
     q = scan.q
-    angles = signed_angle(scan, scan.kernels[number], scan.placements[number], lead)
+    angles = signed_pressure_angle(scan, scan.kernels[number], scan.placements[number], lead)
     known = np.isfinite(angles)  # at a change point there is none
     side = np.sign(angles[int(np.argmin(np.where(known, np.abs(q - place), np.inf)))])
     if not side or not np.ptp(angles[known]) > ALIKE_ANGLES:
@@ -222,47 +236,49 @@ def _other_extreme(
 
     def leaning(at: Real) -> Real:
         motion = link_states(linkage, kernels, at, 0)
-        angles: Real = side * signed_angle(motion, kernels[-1], motion.placements[-1], lead)
+        angles: Real = side * signed_pressure_angle(motion, kernels[-1], motion.placements[-1], lead)
         return angles
 
     k = int(np.nanargmin(side * angles))
     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
-    end, value = least(leaning, low, high)
-    end = top(leaning, end, min(high - end, end - low))
+    end, value = find_minima(leaning, low, high)
+    end = locate_extreme(leaning, end, min(high - end, end - low))
     return abs(float(value)), float(end)
 
 
 def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
     """The pressure angle of a driven link of a group at every position, rad; nan where there is none."""
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
-        for lead in followers(kernel.group) if kernel.group.title == group else ():
+        for lead in driven_links(kernel.group) if kernel.group.title == group else ():
             if lead[0] == link:
                 with np.errstate(all="ignore"):
-                    return angle(motion, kernel, at, lead)
+                    return pressure_angle(motion, kernel, at, lead)
     return np.full(np.shape(motion.q), np.nan)
 
 
-def _flat(angles: Real) -> bool:
+def _is_constant(angles: Real) -> bool:
     """Whether the angle stays as it is over these places of the scan."""
     return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
 
 
-def _ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
+def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
     """Ends of the range at which a group stops the driver, and where the range is from there."""
     stops = {limit.place for limit in driver_range.limits}
     return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
 
 
-def _right(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, end: float, inward: float) -> bool:
+def _tends_to_right_angle(
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, end: float, inward: float
+) -> bool:
     """Whether the angle of the last group is a right one at an end: as a polynomial of the root of what is left to it,
     once, four and sixteen times a step inward, it tells where it goes.
     """
-    near = -_negative(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
+    near = -_negative_angle(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
     return bool(abs(np.array([8, -6, 1]) @ near / 3 - np.pi / 2) < RIGHT_ANGLE)
 
 
-def _negative(linkage: Linkage, kernels: tuple[Kernel, ...], lead: Lead, q: Real) -> Real:
+def _negative_angle(linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, q: Real) -> Real:
     """Of the last group; where it is dead the angle is a right one."""
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
-    return np.where(at.dead, -np.pi / 2, -angle(motion, kernels[-1], at, lead))
+    return np.where(at.dead, -np.pi / 2, -pressure_angle(motion, kernels[-1], at, lead))

@@ -8,21 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.continuation import Walker
-from tmm_cli.mechanics.assembly.corrector import corrected
+from tmm_cli.mechanics.assembly.continuation import BranchFollower
+from tmm_cli.mechanics.assembly.corrector import correct_trace
 from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, GroupTooLargeError, SketchMismatchError
 from tmm_cli.mechanics.groups import (
     BranchTrace,
-    Drives,
-    Kernel,
+    DriverStates,
+    GroupSolver,
+    GroupState,
     LinkStates,
-    Newton,
+    NewtonSolver,
     Placement,
     Pose,
-    State,
     link_states,
-    reach,
-    towards,
+    slider_search_range,
+    solvers_towards,
 )
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import (
@@ -32,28 +32,30 @@ from tmm_cli.mechanics.numerics import (
     SAME_ASSEMBLY,
     SAME_IN_SKETCH,
     Real,
-    least_over_largest,
+    singular_value_ratio,
     solve,
     unit,
 )
 from tmm_cli.mechanics.structure import Group, turns_of_cycle
 
-TELLS = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
-FITS = 0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
+DISTINCT = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
+SKETCH_FITS = (
+    0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
+)
 
-Shown = dict[str, complex | float]  # points (m) and angles of links (rad) by their names
+SketchableValues = dict[str, complex | float]  # points (m) and angles of links (rad) by their names
 
 
-def sketchable(linkage: Linkage, poses: Mapping[str, Pose]) -> Shown:
+def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> SketchableValues:
     """Everything about some links that a sketch may name: points and angles."""
-    shown: Shown = {}
+    shown: SketchableValues = {}
     for name, pose in poses.items():
         shown |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
         shown[name] = float(np.angle(pose.z)[0])
     return shown
 
 
-def sketch_distance(sketched: Mapping[str, complex | float], shown: Shown, size: float) -> float:
+def sketch_distance(sketched: Mapping[str, complex | float], shown: SketchableValues, size: float) -> float:
     """The worst deviation of the sketch from an assembly: points against the group's size, angles against a radian."""
     worst = 0.0
     for name, value in sketched.items():
@@ -65,7 +67,7 @@ def sketch_distance(sketched: Mapping[str, complex | float], shown: Shown, size:
 
 
 def nearest_to_sketch(
-    kernel: Kernel, linkage: Linkage, assemblies: Sequence[Mapping[str, Pose]], shift: complex = 0j
+    kernel: GroupSolver, linkage: Linkage, assemblies: Sequence[Mapping[str, Pose]], shift: complex = 0j
 ) -> int:
     """Which of several assemblies the sketch shows. Raises AmbiguousSketchError when it does not tell.
 
@@ -73,7 +75,7 @@ def nearest_to_sketch(
     """
     if len(assemblies) == 1:
         return 0
-    shown = [sketchable(linkage, poses) for poses in assemblies]
+    shown = [sketchable_values(linkage, poses) for poses in assemblies]
     tells = [
         name
         for name in shown[0]
@@ -86,7 +88,7 @@ def nearest_to_sketch(
     given = {name: sketched[name] for name in tells if name in sketched}
     errors = [sketch_distance(given, one, kernel.size) for one in shown]
     best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
-    if not given or errors[best] > TELLS * errors[second]:
+    if not given or errors[best] > DISTINCT * errors[second]:
         choices = {name: (shown[best][name], shown[second][name]) for name in tells}
         raise AmbiguousSketchError(kernel.group, choices, len(assemblies))
     return best
@@ -104,7 +106,7 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
     return found
 
 
-def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = FITS) -> None:
+def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_FITS) -> None:
     """Every sketched point and angle, whether it decided something or not, lies about where it was drawn.
 
     Raises SketchMismatchError.
@@ -131,11 +133,11 @@ def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = FITS) -
 
 STARTS = 400  # in one round of looking for all assemblies
 MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
-QUIET = 3  # rounds without a new assembly that end the search
-MOST = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
+QUIET_ROUNDS = 3  # rounds without a new assembly that end the search
+MOST_ASSEMBLIES = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
 ROUNDS = 60  # of damped steps from a start that may be anywhere
 STRIDE = 0.5  # rad, or of the group's size: the longest step then
-CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
+SKETCH_CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
 
 
 def refuse_large_group(group: Group) -> None:
@@ -144,59 +146,63 @@ def refuse_large_group(group: Group) -> None:
         raise GroupTooLargeError(group, MOST_LINKS)
 
 
-def assembled(
+def assemble_by_iteration(
     group: Group,
     linkage: Linkage,
     poses: dict[str, Pose],
-    drives: Drives,
-    before: tuple[Kernel, ...],
-    like: Kernel | None = None,
-) -> tuple[Newton, Placement]:
+    drives: DriverStates,
+    before: tuple[GroupSolver, ...],
+    like: GroupSolver | None = None,
+) -> tuple[NewtonSolver, Placement]:
     """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
 
     Raises AssemblyError, AmbiguousSketchError.
     """
-    kernel = Newton.of(group, linkage)
+    kernel = NewtonSolver.of(group, linkage)
     q = np.array([linkage.sketch.at])
-    state = _sketched(kernel, linkage, poses, drives) or _searched(kernel, linkage, poses, drives)
+    state = _close_from_sketch(kernel, linkage, poses, drives) or _search_state(kernel, linkage, poses, drives)
     here = {**poses, **kernel.poses_of(state)}
-    if float(least_over_largest(kernel.matrix(here))[0]) < DEAD_SKETCH:
+    if float(singular_value_ratio(kernel.matrix(here))[0]) < DEAD_SKETCH:
         raise AmbiguousSketchError(group, {})
     kernel = replace(kernel, start=state)
     if not kernel.by_angle:
-        kernel = replace(kernel, trace=_traced(kernel, linkage, before, state, like))
+        kernel = replace(kernel, trace=_trace_branch(kernel, linkage, before, state, like))
     return kernel, kernel.place(poses, q, drives)
 
 
-def _traced(
-    kernel: Newton, linkage: Linkage, before: tuple[Kernel, ...], state: State, like: Kernel | None
+def _trace_branch(
+    kernel: NewtonSolver, linkage: Linkage, before: tuple[GroupSolver, ...], state: GroupState, like: GroupSolver | None
 ) -> BranchTrace | None:
-    before = towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
+    before = solvers_towards(before, {*kernel.group.known, *(d.base for d in kernel.group.drivers)})
 
     def source(q: Real, order: int) -> LinkStates:
         return link_states(linkage, before, q, order)
 
     turns = linkage.driver.kind == "turn"
-    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else reach(linkage)
+    half = np.pi * (turns_of_cycle(linkage) or 1) if turns else slider_search_range(linkage)
     known = like.followed if like is not None else None
-    trace = corrected(kernel, source, known, linkage.sketch.at, state) if known is not None else None
-    trace = trace or Walker(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
+    trace = correct_trace(kernel, source, known, linkage.sketch.at, state) if known is not None else None
+    trace = trace or BranchFollower(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return trace if trace is None or turns else replace(trace, unit=kernel.size)
 
 
-def placed_by_angles(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, unwrapped: Real) -> State:
+def placed_by_angles(
+    kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, unwrapped: Real
+) -> GroupState:
     """Origins for given angles (..., links), as near to closing as they can come."""
     shape, links = unwrapped.shape[:-1], len(kernel.group.links)
-    still = State(np.zeros((*shape, links), complex), unwrapped)
+    still = GroupState(np.zeros((*shape, links), complex), unwrapped)
     known = {name: pose.spread(shape) for name, pose in poses.items()}
     everything = {**known, **kernel.poses_of(still)}
     places = [3 * k + part for k in range(links) for part in (0, 1)]
     matrix = kernel.matrix(everything)[..., places]
     found = solve(matrix, -kernel.residuals(everything, drives))
-    return State(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
+    return GroupState(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
 
 
-def close_from_afar(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, state: State) -> tuple[State, Real]:
+def close_from_afar(
+    kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, state: GroupState
+) -> tuple[GroupState, Real]:
     """Damped steps, then Newton's method; the states and whether each has closed."""
     known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):
@@ -215,26 +221,26 @@ def close_from_afar(kernel: Newton, poses: Mapping[str, Pose], drives: Drives, s
 
 
 def all_assemblies(
-    kernel: Newton, poses: Mapping[str, Pose], drives: Drives, seed: int = 1, starts: int = STARTS
-) -> list[State]:
+    kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, seed: int = 1, starts: int = STARTS
+) -> list[GroupState]:
     """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
 
     Of a group that moves by itself at this place, some of them.
     """
     random = np.random.default_rng(seed)
-    found: list[State] = []
+    found: list[GroupState] = []
     quiet = 0
     links = len(kernel.group.links)
-    while quiet < QUIET and len(found) < MOST:
+    while quiet < QUIET_ROUNDS and len(found) < MOST_ASSEMBLIES:
         unwrapped = random.uniform(-np.pi, np.pi, (starts, links))
         start = placed_by_angles(kernel, poses, drives, unwrapped)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
         for k in np.flatnonzero(closed):
-            if len(found) == MOST:
+            if len(found) == MOST_ASSEMBLIES:
                 break
-            state = State(states.x[k : k + 1], np.angle(unit(states.unwrapped[k : k + 1])))
-            if not any(_alike(kernel, state, other) for other in found):
+            state = GroupState(states.x[k : k + 1], np.angle(unit(states.unwrapped[k : k + 1])))
+            if not any(_is_same_state(kernel, state, other) for other in found):
                 found.append(state)
                 new = True
         quiet = 0 if new else quiet + 1
@@ -243,27 +249,31 @@ def all_assemblies(
     return sorted(found, key=lambda s: tuple(np.round(s.unwrapped[0], 9)))
 
 
-def _alike(kernel: Newton, one: State, other: State) -> bool:
+def _is_same_state(kernel: NewtonSolver, one: GroupState, other: GroupState) -> bool:
     turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
     return bool(np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(one.x - other.x)) < SAME_ASSEMBLY * kernel.size)
 
 
-def _sketched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State | None:
+def _close_from_sketch(
+    kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
+) -> GroupState | None:
     """The assembly that a full sketch leads to, when it stays near to it."""
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     if unwrapped is None:
         return None
     start = placed_by_angles(kernel, poses, drives, unwrapped)
     state, closed = close_from_afar(kernel, poses, drives, start)
-    if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > CLOSE:
+    if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > SKETCH_CLOSE:
         return None
-    found = sketchable(linkage, kernel.poses_of(state))
+    found = sketchable_values(linkage, kernel.poses_of(state))
     sketched = {**linkage.sketch.points, **linkage.sketch.angles}
     given = {name: value for name, value in sketched.items() if name in found}
-    return state if sketch_distance(given, found, kernel.size) < CLOSE else None
+    return state if sketch_distance(given, found, kernel.size) < SKETCH_CLOSE else None
 
 
-def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> Real | None:
+def sketched_angles(
+    kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
+) -> Real | None:
     """Angles of the group's links read off the sketch, (..., links); None when it does not show all of them."""
     angles: dict[str, Any] = {name: np.angle(pose.z) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
@@ -295,10 +305,12 @@ def sketched_angles(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose],
     return np.stack([angles[link] + still for link in kernel.group.links], axis=-1)
 
 
-def _searched(kernel: Newton, linkage: Linkage, poses: Mapping[str, Pose], drives: Drives) -> State:
+def _search_state(
+    kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
+) -> GroupState:
     states = all_assemblies(kernel, poses, drives)
     if not states:
         raise AssemblyError(kernel.group)
-    if len(states) == MOST:  # places of one motion of a group that moves by itself
+    if len(states) == MOST_ASSEMBLIES:  # places of one motion of a group that moves by itself
         raise AmbiguousSketchError(kernel.group, {})
     return states[nearest_to_sketch(kernel, linkage, [kernel.poses_of(state) for state in states])]

@@ -1,7 +1,10 @@
-"""Equations of pairs as rows, and their derivatives by the places of links: of all pairs at once, or of those cut open.
+"""Newton's method on the constraint equations of the pairs: loop closure, and the multibody formulation.
 
-E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3; J. Garcia de Jalon, E. Bayo, Kinematic
-and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
+The equations of the pairs as rows, and their derivatives with respect to the positions of the links: of all pairs at
+once (multibody), or of those at which the loops are cut open (loop closure).
+
+E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3, 4 and 8; J. Garcia de Jalon, E. Bayo,
+Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3; A. A. Shabana, Dynamics of Multibody Systems, ch. 3.
 """
 
 from __future__ import annotations
@@ -15,27 +18,28 @@ import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, answers
 from tmm_cli.mechanics.groups import (
-    PAIRS,
+    PAIR_CONSTRAINTS,
     Accel,
-    Constraint,
-    Driven,
-    Drives,
-    Guided,
+    DriverConstraint,
+    DriverStates,
+    GuideGeometry,
+    PairConstraint,
     Pose,
     Poses,
     Rate,
     Rates,
     Wrench,
+    drives_at,
     frame_state,
 )
-from tmm_cli.mechanics.kinematics import move
+from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import Real, Vector, dot, solve, unit
 from tmm_cli.mechanics.structure import Pair
 
 
 @dataclass(frozen=True)
-class Rows:
+class PairEquations:
     """Two rows a pair, then the driver's if it is one of them. size (m): what lengths are counted in."""
 
     linkage: Linkage
@@ -44,17 +48,17 @@ class Rows:
     size: float = 1.0
 
     @cached_property
-    def constraints(self) -> tuple[Constraint, ...]:
+    def constraints(self) -> tuple[PairConstraint, ...]:
         """What each pair, and the driver, asks of its links."""
-        found = tuple(PAIRS[pair.kind](pair, self.linkage) for pair in self.pairs)
-        return (*found, Driven.of(self.linkage.driver, self.linkage)) if self.driven else found
+        found = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
+        return (*found, DriverConstraint.of(self.linkage.driver, self.linkage)) if self.driven else found
 
     @cached_property
     def scale(self) -> Real:
         """What makes each row a pure number."""
         return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
-    def residuals(self, poses: Poses, drives: Drives) -> Real:
+    def residuals(self, poses: Poses, drives: DriverStates) -> Real:
         """What each row is short of zero, (positions, rows)."""
         return np.stack([row for c in self.constraints for row in c.residuals(poses, drives)], axis=-1) * self.scale
 
@@ -84,7 +88,7 @@ class Rows:
         return found
 
 
-def by_links(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
+def columns_by_link(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
     """A vector and a number of each moving link, of its origin and its angle, in the columns of the matrix."""
     found = [part for at, around in map(parts.__getitem__, linkage.moving) for part in (at.real, at.imag, around)]
     return np.stack(found, axis=-1)
@@ -93,12 +97,12 @@ def by_links(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real
 # Newton's method on the closure of a whole linkage, started from the nearest of places that were followed once.
 
 
-ROUNDS = 12  # of Newton's method at most; more help nothing where it converges at all
-NODES = 36  # in a turn of the driver, or over the length of the linkage to both sides of the sketch
-ROUNDING = 1e-11  # a gap below this that no longer halves is rounding
+MOST_ITERATIONS = 12  # of Newton's method at most; more help nothing where it converges at all
+TRACED_POSITIONS = 36  # in a turn of the driver, or over the length of the linkage to both sides of the sketch
+LEAST_GAP = 1e-11  # a gap below this that no longer halves is rounding
 
 
-class Closure(Protocol):
+class LinkageClosure(Protocol):
     """The equations of a linkage in coordinates X (positions, unknowns) of its own choice, without dimension."""
 
     def residuals(self, X: Real, q: Real) -> Real:
@@ -111,25 +115,25 @@ class Closure(Protocol):
         """The coordinates of given poses."""
 
 
-def close(closure: Closure, X: Real, q: Real, tolerance: float) -> Real:
+def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float) -> Real:
     """Newton's method, each position until its gaps are within the tolerance, or are rounding; else it is nan."""
     active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ITERATIONS):
         residuals = closure.residuals(X, q)
         size = np.max(np.abs(residuals), axis=-1)
-        active = active & ~(size <= tolerance) & ~((size < ROUNDING) & (size > last / 2))
+        active = active & ~(size <= tolerance) & ~((size < LEAST_GAP) & (size > last / 2))
         if not np.any(active):
             break
         step = solve(closure.matrix(X, q), -residuals)
         X, last = np.where(active[:, None], X + step, X), size
     if np.any(active):
         size = np.max(np.abs(closure.residuals(X, q)), axis=-1)
-        X = np.where((active & ~(size <= max(tolerance, ROUNDING)))[:, None], np.nan, X)
+        X = np.where((active & ~(size <= max(tolerance, LEAST_GAP)))[:, None], np.nan, X)
     return X
 
 
 @dataclass(frozen=True)
-class Nodes:
+class TracedCoordinates:
     """Coordinates of a closure along the driver's way, at growing places q."""
 
     q: Real
@@ -144,29 +148,29 @@ class Nodes:
         return self.X[nearer]
 
 
-def follow(case: Case, closure: Closure) -> Nodes:
+def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
     """A walk from the sketch to both sides, as far as the linkage goes; half a turn each way for a crank."""
     at = case.linkage.sketch.at
     here = np.array([at])
-    poses = dict(move(case.linkage, case.kernels, here, case.law).poses)
+    poses = dict(compute_motion(case.linkage, case.kernels, here, case.law).poses)
     turns = case.linkage.driver.kind == "turn"
     reach = np.pi if turns else case.size
-    q, X = [at], [close(closure, closure.sketched(poses, here), here, 0.0)[0]]
-    ways = [_walk(closure, X[0], at, sense * reach / (NODES // 2)) for sense in (-1, 1)]
-    whole = turns and all(len(way) == NODES // 2 for way in ways)
+    q, X = [at], [close_positions(closure, closure.sketched(poses, here), here, 0.0)[0]]
+    ways = [_trace_one_way(closure, X[0], at, sense * reach / (TRACED_POSITIONS // 2)) for sense in (-1, 1)]
+    whole = turns and all(len(way) == TRACED_POSITIONS // 2 for way in ways)
     q = [*(place for place, _ in reversed(ways[0])), at, *(place for place, _ in ways[1])]
     X = [*(found for _, found in reversed(ways[0])), X[0], *(found for _, found in ways[1])]
-    return Nodes(np.array(q), np.array(X), 2 * np.pi if whole else None)
+    return TracedCoordinates(np.array(q), np.array(X), 2 * np.pi if whole else None)
 
 
-def _walk(closure: Closure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
+def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
     """Places and coordinates one step after the other, until it no longer closes."""
     found: list[tuple[float, Real]] = []
     with np.errstate(all="ignore"):
-        for k in range(1, NODES // 2 + 1):
+        for k in range(1, TRACED_POSITIONS // 2 + 1):
             q = np.array([at + k * step])
-            X = close(closure, X[None, :], q, 0.0)[0]
-            if not np.max(np.abs(closure.residuals(X[None, :], q))) < ROUNDING:
+            X = close_positions(closure, X[None, :], q, 0.0)[0]
+            if not np.max(np.abs(closure.residuals(X[None, :], q))) < LEAST_GAP:
                 break
             found.append((float(q[0]), X))
     return found
@@ -181,7 +185,7 @@ def _walk(closure: Closure, X: Real, at: float, step: float) -> list[tuple[float
 
 
 @dataclass(frozen=True)
-class Branch:
+class TreeBranch:
     """A pair of the tree: it joins link `own` to one that is nearer to the frame."""
 
     pair: Pair
@@ -198,13 +202,13 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class Loops:
+class LoopEquations:
     """Coordinates: one a moving link, the angle or run in the pair that joins it to the tree; the driver's is given."""
 
     case: Case
 
     @cached_property
-    def tree(self) -> tuple[Branch, ...]:
+    def tree(self) -> tuple[TreeBranch, ...]:
         """Branches from the frame outward, drivers first where there is a choice."""
         structure = self.case.structure
         driving = [structure.driving_pair(driver) for driver in structure.drivers]
@@ -214,7 +218,7 @@ class Loops:
             pair = next(p for p in pairs if len({p.i, p.j} & reached) == 1)
             own = pair.j if pair.i in reached else pair.i
             reached.add(own)
-            found.append(Branch(pair, own))
+            found.append(TreeBranch(pair, own))
         return tuple(found)
 
     @cached_property
@@ -224,9 +228,9 @@ class Loops:
         return tuple(pair for pair in self.case.structure.pairs if pair not in inside)
 
     @cached_property
-    def rows(self) -> Rows:
+    def rows(self) -> PairEquations:
         """Their equations."""
-        return Rows(self.case.linkage, self.cut, size=self.case.size)
+        return PairEquations(self.case.linkage, self.cut, size=self.case.size)
 
     @cached_property
     def given(self) -> int:
@@ -283,7 +287,7 @@ class Loops:
             if slide is None:
                 columns.append(poses[branch.own].turned - poses[branch.before].turned)
             else:
-                here = Guided.at(slide, poses)
+                here = GuideGeometry.at(slide, poses)
                 columns.append(dot(here.u, here.off))
         return np.stack(columns, axis=-1)
 
@@ -311,7 +315,7 @@ class Loops:
                     moved = 1j * (poses[link].x - self._place(branch.pair, branch.own, poses))
                     R[:, 3 * n + 2, k] = 1.0
                 else:
-                    moved = Guided.at(slide, poses).u * (1 if branch.runs else -1)
+                    moved = GuideGeometry.at(slide, poses).u * (1 if branch.runs else -1)
                 R[:, 3 * n, k], R[:, 3 * n + 1, k] = moved.real, moved.imag
         return R
 
@@ -333,7 +337,7 @@ class Loops:
                 w, e = rate.w, accel.e
             arm, v, a = place - own.x, rate.at(place - before.x), accel.at(place - before.x, rate.w)
             if slide is not None:
-                u = Guided.at(slide, poses).u
+                u = GuideGeometry.at(slide, poses).u
                 sense = 1 if branch.runs else -1
                 v = v + sense * s1 * u
                 # Coriolis; a carrier sees its runner's point run backward through its own points
@@ -361,31 +365,92 @@ class Loops:
 
 
 @lru_cache(maxsize=8)
-def _followed(case: Case) -> tuple[Loops, Nodes]:
+def _traced_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
     """The walk along the driver's way, once for all tolerances."""
-    loops = Loops(case)
-    return loops, follow(case, loops)
+    loops = LoopEquations(case)
+    return loops, trace_coordinates(case, loops)
 
 
-def prepare(tolerance: float, case: Case) -> Callable[[Real], Answers]:
+def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], Answers]:
     """The method that stops when every loop closes within the tolerance, a share of the linkage's size (or rad)."""
-    loops, nodes = _followed(case)
+    loops, nodes = _traced_loops(case)
 
     def at(q: Real) -> Answers:
-        poses = loops.poses(close(loops, nodes.near(q), q, tolerance), q)
+        poses = loops.poses(close_positions(loops, nodes.near(q), q, tolerance), q)
         links, R = loops.rows.matrix(poses), loops.transformation(poses)
         J = links @ R
         free, given = J[..., loops.free], J[..., loops.given]
         still = np.zeros(len(q))
         speeds = loops.all(solve(free, -given), still + 1)
         first, bent = loops.states(poses, speeds, [still] * len(speeds))
-        accels = by_links(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
+        accels = columns_by_link(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
         bends = np.einsum("nrc,nc->nr", links, accels) + loops.rows.velocity_terms(poses, first)
         first, second = loops.states(poses, speeds, loops.all(solve(free, -bends), still))
         motion = case.motion(q, poses, first, second)
         on = case.wrenches(motion)
-        loads = by_links(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
+        loads = columns_by_link(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
         forces, balancing = loops.forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
         return answers(case, motion, forces, balancing)
+
+    return at
+
+
+TOLERANCE = 0.0  # until gaps are rounding
+
+
+@dataclass(frozen=True)
+class MultibodyEquations:
+    """Coordinates x, y, angle of every moving link in their order; rows: two a pair, the driver's last."""
+
+    case: Case
+
+    @cached_property
+    def rows(self) -> PairEquations:
+        return PairEquations(self.case.linkage, self.case.structure.pairs, driven=True)
+
+    @cached_property
+    def first(self) -> dict[str, int]:
+        """Where the three coordinates of each link begin."""
+        return {name: 3 * k for k, name in enumerate(self.case.linkage.moving)}
+
+    def poses(self, X: Real) -> dict[str, Pose]:
+        """Poses of all links, the frame's too."""
+        found = {FRAME: frame_state(X[:, 0])[0]}
+        for name, k in self.first.items():
+            found[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
+        return found
+
+    def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
+        return columns_by_link(self.case.linkage, {name: (poses[name].x, poses[name].turned) for name in self.first})
+
+    def residuals(self, X: Real, q: Real) -> Real:
+        return self.rows.residuals(self.poses(X), drives_at(self.case.linkage, q))
+
+    def matrix(self, X: Real, q: Real) -> Real:
+        return self.rows.matrix(self.poses(X))
+
+
+def prepare_multibody(case: Case) -> Callable[[Real], Answers]:
+    """One linear system a position and order: J^T for the forces, J for all else."""
+    body = MultibodyEquations(case)
+    nodes = trace_coordinates(case, body)
+
+    def at(q: Real) -> Answers:
+        X = close_positions(body, nodes.near(q), q, TOLERANCE)
+        J, poses = body.matrix(X, q), body.poses(X)
+        asked = np.zeros_like(X)
+        asked[:, -1] = 1.0
+        _, rest, still = frame_state(q)
+        first, second = {FRAME: rest}, {FRAME: still}
+        V = solve(J, asked)
+        for name, k in body.first.items():
+            first[name] = Rate(V[:, k] + 1j * V[:, k + 1], V[:, k + 2])
+        A = solve(J, -body.rows.velocity_terms(poses, first))
+        for name, k in body.first.items():
+            second[name] = Accel(A[:, k] + 1j * A[:, k + 1], A[:, k + 2])
+        motion = case.motion(q, poses, first, second)
+        on = {name: (wrench.force, wrench.moment) for name, wrench in case.wrenches(motion).items()}
+        multipliers = solve(np.swapaxes(J, -1, -2), -columns_by_link(case.linkage, on))
+        return answers(case, motion, body.rows.reactions(poses, multipliers), multipliers[:, -1])
 
     return at

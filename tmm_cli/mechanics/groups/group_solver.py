@@ -16,11 +16,11 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.branch import BranchTrace, SmoothWay, Winding
+from tmm_cli.mechanics.groups.branch_trace import AccumulatedAngles, BranchTrace, ChangePoints
 from tmm_cli.mechanics.groups.state import (
     Accel,
     Accels,
-    Drives,
+    DriverStates,
     GroupReactions,
     Placement,
     Pose,
@@ -33,7 +33,7 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import NEAR_DEAD, ROUNDINGS, Real, Vector, cross, dot, roundoff, unit
 from tmm_cli.mechanics.structure import Group, Pair
 
-__all__ = ["Accels", "Closed", "Dyad", "Kernel", "Poses", "Rates"]
+__all__ = ["Accels", "ClosedFormSolver", "Dyad", "GroupSolver", "Poses", "Rates"]
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def slider_end(pair: Pair, own: str) -> SliderEnd:
     return SliderEnd(slide.runner, slide.at, slide.through, slide.direction - slide.turned, -slide.turned, False)
 
 
-def seen(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
+def pair_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
     """A lower pair as its link `own` sees it."""
     if pair.kind == "P":
         return slider_end(pair, own)
@@ -95,7 +95,7 @@ def seen(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
 
 
 @dataclass(frozen=True)
-class Kernel(ABC):
+class GroupSolver(ABC):
     """An Assur group that can be solved."""
 
     group: Group
@@ -107,7 +107,7 @@ class Kernel(ABC):
         return None
 
     @abstractmethod
-    def rebind(self, linkage: Linkage) -> Kernel:
+    def rebind(self, linkage: Linkage) -> GroupSolver:
         """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
 
     def side(self, q: Real) -> Real:
@@ -122,16 +122,16 @@ class Kernel(ABC):
         return self.near
 
     @abstractmethod
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         """Places of its links at the driver's places q, or the nearest it comes to being assembled (see residual)."""
 
     @abstractmethod
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         """Velocities of its links."""
 
     @abstractmethod
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         """Accelerations of its links; rates holds those of its own links too."""
 
@@ -145,7 +145,7 @@ class Kernel(ABC):
 
 
 @dataclass(frozen=True)
-class Closed(Kernel):
+class ClosedFormSolver(GroupSolver):
     """A group whose places are found in closed form. sign tells its two assemblies apart.
 
     winding: how often its links have gone round, where something depends on that. way: where it goes smoothly through
@@ -153,8 +153,8 @@ class Closed(Kernel):
     """
 
     sign: Any = field(default=1, kw_only=True)
-    winding: Winding | None = field(default=None, kw_only=True)
-    way: SmoothWay | None = field(default=None, kw_only=True)
+    winding: AccumulatedAngles | None = field(default=None, kw_only=True)
+    way: ChangePoints | None = field(default=None, kw_only=True)
 
     def side(self, q: Real) -> Real:
         return super().side(q) if self.way is None else self.way.side(q)
@@ -188,16 +188,16 @@ class Closed(Kernel):
     def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
         """Its outer pairs, each as its own link sees it."""
 
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         at = (self if self.way is None else replace(self, sign=self.sign * self.way.side(q))).closed(poses, drives)
         return at if self.winding is None else replace(at, poses=self.winding.followed(self.group.links, at.poses, q))
 
     @abstractmethod
-    def closed(self, poses: Poses, drives: Drives) -> Placement:
+    def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         """Places of its links in the group's own assembly."""
 
     @abstractmethod
-    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> Real:
+    def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         """The rate at which its residual grows, from the motion of the links it hangs on and of its drivers alone."""
 
 
@@ -207,7 +207,7 @@ Inner = TypeVar("Inner", bound=HingeEnd | SliderEnd)
 
 
 @dataclass(frozen=True)
-class Dyad(Closed, Generic[EndA, EndB, Inner]):
+class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
     """An Assur group of class II: two links, one inner pair, two outer pairs."""
 
     ends: tuple[EndA, EndB]
@@ -224,9 +224,9 @@ class Dyad(Closed, Generic[EndA, EndB, Inner]):
     def of(cls, group: Group, linkage: Linkage) -> Self:
         """The inner pair is seen from link b."""
         a, b = group.links
-        ends: Any = (seen(group.outer[0], a, linkage), seen(group.outer[1], b, linkage))
-        size = reduce(np.maximum, [spread(linkage, link) for link in (a, b, *(end.known for end in ends))])
-        inner: Any = seen(group.inner[0], b, linkage)
+        ends: Any = (pair_end(group.outer[0], a, linkage), pair_end(group.outer[1], b, linkage))
+        size = reduce(np.maximum, [link_extent(linkage, link) for link in (a, b, *(end.known for end in ends))])
+        inner: Any = pair_end(group.inner[0], b, linkage)
         return cls(group, size, ends, inner)
 
     @property
@@ -242,18 +242,18 @@ class Dyad(Closed, Generic[EndA, EndB, Inner]):
         return self.group.links[1]
 
 
-def spread(linkage: Linkage, link: str) -> Any:
+def link_extent(linkage: Linkage, link: str) -> Any:
     """The farthest that a point of a link is from its first one, m."""
     points = list(linkage.links[link].points.values()) or [0j]
     return reduce(np.maximum, [np.abs(point - points[0]) for point in points])
 
 
-def reach(linkage: Linkage) -> float:
+def slider_search_range(linkage: Linkage) -> float:
     """How far (m) to both sides of the sketch a sliding driver is looked at: nothing is as long as that."""
-    return 4 * (max(spread(linkage, link) for link in linkage.links) or 1.0)
+    return 4 * (max(link_extent(linkage, link) for link in linkage.links) or 1.0)
 
 
-def line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
+def guide_line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
     """A point of the guide and its direction, in the drawing's axes."""
     pose = poses[run.known]
     return pose.at(run.there), pose.z * unit(run.direction)
@@ -262,31 +262,31 @@ def line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
 # A link held by two guides: where two straight lines of known links meet. Shared by PRP and RPP.
 
 
-def meet(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
+def intersect_lines(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
     """The common point of the lines through P along u and through Q along v, and u x v (0 when parallel)."""
     det = cross(u, v)
     with np.errstate(divide="ignore", invalid="ignore"):
         return P + u * (cross(Q - P, v) / det), det
 
 
-def parallel(det: Real) -> tuple[Real, Real]:
+def parallel_residual(det: Real) -> tuple[Real, Real]:
     """Residual and slack of two guides: they are parallel within rounding, or not."""
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * roundoff(det))
 
 
-def turned_apart(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
+def parallel_residual_rate(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
     """Rate of the residual -|u x v| when the two guides turn."""
     rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
     return rate
 
 
-def slide_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
+def common_point_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
     """Velocity of the common point when the two guides carry it with v1 and v2 and it runs along u1 and u2."""
     velocity: Vector = v1 + u1 * (cross(v2 - v1, u2) / det)
     return velocity
 
 
-def slide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]) -> Vector:
+def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]) -> Vector:
     """Acceleration that a guide gives a point running on it, without the unknown part along the guide (Coriolis in)."""
     origin, u, rate, accel = guide
     arm = point - origin
@@ -295,7 +295,7 @@ def slide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, R
     return acceleration
 
 
-def split(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:
+def split_across_guides(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:
     """The two forces across u1 and across u2 that balance `rest`."""
     return 1j * u1 * (-dot(rest, u2) / det), 1j * u2 * (dot(rest, u1) / det)
 
@@ -307,13 +307,13 @@ Step = TypeVar("Step")
 
 
 @dataclass(frozen=True)
-class Wrapped(Kernel):
+class WrappedSolver(GroupSolver):
     """A subclass overrides one of the steps, or `passed`, through which all of them go."""
 
-    inner: Kernel
+    inner: GroupSolver
 
     @classmethod
-    def around(cls, inner: Kernel, *own: Any) -> Self:
+    def around(cls, inner: GroupSolver, *own: Any) -> Self:
         """A kernel about another one; own: the fields of the subclass."""
         return cls(inner.group, inner.size, inner, *own)
 
@@ -324,14 +324,14 @@ class Wrapped(Kernel):
     def rebind(self, linkage: Linkage) -> Self:
         return replace(self, inner=self.inner.rebind(linkage))
 
-    def place(self, poses: Poses, q: Real, drives: Drives) -> Placement:
+    def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         return self.passed(self.inner.place, poses, q, drives)
 
-    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: Drives) -> tuple[Rate, ...]:
+    def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         return self.passed(self.inner.rates, at, poses, rates, drives)
 
     def accelerations(
-        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: Drives
+        self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         return self.passed(self.inner.accelerations, at, poses, rates, accels, drives)
 

@@ -15,12 +15,21 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.choose import closed_form
-from tmm_cli.mechanics.assembly.search import all_assemblies, close_from_afar
-from tmm_cli.mechanics.assembly.triad import Triad, starts
-from tmm_cli.mechanics.groups import Closed, Drives, Kernel, LinkStates, Newton, Pose, State, link_states
+from tmm_cli.mechanics.assembly.assembling import closed_form_solver
+from tmm_cli.mechanics.assembly.sketch_matching import all_assemblies, close_from_afar
+from tmm_cli.mechanics.assembly.triad import Triad, triad_starts
+from tmm_cli.mechanics.groups import (
+    ClosedFormSolver,
+    DriverStates,
+    GroupSolver,
+    GroupState,
+    LinkStates,
+    NewtonSolver,
+    Pose,
+    link_states,
+)
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import CLOSED, DEAD, MEET, SAME_ASSEMBLY, least_over_largest
+from tmm_cli.mechanics.numerics import ASSEMBLIES_MEET, DEAD, GROUP_CLOSED, SAME_ASSEMBLY, singular_value_ratio
 from tmm_cli.mechanics.structure import Group, Structure
 
 Method = Literal["closed form", "polynomial", "angles", "many starts"]
@@ -85,7 +94,7 @@ class Assemblies:
     lost: tuple[Group, ...] = ()
 
 
-def listed(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
+def name_assembly_files(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
     """The groups with the names of their files: assemblies-III-2-3-4-5, with the position when there are several."""
     found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
     for here in places:
@@ -99,7 +108,7 @@ def listed(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAss
 
 
 def find_assemblies(
-    linkage: Linkage, structure: Structure, kernels: tuple[Kernel, ...], q: float, number: int | None = None
+    linkage: Linkage, structure: Structure, kernels: tuple[GroupSolver, ...], q: float, number: int | None = None
 ) -> Assemblies:
     """All assemblies at q of the groups given as they are assembled, and of the one after them.
 
@@ -112,36 +121,36 @@ def find_assemblies(
     placed = {link: motion.poses[link] for link in (FRAME, *(driver.link for driver in linkage.cranks))}
     for group in [*(kernel.group for kernel in kernels), *([undecided] if undecided else [])]:
         if all(bool(np.isfinite(motion.poses[link].x[0] + motion.poses[link].z[0])) for link in group.known):
-            found.append(_of_group(group, linkage, motion, dict(placed)))
+            found.append(_list_assemblies(group, linkage, motion, dict(placed)))
         else:
             lost.append(group)
         placed |= {link: motion.poses[link] for link in group.links if link in motion.poses}
     return Assemblies(q, number, motion.poses, tuple(found), undecided, tuple(lost))
 
 
-def _of_group(group: Group, linkage: Linkage, motion: LinkStates, placed: Mapping[str, Pose]) -> GroupAssemblies:
-    kernel = closed_form(group, linkage)
+def _list_assemblies(group: Group, linkage: Linkage, motion: LinkStates, placed: Mapping[str, Pose]) -> GroupAssemblies:
+    kernel = closed_form_solver(group, linkage)
     if kernel is not None:
-        own = tuple(_of_closed(kernel, linkage, placed, motion.drives))
+        own = tuple(_closed_form_assemblies(kernel, linkage, placed, motion.drives))
         found = GroupAssemblies(group, own, "closed form", kernel.assemblies)
     else:
-        found = _of_higher(group, linkage, placed, motion)
-    sketched = _sketched(group, motion)
+        found = _iterated_assemblies(group, linkage, placed, motion)
+    sketched = _sketched_poses(group, motion)
     if sketched is None:
         return found
     size = max((abs(p) for link in group.links for p in linkage.links[link].points.values()), default=1.0) or 1.0
-    marked = [replace(a, of_sketch=_apart(a.poses, sketched, size) < SAME_ASSEMBLY) for a in found.assemblies]
+    marked = [replace(a, of_sketch=_pose_distance(a.poses, sketched, size) < SAME_ASSEMBLY) for a in found.assemblies]
     return replace(found, assemblies=tuple(marked))
 
 
-def _sketched(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
+def _sketched_poses(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
     """The group's own poses in the assembly of the sketch, if it is decided and comes so far."""
     poses = {link: motion.poses[link] for link in group.links if link in motion.poses}
     sound = len(poses) == len(group.links) and all(np.isfinite(p.x[0] + p.z[0]) for p in poses.values())
     return poses if sound else None
 
 
-def _apart(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
+def _pose_distance(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
     """How far two poses of the same links are apart; infinite where one of them is nothing."""
     off = max(
         abs(complex(p.x[0] - other[n].x[0])) / size + abs(complex(p.z[0] - other[n].z[0])) for n, p in one.items()
@@ -149,7 +158,7 @@ def _apart(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> f
     return float(off) if np.isfinite(off) else np.inf
 
 
-def _assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose], margin: float) -> Assembly:
+def _make_assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose], margin: float) -> Assembly:
     known = {point for link in placed for point in linkage.links[link].points}
     points = {
         point: complex(pose.at(local)[0])
@@ -161,45 +170,49 @@ def _assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose]
     return Assembly(poses, angles, points, margin)
 
 
-def _of_closed(kernel: Closed, linkage: Linkage, placed: Mapping[str, Pose], drives: Drives) -> Iterable[Assembly]:
+def _closed_form_assemblies(
+    kernel: ClosedFormSolver, linkage: Linkage, placed: Mapping[str, Pose], drives: DriverStates
+) -> Iterable[Assembly]:
     """One for each sign, one in a dead position, none where it does not reach."""
     for sign in (1, -1)[: kernel.assemblies]:
         with np.errstate(invalid="ignore", divide="ignore"):
             at = replace(kernel, sign=sign).closed(placed, drives)
         if not at.assembled[0] or not np.isfinite(at.a.x[0] + at.b.x[0]):
             return
-        yield _assembly(linkage, placed, dict(zip(kernel.group.links, at.poses, strict=True)), float(at.margin[0]))
+        yield _make_assembly(linkage, placed, dict(zip(kernel.group.links, at.poses, strict=True)), float(at.margin[0]))
         if at.dead[0]:
             return
 
 
-def _of_higher(group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates) -> GroupAssemblies:
+def _iterated_assemblies(
+    group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
+) -> GroupAssemblies:
     """Groups of class III and higher, and those with higher pairs or drivers in them."""
-    kernel = Newton.of(group, linkage)
+    kernel = NewtonSolver.of(group, linkage)
     with np.errstate(all="ignore"):
-        states, method, most = _searched(kernel, linkage, placed, motion)
+        states, method, most = _search_states(kernel, linkage, placed, motion)
         found: list[Assembly] = []
         moves = False
         for state in states:
             poses = kernel.poses_of(state)
-            margin = float(least_over_largest(kernel.matrix({**placed, **poses}))[0])
-            if margin < DEAD and _moves(kernel, state, placed, motion.drives):
+            margin = float(singular_value_ratio(kernel.matrix({**placed, **poses}))[0])
+            if margin < DEAD and _moves_by_itself(kernel, state, placed, motion.drives):
                 if moves:
                     continue
                 moves = True
-            if not any(_same(kernel.size, poses, margin, other) for other in found):
-                found.append(_assembly(linkage, placed, poses, margin))
+            if not any(_is_listed(kernel.size, poses, margin, other) for other in found):
+                found.append(_make_assembly(linkage, placed, poses, margin))
     found.sort(key=lambda a: tuple(round(angle, 6) for angle in a.angles.values()))
     return GroupAssemblies(group, tuple(found), method, most, moves)
 
 
-def _searched(
-    kernel: Newton, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
-) -> tuple[list[State], Method, int | None]:
+def _search_states(
+    kernel: NewtonSolver, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
+) -> tuple[list[GroupState], Method, int | None]:
     """States of all assemblies (some more than once), the way they were found, and how many there are at most."""
     drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
-    found = None if triad is None else starts(triad, placed)
+    found = None if triad is None else triad_starts(triad, placed)
     if found is None and kernel.by_angle:
         return all_assemblies(kernel, placed, drives), "angles", 1
     if found is None:
@@ -212,40 +225,40 @@ def _searched(
     residuals = np.max(np.abs(kernel.residuals({**known, **kernel.poses_of(start)}, drives)), axis=-1)
     near, closed = close_from_afar(kernel, placed, drives, start)
     # exactly in a dead position Newton's method has no next step, but the root is there
-    sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or residuals[k] < CLOSED]
+    sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or residuals[k] < GROUP_CLOSED]
     return [which.part(slice(k, k + 1)) for which, k in sound], "polynomial", most
 
 
-def _by_many_starts(kernel: Newton, placed: Mapping[str, Pose], motion: LinkStates) -> list[State]:
+def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: LinkStates) -> list[GroupState]:
     """What many starts find, and the assembly of the sketch.
 
     With turning pairs alone the way of a group with one lead cut is closed, so that the lead closes an even number of
     times: an odd number shows that one is missing.
     """
-    own = _sketched(kernel.group, motion)
-    states: list[State] = []
+    own = _sketched_poses(kernel.group, motion)
+    states: list[GroupState] = []
     if own is not None:
         poses = [own[link] for link in kernel.group.links]
-        states.append(State(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
+        states.append(GroupState(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
     number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
     turning = not kernel.passive and all(c.kind == "R" for c in kernel.constraints)
     for seed in range(1, ROUNDS + 1):
         for state in all_assemblies(kernel, placed, motion.drives, seed, number):
             here = kernel.poses_of(state)
-            if not any(_apart(here, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states):
+            if not any(_pose_distance(here, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states):
                 states.append(state)
         if not turning or len(states) % 2 == 0:
             break
     return states
 
 
-def _same(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
+def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
     """Whether an assembly is there already; in a dead position both that meet are known to half the digits only."""
-    apart = _apart(poses, other.poses, size)
-    return apart < SAME_ASSEMBLY or (apart < MEET and max(margin, other.margin) < DEAD)
+    apart = _pose_distance(poses, other.poses, size)
+    return apart < SAME_ASSEMBLY or (apart < ASSEMBLIES_MEET and max(margin, other.margin) < DEAD)
 
 
-def _moves(kernel: Newton, state: State, placed: Mapping[str, Pose], drives: Drives) -> bool:
+def _moves_by_itself(kernel: NewtonSolver, state: GroupState, placed: Mapping[str, Pose], drives: DriverStates) -> bool:
     """Whether a dead group moves by itself: closed again after a step along its free motion, it does not come back."""
     free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
     here = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
@@ -256,4 +269,4 @@ def _moves(kernel: Newton, state: State, placed: Mapping[str, Pose], drives: Dri
         residual = float(np.max(np.abs(residuals)))
         here = here.moved(-np.linalg.pinv(kernel.matrix(poses)[0], rcond=DEAD) @ residuals, kernel.size)
     off = max(np.max(np.abs(here.x - state.x)) / kernel.size, np.max(np.abs(here.unwrapped - state.unwrapped)))
-    return bool(residual < CLOSED and off > STAYS)
+    return bool(residual < GROUP_CLOSED and off > STAYS)

@@ -15,30 +15,30 @@ from itertools import combinations_with_replacement, islice
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.search import close_from_afar, placed_by_angles, sketched_angles
+from tmm_cli.mechanics.assembly.sketch_matching import close_from_afar, placed_by_angles, sketched_angles
 from tmm_cli.mechanics.errors import MobilityError
-from tmm_cli.mechanics.groups import Newton, Pose, State, drives_at, frame_state
+from tmm_cli.mechanics.groups import GroupState, NewtonSolver, Pose, drives_at, frame_state
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import CONVERGED, REDUNDANT, SHARED, Real, Vector
 from tmm_cli.mechanics.structure import (
     Group,
-    Passive,
+    PairRedundancy,
     Reduction,
     RedundantLink,
     RigidSet,
     Structure,
     Tie,
-    analyse,
-    pairs_within,
-    reduced,
-    ties_of,
+    analyse_structure,
+    list_pairs,
+    list_ties,
+    reduce_structure,
 )
 
 MOST_TRIES = 3000
 
 
 @dataclass(frozen=True)
-class Remainder:
+class RemainingLinkage:
     """A linkage without some links and ties, at known poses of all links."""
 
     linkage: Linkage
@@ -47,9 +47,9 @@ class Remainder:
     ties: frozenset[int] = frozenset()
 
     @cached_property
-    def _kernel(self) -> Newton | None:
+    def _kernel(self) -> NewtonSolver | None:
         """What is left as one group; None if nothing is joined."""
-        left, dropped = {*self.links}, {tie for k, tie in enumerate(ties_of(self.linkage)) if k in self.ties}
+        left, dropped = {*self.links}, {tie for k, tie in enumerate(list_ties(self.linkage)) if k in self.ties}
         names = {tie.name for tie in dropped}
         hinges = []
         for hinge in self.linkage.hinges:
@@ -65,11 +65,11 @@ class Remainder:
             slides=tuple(s for s in self.linkage.slides if {s.carrier, s.runner} <= left and s.name not in names),
             meshes=tuple(m for m in self.linkage.meshes if {m.i, m.j, m.carrier} <= left and m.name not in names),
         )
-        pairs = pairs_within(remaining)
+        pairs = list_pairs(remaining)
         inner = tuple(pair for pair in pairs if FRAME not in (pair.i, pair.j))
         outer = tuple(pair for pair in pairs if FRAME in (pair.i, pair.j))
         drivers = tuple(d for d in self.linkage.drivers if {d.base, d.link} <= left)
-        return Newton.of(Group(self.moving, inner, outer, 0, "", drivers), remaining) if pairs else None
+        return NewtonSolver.of(Group(self.moving, inner, outer, 0, "", drivers), remaining) if pairs else None
 
     @property
     def moving(self) -> tuple[str, ...]:
@@ -93,7 +93,7 @@ class Remainder:
     @cached_property
     def rank(self) -> int:
         """The rank of the pairs."""
-        return rank_of(self.undriven)
+        return equation_rank(self.undriven)
 
     @property
     def redundant(self) -> int:
@@ -104,9 +104,9 @@ class Remainder:
     def moves(self) -> bool:
         """True if the drivers move all of it, and nothing moves without them."""
         columns, drivers = self.undriven.shape[1], len(self.linkage.drivers)
-        return bool(columns - self.rank == drivers and rank_of(self.equations) == columns)
+        return bool(columns - self.rank == drivers and equation_rank(self.equations) == columns)
 
-    def without(self, links: Iterable[str] = (), ties: Iterable[int] = ()) -> Remainder:
+    def without(self, links: Iterable[str] = (), ties: Iterable[int] = ()) -> RemainingLinkage:
         """The same without further links and ties."""
         gone = {*links}
         return replace(self, links=tuple(n for n in self.links if n not in gone), ties=self.ties | {*ties})
@@ -120,18 +120,18 @@ class Remainder:
             x, y, turn = (free[:, 3 * k + part] for part in range(3))
             origin = complex(np.ravel(self.poses[link].x)[0]) / size
             fields[link] = np.concatenate([x + 1j * y - 1j * turn * origin, turn])
-        sets = _alike(fields)
+        sets = _group_by_velocity(fields)
         if sets == [self.links]:  # others may only have the same velocities at this one position
             return sets
         return [rigid for links in sets for rigid in replace(self, links=links).rigid_sets()]
 
 
-def rank_of(matrix: Real) -> int:
+def equation_rank(matrix: Real) -> int:
     """The rank of equations without dimension."""
     return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
 
 
-def _alike(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
+def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
     """Links that have the same velocities in all motions, two or more together."""
     sets: list[list[str]] = []
     for link, field in fields.items():
@@ -147,13 +147,13 @@ class _Selection:
     """What is left of a linkage while redundant links and pairs are left out, one after another."""
 
     def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
-        self.left = Remainder(linkage, poses, tuple(linkage.links))
+        self.left = RemainingLinkage(linkage, poses, tuple(linkage.links))
         self.among_rigid = {links: replace(self.left, links=links).redundant for links in self.left.rigid_sets()}
         self.reduction = Reduction(tuple(RigidSet(links, number) for links, number in self.among_rigid.items()))
-        self.every = list(ties_of(linkage))
+        self.every = list(list_ties(linkage))
         self.links: list[RedundantLink] = []
 
-    def excess(self, left: Remainder) -> int:
+    def excess(self, left: RemainingLinkage) -> int:
         """The redundant constraints that do not lie within rigid sets."""
         there = {*left.links}
         return left.redundant - sum(number for links, number in self.among_rigid.items() if there.issuperset(links))
@@ -176,7 +176,7 @@ class _Selection:
 
     def leave_pairs(self) -> None:
         """Leave out each pair all constraints of which are redundant."""
-        stay = _driven_and_axles(self.left.linkage)
+        stay = _pairs_to_keep(self.left.linkage)
         for k in self.ties:
             constraints = self.every[k].constraints
             if constraints > self.excess(self.left) or self.every[k].name in stay:
@@ -186,10 +186,10 @@ class _Selection:
                 self.left = trial
 
 
-def leave_out(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
+def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
     """Rigid sets, redundant links and conditions such that what is left are Assur groups; None if there are none."""
     selection = _Selection(linkage, poses)
-    between, on_frame = _candidates(linkage, selection.reduction)
+    between, on_frame = _removable_bodies(linkage, selection.reduction)
     selection.leave_links(between)
     selection.leave_pairs()
     selection.leave_links(on_frame)
@@ -200,19 +200,19 @@ def leave_out(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure)
         conditions = whole_pairs | {k: drop.count(k) for k in drop}
         reduction = replace(selection.reduction, links=tuple(links), conditions=conditions)
         possible = all(number <= selection.every[k].constraints for k, number in conditions.items())
-        if possible and reduced(linkage, structure, reduction) is not None:
+        if possible and reduce_structure(linkage, structure, reduction) is not None:
             return reduction
     return None
 
 
-def _driven_and_axles(linkage: Linkage) -> set[str]:
+def _pairs_to_keep(linkage: Linkage) -> set[str]:
     """Names of the pairs in which drivers work, and of those of gears, cams and followers with their carrier."""
     on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     slides = {mesh.slide for mesh in linkage.meshes}
     return {driver.joint for driver in linkage.drivers} | {name for name in on_carrier | slides if name}
 
 
-def _candidates(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
+def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
     """Bodies that may be left out in this order: those between moving links, and those connected to the frame."""
     on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
     driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
@@ -240,42 +240,42 @@ STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both 
 STARTS = 200
 
 
-def mobile(linkage: Linkage) -> Structure:
+def analyse_mobile_structure(linkage: Linkage) -> Structure:
     """The groups of a linkage whose drivers move all of it, by the count or the rank. Raises MobilityError."""
-    structure = analyse(linkage)
-    moving = structure if structure.sound else by_rank(linkage, structure)
+    structure = analyse_structure(linkage)
+    moving = structure if structure.sound else analyse_by_rank(linkage, structure)
     if moving is None:
         raise MobilityError(structure)
     return moving
 
 
-def by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
+def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
     """The structure with its passive constraints left out; None when the linkage is locked in truth as well."""
     wanted = len(linkage.drivers)
     if structure.under_constrained or structure.mobility >= wanted:
         return None
-    kernel = _whole(linkage, structure)
-    found = _closed(kernel, linkage)
+    kernel = _whole_linkage_solver(linkage, structure)
+    found = _close_at_sketch(kernel, linkage)
     if found is None:
         return None
     state, poses = found
     matrix = kernel.matrix({**poses, **kernel.poses_of(state)})[0]
     undriven = matrix[: len(matrix) - wanted]
     rank, whole = (int(np.linalg.matrix_rank(rows, rtol=REDUNDANT)) for rows in (undriven, matrix))
-    if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _moves(kernel, linkage, state):
+    if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _can_move(kernel, linkage, state):
         return None
     everything = {**poses, **kernel.poses_of(state)}
-    return _without_passive(linkage, structure, kernel, undriven, everything, len(undriven) - rank)
+    return _leave_out_redundant(linkage, structure, kernel, undriven, everything, len(undriven) - rank)
 
 
-def _whole(linkage: Linkage, structure: Structure) -> Newton:
+def _whole_linkage_solver(linkage: Linkage, structure: Structure) -> NewtonSolver:
     """The linkage as one group on the frame."""
     inner = tuple(p for p in structure.pairs if FRAME not in (p.i, p.j))
     outer = tuple(p for p in structure.pairs if FRAME in (p.i, p.j))
-    return Newton.of(Group(linkage.moving, inner, outer, 0, "", linkage.drivers), linkage)
+    return NewtonSolver.of(Group(linkage.moving, inner, outer, 0, "", linkage.drivers), linkage)
 
 
-def _closed(kernel: Newton, linkage: Linkage) -> tuple[State, Mapping[str, Pose]] | None:
+def _close_at_sketch(kernel: NewtonSolver, linkage: Linkage) -> tuple[GroupState, Mapping[str, Pose]] | None:
     q = np.array([linkage.sketch.at])
     poses = {FRAME: frame_state(q)[0]}
     drives = drives_at(linkage, q)
@@ -289,7 +289,7 @@ def _closed(kernel: Newton, linkage: Linkage) -> tuple[State, Mapping[str, Pose]
     return state.part(slice(k, k + 1)), poses
 
 
-def _moves(kernel: Newton, linkage: Linkage, state: State) -> bool:
+def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool:
     """Whether it can be closed beside the sketch too: a truss may have a mobility at one place only."""
     step = STEP if linkage.driver.kind == "turn" else STEP * kernel.size
     ways = []
@@ -303,8 +303,8 @@ def _moves(kernel: Newton, linkage: Linkage, state: State) -> bool:
     return any(ways)
 
 
-def _without_passive(
-    linkage: Linkage, structure: Structure, kernel: Newton, undriven: Real, poses: Mapping[str, Pose], number: int
+def _leave_out_redundant(
+    linkage: Linkage, structure: Structure, kernel: NewtonSolver, undriven: Real, poses: Mapping[str, Pose], number: int
 ) -> Structure | None:
     """Leave out so many conditions that the count is right; of what the report leaves out first, then the last ones."""
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # combinations of rows that say nothing new
@@ -314,9 +314,9 @@ def _without_passive(
     pairs = {p.name: p for p in structure.pairs}
     among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))
     keys = {pairs[name].point or name if pairs[name].kind == "R" else name for name in names}
-    every = tuple(ties_of(linkage))
+    every = tuple(list_ties(linkage))
     ties = {k: tie for k, tie in enumerate(every) if tie.name in keys}
-    reduction = leave_out(linkage, poses, structure)
+    reduction = find_reduction(linkage, poses, structure)
     for report in (reduction, None) if reduction else (None,):
         first = dict(report.conditions) if report else {}
         from_ties = [k for k in ties if report is None or k in report.touched(every)]
@@ -325,16 +325,16 @@ def _without_passive(
             dropped = first | {k: drop.count(k) for k in drop}
             if any(count > ties[k].constraints for k, count in dropped.items()):
                 continue
-            found = analyse(linkage, dropped)
+            found = analyse_structure(linkage, dropped)
             if found.freedom == len(linkage.drivers) and not found.redundant_pairs and not found.under_constrained:
-                whole = replace(found, passive=tuple(_passives(found, dropped, ties, among)))
-                return reduced(linkage, whole, report or Reduction(conditions=dropped))
+                whole = replace(found, passive=tuple(_list_redundancies(found, dropped, ties, among)))
+                return reduce_structure(linkage, whole, report or Reduction(conditions=dropped))
     return None
 
 
-def _passives(
+def _list_redundancies(
     found: Structure, dropped: Mapping[int, int], ties: Mapping[int, Tie], among: tuple[str, ...]
-) -> Iterable[Passive]:
+) -> Iterable[PairRedundancy]:
     placed = {link: k for k, group in enumerate(found.all_groups) for link in group.links}
     for k, count in dropped.items():
         name = ties[k].name
@@ -342,4 +342,4 @@ def _passives(
         joined = [p for p in joined if ties[k].b in (p.i, p.j)] or joined  # in a compound hinge: that of the tie's link
         pair = max(joined, key=lambda p: max(placed.get(p.i, -1), placed.get(p.j, -1)))
         links = sorted((pair.i, pair.j), key=lambda n: placed.get(n, -1))
-        yield Passive(pair.name, count, (links[0], links[1]), among)
+        yield PairRedundancy(pair.name, count, (links[0], links[1]), among)

@@ -22,51 +22,53 @@ STILL = 1e-10  # of the largest velocities: links that move so little beside one
 SHARP = 1e-3  # rad: lines that cross under less are no construction
 NEAR = 1e-6  # of the size: centres that are nearer than that are one
 
-Links = tuple[str, str]
-Line = tuple[Links, Links]
-Place = tuple[complex | None, complex | None]  # m; or a direction of unit size, where it is at infinity
+LinkPair = tuple[str, str]
+CentreLine = tuple[LinkPair, LinkPair]
+CentrePlace = tuple[complex | None, complex | None]  # m; or a direction of unit size, where it is at infinity
 
 
 @dataclass(frozen=True)
-class Centre:
+class InstantCentre:
     """Of two links in one position: its place (m), or the direction of unit size in which it is at infinity; neither
     where they do not move beside one another. pair: a kinematic pair of theirs that shows it; lines: pairs of centres
     whose lines cross in it.
     """
 
-    links: Links
+    links: LinkPair
     place: complex | None
     direction: complex | None
     pair: str = ""
-    lines: tuple[Line, ...] = ()
+    lines: tuple[CentreLine, ...] = ()
 
 
-def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Centre]:
+def find_centres(states: LinkStates, structure: Structure, k: int) -> list[InstantCentre]:
     """All centres in a position: those of pairs, then the others in the order in which Kennedy's lines find them."""
     names = (FRAME, *states.linkage.moving)
-    size = _size(states, k)
-    motion = {name: _about(states, name, k) for name in names}
+    size = _linkage_size(states, k)
+    motion = {name: _velocity_about_origin(states, name, k) for name in names}
     least = STILL * max(max(abs(v), abs(w) * size) for v, w in motion.values())
-    places = {(i, j): _place(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
-    pairs = {_pair(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"}  # a cam shows no centre
+    places = {(i, j): _relative_centre(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
+    pairs = {
+        _ordered_links(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"
+    }  # a cam shows no centre
     for links, pair in pairs.items():
-        places[links] = _of_pair(states, pair, k) or places[links]
-    told = [Centre(links, *places[links], pair=pairs[links].name) for links in places if links in pairs]
+        places[links] = _pair_centre(states, pair, k) or places[links]
+    told = [InstantCentre(links, *places[links], pair=pairs[links].name) for links in places if links in pairs]
     known = {centre.links for centre in told}
     while True:
         step = [
-            Centre(links, *places[links], lines=lines)
+            InstantCentre(links, *places[links], lines=lines)
             for links in places
-            if links not in known and (lines := _crossing(links, names, places, known, size))
+            if links not in known and (lines := _crossing_lines(links, names, places, known, size))
         ]
         if not step:
             break
         told += step
         known |= {centre.links for centre in step}
-    return [*told, *(Centre(links, *places[links]) for links in places if links not in known)]
+    return [*told, *(InstantCentre(links, *places[links]) for links in places if links not in known)]
 
 
-def _of_pair(states: LinkStates, pair: Pair, k: int) -> Place | None:
+def _pair_centre(states: LinkStates, pair: Pair, k: int) -> CentrePlace | None:
     """Of a hinge or a guide: it is there also where the links do not move beside one another."""
     if pair.slide is not None:
         guide = complex(states.poses[pair.slide.carrier].z[k]) * complex(unit(pair.slide.direction))
@@ -75,7 +77,7 @@ def _of_pair(states: LinkStates, pair: Pair, k: int) -> Place | None:
     return (complex(states.poses[link].at(states.linkage.local(link, pair.point))[k]), None) if pair.lower else None
 
 
-def _size(states: LinkStates, k: int) -> float:
+def _linkage_size(states: LinkStates, k: int) -> float:
     linkage = states.linkage
     points = [
         complex(states.poses[n].at(complex(p))[k]) for n in linkage.moving for p in linkage.links[n].points.values()
@@ -84,7 +86,9 @@ def _size(states: LinkStates, k: int) -> float:
     return max(abs(p - points[0]) for p in points) or 1.0
 
 
-def _place(one: tuple[complex, float], other: tuple[complex, float], size: float, least: float) -> Place:
+def _relative_centre(
+    one: tuple[complex, float], other: tuple[complex, float], size: float, least: float
+) -> CentrePlace:
     """Place, or direction at infinity, of two links by their motions; least: what one that stands has."""
     slip, turn = one[0] - other[0], one[1] - other[1]
     if abs(turn) * size <= max(least, abs(slip) / FAR):
@@ -92,7 +96,7 @@ def _place(one: tuple[complex, float], other: tuple[complex, float], size: float
     return 1j * slip / turn, None
 
 
-def _about(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
+def _velocity_about_origin(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
     """Velocity of the link's point in the origin, and its angular velocity, by the driver."""
     if name == FRAME:
         return 0j, 0.0
@@ -101,23 +105,23 @@ def _about(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
     return complex(v - 1j * w * x), float(w)
 
 
-def _crossing(
-    links: Links,
+def _crossing_lines(
+    links: LinkPair,
     names: tuple[str, ...],
-    places: dict[Links, Place],
-    known: set[Links],
+    places: dict[LinkPair, CentrePlace],
+    known: set[LinkPair],
     size: float,
-) -> tuple[Line, ...]:
+) -> tuple[CentreLine, ...]:
     """Two lines through known centres that cross in this one; one pair of them where it lies in both."""
     i, j = links
-    ways: list[tuple[Line, complex]] = []
+    ways: list[tuple[CentreLine, complex]] = []
     for k in names:
         if k in links:
             continue
-        line = _pair(i, k, names), _pair(k, j, names)
+        line = _ordered_links(i, k, names), _ordered_links(k, j, names)
         if not known.issuperset(line):
             continue
-        along = _along(places[line[0]], places[line[1]], size)
+        along = _line_direction(places[line[0]], places[line[1]], size)
         if along is None:
             continue
         if along == 0:  # one point: a compound hinge
@@ -129,11 +133,11 @@ def _crossing(
     return ()
 
 
-def _pair(i: str, j: str, names: tuple[str, ...]) -> Links:
+def _ordered_links(i: str, j: str, names: tuple[str, ...]) -> LinkPair:
     return (i, j) if names.index(i) < names.index(j) else (j, i)
 
 
-def _along(one: Place, other: Place, size: float) -> complex | None:
+def _line_direction(one: CentrePlace, other: CentrePlace, size: float) -> complex | None:
     """The direction of the line through two centres; 0 where they are one, None where they tell no line."""
     (p, u), (q, v) = one, other
     if p is not None and q is not None:

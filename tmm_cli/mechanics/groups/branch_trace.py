@@ -8,12 +8,12 @@ from functools import cached_property, reduce
 
 import numpy as np
 
-from tmm_cli.mechanics.groups.state import Pose, State
-from tmm_cli.mechanics.numerics import Real, Vector, pi, rounded
+from tmm_cli.mechanics.groups.state import GroupState, Pose
+from tmm_cli.mechanics.numerics import Real, Vector, pi, to_float
 
 
 @dataclass(frozen=True)
-class SmoothWay:
+class ChangePoints:
     """Growing places of the driver at which the sign of a group's determinant changes, within a `cycle` that begins at
     `start` and is repeated (None: it is not); at the place `at` the sign is that of the sketch.
     """
@@ -29,18 +29,18 @@ class SmoothWay:
 
     def within(self, low: float, high: float) -> Real:
         """Those from one place to another, in growing order."""
-        return again(self.places, self.start, self.cycle, low, high)
+        return repeat_in_cycles(self.places, self.start, self.cycle, low, high)
 
     def _passed(self, q: Real) -> Real:
         """How many there are from the start to places q."""
-        within = rounded(q)
+        within = to_float(q)
         whole = np.zeros(np.shape(q)) if self.cycle is None else np.floor((within - self.start) / self.cycle)
         inside = within - whole * (self.cycle or 0.0)
         passed: Real = whole * len(self.places) + np.searchsorted(self.places, inside)
         return passed
 
 
-def again(places: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
+def repeat_in_cycles(places: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
     """Places of a cycle that begins at `start`, as often as they come between two others; None: they come once."""
     turns = np.zeros(1)
     if cycle is not None:
@@ -65,9 +65,9 @@ class BranchTrace:
     """
 
     q: Real
-    states: State
-    first: State
-    second: State
+    states: GroupState
+    first: GroupState
+    second: GroupState
     closed: bool
     open_ends: tuple[bool, bool] = (False, False)
     limits: tuple[bool, bool] = (False, False)
@@ -107,9 +107,9 @@ class BranchTrace:
     def dead_within(self, low: float, high: float) -> Real:
         """Dead positions that are passed between two places, in growing order."""
         cycle = self.q[-1] - self.q[0]
-        return again(self.dead, float(self.q[0]), float(cycle) if self.closed else None, low, high)
+        return repeat_in_cycles(self.dead, float(self.q[0]), float(cycle) if self.closed else None, low, high)
 
-    def start(self, q: Real) -> tuple[State, Real]:
+    def start(self, q: Real) -> tuple[GroupState, Real]:
         """A state near that at each place q, from the nearest node, and the residual: how far q is beyond the trace's
         ends, in its units. Negative inside, by the distance to the nearer end; -1 on a closed trace.
         """
@@ -138,7 +138,7 @@ class BranchTrace:
             here: Vector = np.where(near_limit[..., None], root, taylor)
             return here
 
-        state = State(
+        state = GroupState(
             at(self.states.x, self.first.x, self.second.x),
             at(self.states.unwrapped, self.first.unwrapped, self.second.unwrapped) + whole[..., None] * turns,
         )
@@ -161,7 +161,7 @@ TAU = 2 * np.pi
 
 
 @dataclass(frozen=True)
-class Winding:
+class AccumulatedAngles:
     """Angles of links (rad, unwrapped) at places q of the driver that grow; when closed they go on by full cycles."""
 
     q: Real

@@ -12,31 +12,38 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.assembly.search import assembled, check_fit, nearest_to_sketch, refuse_large_group
+from tmm_cli.mechanics.assembly.sketch_matching import (
+    assemble_by_iteration,
+    check_fit,
+    nearest_to_sketch,
+    refuse_large_group,
+)
 from tmm_cli.mechanics.errors import AmbiguousSketchError, AssemblyError, ChangePointSearchError
 from tmm_cli.mechanics.groups import (
-    CLOSED,
-    Closed,
-    Drives,
+    CLOSED_FORM_SOLVERS,
+    AccumulatedAngles,
+    ChangePoints,
+    ClosedFormSolver,
+    DriverStates,
+    GroupSolver,
     HingeEnd,
-    Kernel,
     Placement,
     Pose,
-    SmoothWay,
-    Winding,
     driven_state,
     drives_at,
     frame_state,
     link_states,
-    reach,
-    towards,
+    slider_search_range,
+    solvers_towards,
 )
 from tmm_cli.mechanics.linkage import FRAME, Linkage
-from tmm_cli.mechanics.numerics import Real, find_roots, least
+from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 from tmm_cli.mechanics.structure import Group, Structure, turns_of_cycle
 
-SCAN = 360  # places a turn
-MOST_TURNS = 5_000  # groups times turns of the driver that one search covers: a second and a tenth of a gigabyte each
+SCANNED_PER_TURN = 360  # places a turn
+LARGEST_SEARCH = (
+    5_000  # groups times turns of the driver that one search covers: a second and a tenth of a gigabyte each
+)
 CLOSER = 129  # places between two of these, where it seems to come to nothing
 BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
 SHARED_POINT = 1e-4  # steps of the scan: a change point this near to one of an earlier group is the same
@@ -44,23 +51,25 @@ VANISHED_BESIDE = 0.1  # of the determinant BESIDE: the rounding of many earlier
 SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
 
 
-def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> SmoothWay | None:
+def find_change_points(
+    linkage: Linkage, before: tuple[GroupSolver, ...], kernel: ClosedFormSolver
+) -> ChangePoints | None:
     """The way of a group through its change points; None where it has none, or they are all touched only.
 
     Raises ChangePointSearchError where the groups before it come back only after too many turns of the driver.
     """
-    upto = towards((*before, kernel), kernel.group.links)
+    upto = solvers_towards((*before, kernel), kernel.group.links)
     turns = linkage.driver.kind == "turn"
     number = turns_of_cycle(linkage) or 1
     for other in upto[:-1]:
-        way = other.way if isinstance(other, Closed) else None
+        way = other.way if isinstance(other, ClosedFormSolver) else None
         if way is not None and way.cycle is not None and len(way.places) % 2:
             number *= 2
-    if number * len(upto) > MOST_TURNS:
-        raise ChangePointSearchError(kernel.group, len(upto), number, MOST_TURNS)
-    half = np.pi * number if turns else reach(linkage)
-    start, step = linkage.sketch.at - half, 2 * half / (SCAN * number)
-    q = start + step * np.arange(-2, SCAN * number + 3)
+    if number * len(upto) > LARGEST_SEARCH:
+        raise ChangePointSearchError(kernel.group, len(upto), number, LARGEST_SEARCH)
+    half = np.pi * number if turns else slider_search_range(linkage)
+    start, step = linkage.sketch.at - half, 2 * half / (SCANNED_PER_TURN * number)
+    q = start + step * np.arange(-2, SCANNED_PER_TURN * number + 3)
     at = link_states(linkage, upto, q, 0, blank=False).placements[-1]
     residual = np.where(np.isfinite(at.residual), at.residual, -np.inf)
     inner = residual[1:-1]
@@ -68,22 +77,24 @@ def smooth_way(linkage: Linkage, before: tuple[Kernel, ...], kernel: Closed) -> 
         rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
     earlier = _change_points_before(upto, float(q[0]), float(q[-1]))
-    found = np.sort(_exact(linkage, upto, q[np.flatnonzero(near) + 1], float(step), earlier))
+    found = np.sort(_refine_change_points(linkage, upto, q[np.flatnonzero(near) + 1], float(step), earlier))
     if turns:
         found = np.sort(found - 2 * half * np.floor((found - start) / (2 * half)))
     places = found[np.diff(found, prepend=-np.inf) > step]
     if len(places) > 1 and turns and places[0] + 2 * half - places[-1] < step:
         places = places[:-1]
-    return SmoothWay(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
+    return ChangePoints(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
 
 
-def _change_points_before(upto: tuple[Kernel, ...], low: float, high: float) -> Real:
+def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float) -> Real:
     """Change points (points,), in growing order, of the groups that the last one depends on."""
-    ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, Closed) and kernel.way is not None]
+    ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, ClosedFormSolver) and kernel.way is not None]
     return np.sort(np.concatenate([np.zeros(0), *(way.within(low, high) for way in ways)]))
 
 
-def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float, earlier: Real) -> Real:
+def _refine_change_points(
+    linkage: Linkage, upto: tuple[GroupSolver, ...], places: Real, step: float, earlier: Real
+) -> Real:
     """The change points near places (places,), to the last bit, where the group has no room to spare and can pass.
 
     Earlier groups are known to half their digits beside a change point of their own (earlier, in growing order). What
@@ -91,14 +102,14 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float
     """
     if not places.size:
         return places
-    to_spare = partial(slack, linkage, upto)
-    closer = _rows(to_spare, places, step * np.linspace(-1, 1, CLOSER))
+    to_spare = partial(assembly_reserve, linkage, upto)
+    closer = _values_at_steps(to_spare, places, step * np.linspace(-1, 1, CLOSER))
     with np.errstate(invalid="ignore"):
         falls = np.abs(np.min(closer, axis=1)) <= 2 * np.max(np.abs(np.diff(closer, axis=1)), axis=1)
     places = places[np.all(np.isfinite(closer), axis=1) & falls]
     if not places.size:
         return places
-    best = pinned(linkage, upto, least(to_spare, places - step, places + step)[0], step)
+    best = refine_dead_positions(linkage, upto, find_minima(to_spare, places - step, places + step)[0], step)
     shared = np.zeros(best.size, dtype=bool)
     if earlier.size:
         nearest = earlier[np.argmin(np.abs(best[:, None] - earlier), axis=1)]
@@ -117,24 +128,24 @@ def _exact(linkage: Linkage, upto: tuple[Kernel, ...], places: Real, step: float
     return exact
 
 
-def _rows(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
+def _values_at_steps(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
     """Values of a function at steps from each place, (places, steps)."""
     q = places[:, None] + steps
     return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 
 
-def slack(linkage: Linkage, kernels: tuple[Kernel, ...], q: Real) -> Real:
+def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
     """How much the last group has to spare before it cannot be assembled."""
     return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
-def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], places: Real, step: float) -> Real:
+def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], places: Real, step: float) -> Real:
     """Dead positions inside the range (places,) to the last bit: there the residual of the last group stops growing.
 
     The least of a quantity is known to half the digits only, the root of its rate to all of them.
     """
     last = kernels[-1]
-    if not isinstance(last, Closed):
+    if not isinstance(last, ClosedFormSolver):
         return places
 
     def residual_rate(q: Real) -> Real:
@@ -154,33 +165,33 @@ def pinned(linkage: Linkage, kernels: tuple[Kernel, ...], places: Real, step: fl
 # Stage: which of its assemblies each group has, from the sketch. It is kept in every position.
 
 
-BLAMED = 0.25  # a sketched point this share of the size from its place, a link half a radian: it was sketched wrong
-FOLLOWED = 720  # places a turn at which angles are followed through
+MISPLACED = 0.25  # a sketched point this share of the size from its place, a link half a radian: it was sketched wrong
+ANGLES_PER_TURN = 720  # places a turn at which angles are followed through
 
 
 def assemble(
-    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[Kernel, ...] = ()
-) -> tuple[Kernel, ...]:
+    linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[GroupSolver, ...] = ()
+) -> tuple[GroupSolver, ...]:
     """The groups with their assemblies, in solving order; like: those of a linkage whose lengths differ, which helps.
 
     Raises GroupTooLargeError, ChangePointSearchError, AssemblyError, AmbiguousSketchError, SketchMismatchError.
     """
     groups = structure.solved if groups is None else groups
     for group in groups:
-        if not any(kind.fits(group) for kind in CLOSED):
+        if not any(kind.fits(group) for kind in CLOSED_FORM_SOLVERS):
             refuse_large_group(group)
     q = np.array([linkage.sketch.at])
     drives = drives_at(linkage, q)
     poses = {FRAME: frame_state(q)[0]}
     for driver in linkage.cranks:
         poses[driver.link] = driven_state(linkage, driver, drives[driver.link])[0]
-    chosen: list[Kernel] = []
+    chosen: list[GroupSolver] = []
     for group in groups:
         other = like[len(chosen)] if like else None
         try:
-            kernel, at = _assembled(group, linkage, poses, drives, tuple(chosen), other)
+            kernel, at = _assemble_group(group, linkage, poses, drives, tuple(chosen), other)
         except (AssemblyError, AmbiguousSketchError):
-            check_fit(linkage, poses, BLAMED)  # a group before it, sketched wrong, may be what keeps it from closing
+            check_fit(linkage, poses, MISPLACED)  # a group before it, sketched wrong, may be what keeps it from closing
             raise
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)
@@ -188,39 +199,39 @@ def assemble(
     return tuple(chosen)
 
 
-def _assembled(
+def _assemble_group(
     group: Group,
     linkage: Linkage,
     poses: dict[str, Pose],
-    drives: Drives,
-    before: tuple[Kernel, ...],
-    like: Kernel | None,
-) -> tuple[Kernel, Placement]:
+    drives: DriverStates,
+    before: tuple[GroupSolver, ...],
+    like: GroupSolver | None,
+) -> tuple[GroupSolver, Placement]:
     q = np.array([linkage.sketch.at])
-    closed = closed_form(group, linkage)
+    closed = closed_form_solver(group, linkage)
     if closed is not None:
-        kernel, at = _choose(closed, linkage, poses, drives)
+        kernel, at = _choose_assembly(closed, linkage, poses, drives)
         if kernel.assemblies > 1 and not linkage.keep_side:
-            kernel = replace(kernel, way=smooth_way(linkage, before, kernel))
+            kernel = replace(kernel, way=find_change_points(linkage, before, kernel))
         geared = {name for mesh in linkage.meshes for name in (mesh.i, mesh.j, mesh.carrier)} & set(group.links)
         if geared:
-            kernel = replace(kernel, winding=_winding(linkage, (*before, kernel), tuple(geared)))
+            kernel = replace(kernel, winding=_accumulate_angles(linkage, (*before, kernel), tuple(geared)))
             at = kernel.place(poses, q, drives)
         return kernel, at
-    return assembled(group, linkage, poses, drives, before, like)
+    return assemble_by_iteration(group, linkage, poses, drives, before, like)
 
 
-def closed_form(group: Group, linkage: Linkage) -> Closed | None:
+def closed_form_solver(group: Group, linkage: Linkage) -> ClosedFormSolver | None:
     """The group with its numbers, not yet assembled, if it has a closed form."""
-    return next((kind.of(group, linkage) for kind in CLOSED if kind.fits(group)), None)
+    return next((kind.of(group, linkage) for kind in CLOSED_FORM_SOLVERS if kind.fits(group)), None)
 
 
-def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ...]) -> Winding:
+def _accumulate_angles(linkage: Linkage, kernels: tuple[GroupSolver, ...], links: tuple[str, ...]) -> AccumulatedAngles:
     """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
-    half = turns * np.pi if linkage.driver.kind == "turn" else reach(linkage)
-    q = at + half * np.linspace(-1, 1, FOLLOWED * turns + 1)
-    motion = link_states(linkage, towards(kernels, links), q, 0)
+    half = turns * np.pi if linkage.driver.kind == "turn" else slider_search_range(linkage)
+    q = at + half * np.linspace(-1, 1, ANGLES_PER_TURN * turns + 1)
+    motion = link_states(linkage, solvers_towards(kernels, links), q, 0)
     middle = len(q) // 2
     lost = np.flatnonzero(~motion.placed)
     first = int(lost[lost < middle].max(initial=-1)) + 1
@@ -232,10 +243,12 @@ def _winding(linkage: Linkage, kernels: tuple[Kernel, ...], links: tuple[str, ..
         here = middle - first
         angles[link] = angle + (np.angle(z[here]) - angle[here])
     closed = first == 0 and last == len(q) and linkage.driver.kind == "turn"
-    return Winding(q[first:last], angles, closed)
+    return AccumulatedAngles(q[first:last], angles, closed)
 
 
-def _choose(kernel: Closed, linkage: Linkage, poses: dict[str, Pose], drives: Drives) -> tuple[Closed, Placement]:
+def _choose_assembly(
+    kernel: ClosedFormSolver, linkage: Linkage, poses: dict[str, Pose], drives: DriverStates
+) -> tuple[ClosedFormSolver, Placement]:
     signed = [replace(kernel, sign=s) for s in (1, -1)[: kernel.assemblies]]
     with np.errstate(invalid="ignore", divide="ignore"):
         ways = [(one, one.closed(poses, drives)) for one in signed]
@@ -247,10 +260,10 @@ def _choose(kernel: Closed, linkage: Linkage, poses: dict[str, Pose], drives: Dr
     if first.dead[0]:
         raise AmbiguousSketchError(kernel.group, {})
     placed = [dict(zip(kernel.group.links, at.poses, strict=True)) for _, at in ways]
-    return ways[nearest_to_sketch(kernel, linkage, placed, _shift(kernel, linkage, poses))]
+    return ways[nearest_to_sketch(kernel, linkage, placed, _sketch_shift(kernel, linkage, poses))]
 
 
-def _shift(kernel: Closed, linkage: Linkage, poses: dict[str, Pose]) -> complex:
+def _sketch_shift(kernel: ClosedFormSolver, linkage: Linkage, poses: dict[str, Pose]) -> complex:
     """How far the sketch has the hinges that the group hangs on from where they are (m).
 
     What a sketch tells is on which side of them the group lies, so a group is compared with them put in their places.
