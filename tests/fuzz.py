@@ -44,7 +44,7 @@ from pydantic import BaseModel
 from tmm_cli import solve
 from tmm_cli.cli import application
 from tmm_cli.drawing.formats import run_in_process
-from tmm_cli.mechanics.accuracy import at, exact
+from tmm_cli.mechanics.accuracy import exact_linkage, results_with_linkage
 from tmm_cli.mechanics.numerics import array, to_double_double, to_float
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import (
@@ -366,7 +366,10 @@ def beyond(results: Any) -> str | None:
         places = np.stack(results.inputs.extended().request.places)
         q, first = places[list(results.numbers)], places[0]
     with np.errstate(all="ignore"):
-        found, wide = accuracy(results), cells_with_digits(at(results, exact(results), q, first))
+        found, wide = (
+            accuracy(results),
+            cells_with_digits(results_with_linkage(results, exact_linkage(results), q, first)),
+        )
         for table in computed_tables(results):
             keys = keys_of(table, len(results.numbers))
             for k, column in enumerate(found.table(table).columns if keys else ()):
@@ -491,7 +494,9 @@ def _command(*words: str) -> int:
     """Call a command in this process, drawing in it too; its exit code. What it raises else is a fault."""
     with limited("grade" if words[0] == "grade" else "run"), ExitStack() as stack:
         for module in ("tmm_cli.cli.sheets", "tmm_cli.cli.pictures"):
-            stack.enter_context(mock.patch(f"{module}.by_all_cores", lambda jobs, quiet=False: run_in_process(jobs)))
+            stack.enter_context(
+                mock.patch(f"{module}.run_on_all_cores", lambda jobs, quiet=False: run_in_process(jobs))
+            )
         stack.enter_context(redirect_stdout(StringIO()))
         stack.enter_context(redirect_stderr(StringIO()))
         try:

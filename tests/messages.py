@@ -28,8 +28,8 @@ KEYWORDS = {
     "_": "",
     "N_": "",
     "Phrase": "",
-    "lettered": "symbol",
-    "Lettered": "symbol",
+    "course_symbol": "symbol",
+    "CourseSymbol": "symbol",
     "symbol": "symbol",
 }  # what marks a message, and its context
 UNITS = sorted({*filter(str.isascii, SYMBOLS), "J", "W"} - {"%"})

@@ -12,8 +12,8 @@ from bank import solved
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.animation import FEWEST, FRAMES, MOST, animation_page, frames, picture_of
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.animation import FEWEST_FRAMES, FRAMES, MOST_BYTES, animation_page, draw_first_frame, results_in_frames
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
 COURSE = ["shaper", "course-1", "course-2", "course-3", "course-4", "excavator", "summing-lever"]
@@ -33,7 +33,7 @@ def data_of(html):
 @pytest.mark.parametrize("name", COURSE)
 def test_a_page_is_small_and_asks_for_nothing(name):
     html = page_of(name)
-    assert len(html.encode()) < MOST
+    assert len(html.encode()) < MOST_BYTES
     assert "default-src 'none'" in html
     assert not re.findall(r"(?:src|href|url|@import|fetch|XMLHttpRequest|WebSocket)\s*[=(]", html)
     assert set(re.findall(r"https?://[^\s\"']+", html)) <= {"http://www.w3.org/2000/svg"}
@@ -41,16 +41,16 @@ def test_a_page_is_small_and_asks_for_nothing(name):
 
 def test_a_page_that_would_be_too_large_has_fewer_frames(monkeypatch):
     whole = page_of("shaper")
-    monkeypatch.setattr("tmm_cli.animation.page.MOST", len(whole.encode()) * 3 // 4)
+    monkeypatch.setattr("tmm_cli.animation.page.MOST_BYTES", len(whole.encode()) * 3 // 4)
     fewer = animation_page(solved("shaper"))
     assert len(fewer.encode()) <= len(whole.encode()) * 3 // 4
-    assert FEWEST < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
+    assert FEWEST_FRAMES < len(data_of(fewer)["driver"]["values"]) < len(data_of(whole)["driver"]["values"])
 
 
 def test_links_are_in_every_frame_where_the_results_have_them():
     results, data = solved("shaper"), data_of(page_of("shaper"))
-    whole = frames(results, FRAMES)
-    picture = picture_of(whole, whole.motion)
+    whole = results_in_frames(results, FRAMES)
+    picture = draw_first_frame(whole, whole.motion)
     for name, body in zip(picture.bodies, data["bodies"], strict=True):
         if name in results.linkage.moving:
             pose = whole.motion.poses[name]
@@ -61,7 +61,7 @@ def test_links_are_in_every_frame_where_the_results_have_them():
 
 def test_plans_end_in_the_velocities_and_accelerations_of_the_points():
     results, data = solved("shaper"), data_of(page_of("shaper"))
-    motion = at_positions(results, results.closely(FRAMES + 1))
+    motion = motion_at_positions(results, results.closely(FRAMES + 1))
     for plan, quantity in zip(data["plans"], ("v", "a"), strict=True):
         found = {letter: n["point"] for n in plan["letters"] for letter in n["text"].split(", ")}
         for point in "ADE":

@@ -14,8 +14,15 @@ from hypothesis import given, strategies as st
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis import at_positions
-from tmm_cli.mechanics.dynamics import BalancingTask, Place, Plane, Rotor, balanced, shaking
+from tmm_cli.mechanics.analysis import motion_at_positions
+from tmm_cli.mechanics.dynamics import (
+    BalancingTask,
+    CorrectionPlane,
+    CounterweightPlace,
+    UnbalancedShaft,
+    balance_cycle,
+    compute_shaking,
+)
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
@@ -25,11 +32,11 @@ PROBLEMS = Path(__file__).parents[1] / "problems"
 @cache
 def turn_of(name, count=720):
     results = solve(load(PROBLEMS / f"{name}.yaml"))
-    return at_positions(results, results.start + np.arange(count) * 2 * np.pi / count), results
+    return motion_at_positions(results, results.start + np.arange(count) * 2 * np.pi / count), results
 
 
 def task(*links, **more):
-    return BalancingTask(tuple(Place(link, 0j) for link in links), **more)
+    return BalancingTask(tuple(CounterweightPlace(link, 0j) for link in links), **more)
 
 
 def written(name, block):
@@ -40,19 +47,19 @@ def written(name, block):
 
 def test_two_counterweights_balance_the_forces_of_a_four_bar():
     motion, __ = turn_of("crank-rocker")
-    assert balanced(motion, task("1", "3")).left < 1e-12
+    assert balance_cycle(motion, task("1", "3")).left < 1e-12
 
 
 def test_a_counterweight_on_the_crank_alone_leaves_a_part_of_a_crank_slider():
     motion, __ = turn_of("crank-slider")
-    one, both = balanced(motion, task("1")), balanced(motion, task("1", "2"))
+    one, both = balance_cycle(motion, task("1")), balance_cycle(motion, task("1", "2"))
     assert 0.1 < one.left < 1 and both.left < 1e-12
     assert np.mean(np.abs(one.after.force) ** 2) < np.mean(np.abs(one.before.force) ** 2)
 
 
 def test_an_engine_of_four_cylinders_in_line_leaves_its_second_harmonic():
     motion, __ = turn_of("engine-four")
-    harmonics = np.abs(np.fft.fft(shaking(motion).force)) / len(motion.q)
+    harmonics = np.abs(np.fft.fft(compute_shaking(motion).force)) / len(motion.q)
     assert harmonics[1] < 1e-9 * harmonics[2]
 
 
@@ -60,10 +67,10 @@ def test_an_engine_of_four_cylinders_in_line_leaves_its_second_harmonic():
 def test_what_shakes_is_the_rate_of_all_momentum(name):
     motion, results = turn_of(name)
     step = 1e-5
-    ends = [at_positions(results, motion.q + sign * step) for sign in (-1, 1)]
+    ends = [motion_at_positions(results, motion.q + sign * step) for sign in (-1, 1)]
     momentum = [sum(m.linkage.links[n].mass * m.centre(n).v for n in m.linkage.moving) for m in ends]
     rate = (momentum[1] - momentum[0]) / (2 * step) * motion.rate
-    force = shaking(motion).force
+    force = compute_shaking(motion).force
     assert force == pytest.approx(-rate, abs=1e-5 * np.max(np.abs(force)))
 
 
@@ -82,8 +89,8 @@ def heavier(linkage, weights):
 
 def test_counterweights_are_masses_like_others_also_on_a_pivot_that_moves():
     motion, __ = turn_of("crank-slider")
-    found = balanced(motion, BalancingTask((Place("1", 0j, 0.05), Place("2", 0j, 0.1))))
-    again = shaking(replace(motion, linkage=heavier(motion.linkage, found.counterweights)))
+    found = balance_cycle(motion, BalancingTask((CounterweightPlace("1", 0j, 0.05), CounterweightPlace("2", 0j, 0.1))))
+    again = compute_shaking(replace(motion, linkage=heavier(motion.linkage, found.counterweights)))
     assert np.max(np.abs(again.force)) < 1e-12 * np.max(np.abs(found.before.force))
     assert again.moment == pytest.approx(found.after.moment, abs=1e-12 * np.max(np.abs(again.moment)))
 
@@ -149,7 +156,7 @@ def test_masses_in_one_plane_to_the_digits_of_a_textbook():
     """B. K. Sarkar, Theory of Machines (2004), chapter 8, illustration 1, p. 221."""
     masses = ((12, 40, 0), (10, 50, 60), (18, 60, 130), (15, 30, 270))  # kg, mm, deg
     sizes = np.array([m * r * np.exp(1j * np.radians(angle)) for m, r, angle in masses])
-    (found,) = Rotor(sizes, np.zeros(4), (Plane(0.0),)).corrections()
+    (found,) = UnbalancedShaft(sizes, np.zeros(4), (CorrectionPlane(0.0),)).corrections()
     assert abs(found) / 100 == pytest.approx(8.1, abs=0.05)
     assert np.degrees(np.angle(found)) % 360 == pytest.approx(267.5, abs=0.05)
 
@@ -159,7 +166,9 @@ def test_masses_in_two_planes_as_a_textbook_measures_them():
     X 350 to 355 kg at 145 to 146 deg clockwise from A, Y 182.5 kg, both at 100 mm."""
     masses = ((200, 80, 0, 0), (300, 70, 45, 300), (400, 60, 115, 400), (200, 80, 235, 700))  # kg, mm, deg, mm
     sizes = np.array([m * r * np.exp(1j * np.radians(angle)) for m, r, angle, __ in masses])
-    rotor = Rotor(sizes, np.array([at for *__, at in masses]), (Plane(100.0), Plane(500.0)))
+    rotor = UnbalancedShaft(
+        sizes, np.array([at for *__, at in masses]), (CorrectionPlane(100.0), CorrectionPlane(500.0))
+    )
     x, y = rotor.corrections()
     assert 350 < abs(x) / 100 < 355 and abs(y) / 100 == pytest.approx(182.5, rel=0.01)
     assert -np.degrees(np.angle(x)) % 360 == pytest.approx(146, abs=1)
@@ -174,11 +183,11 @@ MASSES = st.lists(
 
 @given(MASSES, st.floats(-1, -0.2), st.floats(0.2, 1))
 def test_masses_in_two_planes_leave_neither_force_nor_couple(masses, one, other):
-    rotor = Rotor(*map(np.array, zip(*masses, strict=True)), (Plane(one), Plane(other)))
+    rotor = UnbalancedShaft(*map(np.array, zip(*masses, strict=True)), (CorrectionPlane(one), CorrectionPlane(other)))
     before, after = rotor.unbalance(), rotor.unbalance(rotor.corrections())
     size = sum(abs(size) for size, __ in masses)
     assert max(map(abs, after)) < 1e-14 * size * 20
-    static = replace(rotor, planes=(Plane(one),))
+    static = replace(rotor, planes=(CorrectionPlane(one),))
     force, couple = static.unbalance(static.corrections())
     assert abs(force) < 1e-14 * size and couple == pytest.approx(before[1])
 

@@ -13,7 +13,7 @@ from test_commands import tmm
 
 from tmm_cli.bench import MECHANISMS, Growth, Iterated, Race, Rival, Speed, Sweeping, chain, exponent, measured, speed
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
-from tmm_cli.mechanics.forces import applied, compute_lever, power, react
+from tmm_cli.mechanics.forces import collect_loads, compute_lever, reduced_driving_moment, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 
@@ -38,8 +38,8 @@ def test_a_long_chain_of_dyads_moves_and_balances():
     structure = analyse_mobile_structure(it)
     motion = compute_motion(it, assemble(it, structure), np.linspace(0, 6.28, 25), DriverMotion(1.0, 10.0, 0.0, 1))
     assert len(structure.groups) == 30 and bool(np.all(motion.moving))
-    loads = applied(motion, None)
-    drivers = power(motion, react(motion, structure, loads))
+    loads = collect_loads(motion, None)
+    drivers = reduced_driving_moment(motion, solve_reactions(motion, structure, loads))
     assert np.allclose(
         compute_lever(motion, loads, drivers).balancing, drivers, rtol=0, atol=1e-9 * np.max(np.abs(drivers))
     )

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from models import SI, results_of
 
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.reports import collect_warnings
 
 DIGITS = 1e-12  # rad
@@ -120,11 +120,11 @@ def test_it_does_not_matter_where_the_sketch_is_drawn(off):
 def test_the_plate_goes_on_without_turning(kind):
     it, results = plate(kind), moved(kind)
     q = np.linspace(results.driver_range.start, results.driver_range.end, 400)
-    motion = at_positions(results, q)
+    motion = motion_at_positions(results, q)
     assert np.all(motion.moving)
     assert np.max(np.abs(motion.poses["3"].z - 1)) < 1e-11
     swung = [complex(mp.expj(it.swing(mp.mpf(float(x))) - it.swing(mp.mpf(it.at)))) for x in q]
-    turned = motion.poses["4"].z / at_positions(results, np.array([it.at])).poses["4"].z
+    turned = motion.poses["4"].z / motion_at_positions(results, np.array([it.at])).poses["4"].z
     assert np.max(np.abs(turned - swung)) < 1e-11
 
 
@@ -163,7 +163,7 @@ def test_a_plate_on_three_equal_rods_is_dead_where_all_come_into_line():
     results = results_of(it.problem(), "kinematics")
     assert results.driver_range.full
     near([d.place for d in results.dead], [mp.mpf(0), mp.pi])
-    motion = at_positions(results, np.linspace(-0.3, 3.4, 300))
+    motion = motion_at_positions(results, np.linspace(-0.3, 3.4, 300))
     assert np.all(motion.moving)
     assert np.max(np.abs(motion.poses["3"].z - 1)) < 1e-9
 
@@ -204,7 +204,7 @@ def test_a_symmetric_linkage_stays_symmetric_where_it_could_tilt():
     assert results.driver_range.full
     exact = mp.findroot(meets_above, mp.mpf("0.66"))
     near([d.place for d in results.dead], [exact, -exact])
-    motion = at_positions(results, np.linspace(-0.9, 0.9, 100))
+    motion = motion_at_positions(results, np.linspace(-0.9, 0.9, 100))
     assert np.max(np.abs(motion.poses["5"].z - 1)) < 1e-11
 
 
@@ -238,7 +238,7 @@ def test_with_a_rod_that_is_longer_the_driver_turns_back(longer):
     assert not results.driver_range.full
     assert results.dead == ()
     for limit, inside in zip(sorted(x.place for x in results.driver_range.limits), (1, -1), strict=True):
-        pose = at_positions(results, np.array([limit + 1e-7 * inside])).poses["3"]
+        pose = motion_at_positions(results, np.array([limit + 1e-7 * inside])).poses["3"]
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), limit)
         root = mp.findroot(folds(it, longer), tuple(mp.mpf(float(v)) for v in start))
         near([limit], [root[3]])

@@ -12,9 +12,9 @@ from bank import solved
 from test_commands import tmm
 
 import tmm_cli.mechanics.plans.lever_drawing as drawn_plans
-from tmm_cli.mechanics.forces import loaded_parts
+from tmm_cli.mechanics.forces import list_free_bodies
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.plans import drawn_check, sheets
+from tmm_cli.mechanics.plans import balance_drawings, drawn_check
 from tmm_cli.note import by_moments
 
 COURSE = Path("problems/course-1.yaml").read_text(encoding="utf-8")
@@ -108,7 +108,7 @@ def test_arms_on_paper_are_metres_over_the_scale_and_couples_are_divided_by_it()
     """Equation 7: R34τ = (U4 h1 + G4 h2 - M4/μ)/DE, here with the signs of position 3 of mechanism 1."""
     results, k, mu = solved("course-1"), 3, 0.0025
     motion = results.motion
-    equation = loaded_parts(motion, results.reactions, k)[0].equations[0]
+    equation = list_free_bodies(motion, results.reactions, k)[0].equations[0]
     found = by_moments(equation, mu=mu)
     e, s, d = (complex(z[k]) for z in (motion.named("E").x, motion.centre("4").x, motion.named("D").x))
     inertia = -3.0 * complex(motion.centre("4").a[k])
@@ -140,7 +140,7 @@ def _leaves(expression):
 @pytest.mark.parametrize("name", DRIVEN)
 def test_every_equation_gives_the_same_with_arms_on_paper_as_in_metres(name):
     results = solved(name)
-    equations = [e for part in loaded_parts(results.motion, results.reactions, 2) for e in part.equations]
+    equations = [e for part in list_free_bodies(results.motion, results.reactions, 2) for e in part.equations]
     for equation in equations:
         metres, paper = by_moments(equation), by_moments(equation, mu=0.002)
         assert (metres is None) == (paper is None)
@@ -181,7 +181,7 @@ def half_millimetres(length: float, mu: float) -> float:
 
 def test_the_drawn_lever_sums_forces_times_arms_that_are_read_to_half_a_millimetre():
     results, k = solved("course-1"), 3
-    drawing = sheets(results.motion, results.reactions, results.lever, k)
+    drawing = balance_drawings(results.motion, results.reactions, results.lever, k)
     scales = drawing.scales()
     check = drawn_check(results.motion, results.reactions, drawing, scales)
     motion, total = results.motion, 0.0
@@ -208,11 +208,11 @@ def test_the_drawn_lever_sums_forces_times_arms_that_are_read_to_half_a_millimet
 def test_on_finer_and_finer_paper_both_ways_come_to_the_exact_value(name, monkeypatch):
     results = solved(name)
     k = int(np.nanargmax(np.abs(results.reactions.balance.generalized)))
-    drawing = sheets(results.motion, results.reactions, results.lever, k)
+    drawing = balance_drawings(results.motion, results.reactions, results.lever, k)
     balance = results.reactions.balance
     exact = abs(float(balance.generalized[k])) / (1.0 if balance.kind == "moment" or not balance.arm else balance.arm)
     assert drawn_check(results.motion, results.reactions, drawing, drawing.scales()).difference < 0.03
-    monkeypatch.setattr(drawn_plans, "FINEST", 1e-9)
+    monkeypatch.setattr(drawn_plans, "READING_STEP", 1e-9)
     check = drawn_check(results.motion, results.reactions, drawing, drawing.scales())
     assert check.difference < 1e-8
     assert [abs(check.plan), abs(check.lever)] == pytest.approx([exact, exact], rel=1e-7)

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from test_commands import SHAPER
 
-from tmm_cli.batch import families, read_task
+from tmm_cli.batch import read_task, split_families
 from tmm_cli.grading import Written, cases, diagnose_students, predicted, right
 from tmm_cli.mechanics.quantities import ANGULAR_SPEED, LENGTH
 from tmm_cli.problem import read_text
@@ -34,7 +34,7 @@ def group():
     task = read_task(read_text(SHAPER.read_text(encoding="utf-8") + ASKED, "task.yaml"))
     random = np.random.default_rng(5)
     columns = np.stack([random.uniform(0.09, 0.12, STUDENTS), random.uniform(7, 10, STUDENTS)], axis=1)
-    family = next(families(lambda x: task.make(("OA", "n1"), (LENGTH, ANGULAR_SPEED), x), columns))[1]
+    family = next(split_families(lambda x: task.make(("OA", "n1"), (LENGTH, ANGULAR_SPEED), x), columns))[1]
     return family, right(family, task.asked)
 
 

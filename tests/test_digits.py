@@ -29,20 +29,20 @@ from test_commands import ROOT, SHAPER, described, tmm
 from tmm_cli import load, solve
 from tmm_cli.mechanics.accuracy import (
     Digits,
-    Wide,
-    at,
-    bare,
-    bounds,
-    changed,
-    exact,
+    PreciseLinkage,
+    bound_values,
+    change_length,
+    exact_linkage,
+    judge_searched,
+    largest_values,
     list_lengths,
-    quantities,
-    relative,
-    searched,
-    sizes,
+    list_values,
+    relative_bound,
+    results_with_linkage,
+    solve_bare_linkage,
 )
 from tmm_cli.mechanics.assembly import assemble
-from tmm_cli.mechanics.forces import Item, Lever
+from tmm_cli.mechanics.forces import LeverItem, ZhukovskyLever
 from tmm_cli.mechanics.groups import RISE_LAWS
 from tmm_cli.mechanics.kinematics import find_range
 from tmm_cli.mechanics.linkage import FRAME, Driver, Hinge, Link, Linkage, Load, Sketch
@@ -160,9 +160,9 @@ def truth(body, it, structure, k):
 def judged(it, q, kernels, bounded=True):
     """(value, true error, bound) of every quantity at every place that is not refused."""
     structure = analyse_structure(it)
-    results = bare(it, q, structure, kernels)
+    results = solve_bare_linkage(it, q, structure, kernels)
     nothing = Digits(defaultdict(lambda: np.full(len(q), np.nan)))
-    values, digits = bounds(results) if bounded else (quantities(results), nothing)
+    values, digits = bound_values(results) if bounded else (list_values(results), nothing)
     body = multibody.Multibody(it, structure, results.motion)
     rows = []
     for k in np.flatnonzero(results.motion.moving):
@@ -259,7 +259,7 @@ def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kin
         kernels, way = assembled(it)
         near = [] if way.full else way.end - 10.0 ** -np.random.default_rng(seed).uniform(1, 12, 2)
         rows, results = judged(it, np.array([it.sketch.at, *near]), kernels, bounded=False)
-        share, size = relative(results), sizes(results)
+        share, size = relative_bound(results), largest_values(results)
         places = np.repeat(np.flatnonzero(results.motion.moving), len(rows) // np.sum(results.motion.moving))
         for place, (key, _, error, _) in zip(places, rows, strict=True):
             assert error <= share[place] * size[DIMENSIONS[key[0]]], (seed, key)
@@ -350,8 +350,11 @@ def test_decimals_that_arithmetic_left_behind_a_number_of_teeth_are_none_in_more
 
 def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
     results = moved("crank-slider")
-    found = searched(
-        results, lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])}, Wide(results), 0.001
+    found = judge_searched(
+        results,
+        lambda r: {"H": np.array([r.strokes.travel]), "k": np.array([r.strokes.k])},
+        PreciseLinkage(results),
+        0.001,
     )
     for key, value, true in (("H", results.strokes.travel, mp.mpf("0.12")), ("k", results.strokes.k, mp.mpf(1))):
         assert abs(mp.mpf(value) - true) <= found.bound[key][0] < 1e-14
@@ -360,7 +363,9 @@ def test_strokes_of_a_central_crank_slider_are_known_to_their_bounds():
 
 def test_a_largest_pressure_angle_goes_with_crank_and_rod_as_its_sine_their_ratio_says():
     results = moved("crank-slider")
-    found = searched(results, lambda r: {"largest": np.array([r.pressure[0].largest])}, Wide(results), 0.001)
+    found = judge_searched(
+        results, lambda r: {"largest": np.array([r.pressure[0].largest])}, PreciseLinkage(results), 0.001
+    )
     by_both = 2 * 1e-3 * np.tan(results.pressure[0].largest)
     assert found.lengths["largest"][0] == pytest.approx(by_both, rel=1e-4)
 
@@ -368,7 +373,7 @@ def test_a_largest_pressure_angle_goes_with_crank_and_rod_as_its_sine_their_rati
 def test_an_end_of_the_way_moves_with_the_lengths_as_the_stretched_rod_and_rocker_say():
     a, b, c, d = 0.8, 0.7, 0.6, 1.0
     results = solve(build_problem(read_text(BARRED, "barred.yaml")), "kinematics")
-    found = searched(results, lambda r: {"end": np.array([r.driver_range.end])}, Wide(results), 0.001)
+    found = judge_searched(results, lambda r: {"end": np.array([r.driver_range.end])}, PreciseLinkage(results), 0.001)
     cosine = (a**2 + d**2 - (b + c) ** 2) / (2 * a * d)
     slopes = [1 / d - cosine / a, (b + c) / (a * d), (b + c) / (a * d), 1 / a - cosine / d]
     by_lengths = sum(abs(slope) * x for slope, x in zip(slopes, (a, b, c, d), strict=True))
@@ -384,7 +389,7 @@ def test_sensitivity_is_that_of_a_larger_change_of_the_data():
     for length in list_lengths(problem.linkage):
         by = 1e-3 * abs(length.value)
         moved = [
-            cells_with_digits(solve(replace(problem, linkage=changed(problem.linkage, length, sign * by))))
+            cells_with_digits(solve(replace(problem, linkage=change_length(problem.linkage, length, sign * by))))
             for sign in (1, -1)
         ]
         for key in base:
@@ -460,7 +465,9 @@ def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_h
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)
-    wide = cells_with_digits(at(results, exact(results), to_double_double(results.motion.q), results.start))
+    wide = cells_with_digits(
+        results_with_linkage(results, exact_linkage(results), to_double_double(results.motion.q), results.start)
+    )
     for header in ("s", "v relative", "a relative"):
         k, column = next((k, c) for k, c in enumerate(told.columns) if c.header == header)
         expected = [wide[False, "slides", k, row] for row in range(2)]
@@ -488,8 +495,8 @@ def test_a_moment_by_the_swing_of_its_rocker_is_judged():
 def test_a_load_named_as_an_inertia_couple_keeps_its_own_row_of_the_lever():
     motion = solved("crank-rocker").motion
     zero = np.zeros(np.shape(motion.q))
-    rows = tuple(Item("M3", "3", zero + size, zero, zero + size) for size in (0.03, -20.0))
-    shown = Lever(rows, zero, zero)
+    rows = tuple(LeverItem("M3", "3", zero + size, zero, zero + size) for size in (0.03, -20.0))
+    shown = ZhukovskyLever(rows, zero, zero)
     assert [row.size[0] for row in shown.with_rows_of(shown, motion).items] == [0.03, -20.0]
-    without = Lever(rows[:1], zero, zero)
+    without = ZhukovskyLever(rows[:1], zero, zero)
     assert [row.size[0] for row in without.with_rows_of(shown, motion).items] == [0.03, 0.0]

@@ -29,7 +29,7 @@ from tmm_cli.drawing.paper import (
 )
 from tmm_cli.drawing.sheets import draw_law_of_motion, draw_single_run, visible_stretches
 from tmm_cli.language import spoken
-from tmm_cli.mechanics.dynamics import Linear, Rim, SteadyTask
+from tmm_cli.mechanics.dynamics import LinearMotor, RimFlywheel, SteadyTask
 from tmm_cli.mechanics.linkage import Load
 from tmm_cli.note import html, note
 from tmm_cli.note.dynamics import reduced_model as words
@@ -40,9 +40,9 @@ TASKS = {  # of another way each: found for a constant moment, far from zero ine
     ("shaper", "constant"): SteadyTask(8.6, 1 / 30),
     ("engine-four", "far"): SteadyTask(314.0, 1 / 30),
     ("double-crank", "clockwise"): SteadyTask(7.0, 0.02),
-    ("six-bar", "given"): SteadyTask(20.0, flywheel=3.0, size=Rim(7200.0, 0.2, 0.1)),
+    ("six-bar", "given"): SteadyTask(20.0, flywheel=3.0, size=RimFlywheel(7200.0, 0.2, 0.1)),
     ("engine-four", "none"): SteadyTask(314.0),
-    ("shaper", "motor"): SteadyTask(9.0, 0.05, Linear(2000.0, 9.5), ratio=4.0),
+    ("shaper", "motor"): SteadyTask(9.0, 0.05, LinearMotor(2000.0, 9.5), ratio=4.0),
 }
 
 

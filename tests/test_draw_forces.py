@@ -34,7 +34,7 @@ from tmm_cli.drawing.sheets import (
     format_figures,
     lane_offsets,
 )
-from tmm_cli.mechanics.forces import Acting, Symbol, loaded_parts
+from tmm_cli.mechanics.forces import ForceOrCouple, Symbol, list_free_bodies
 from tmm_cli.mechanics.plans import NamedVector, force_plans
 from tmm_cli.note import fixed, rounded
 
@@ -53,7 +53,7 @@ def loaded():
 def equations():
     """Of the shaper's parts by their links, as they are written."""
     (here,) = detailed_drawings(solved("shaper"))
-    parts = loaded_parts(here.motion, here.results.reactions, here.k)
+    parts = list_free_bodies(here.motion, here.results.reactions, here.k)
     return {part.links: [line(words) for e in part.equations for words in equation_lines(e)] for part in parts}
 
 
@@ -190,9 +190,9 @@ def lie_together(one, other):
 
 def test_couples_are_listed_by_size_and_sense_as_the_equations_take_them():
     forward, backward, force = (
-        Acting(Symbol("M", "1"), "inertia", "1", 0j, 0j, 0.5),
-        Acting(Symbol("M", "2"), "inertia", "2", 0j, 0j, -0.25),
-        Acting(Symbol("G", "3"), "load", "3", 0j, -10j),
+        ForceOrCouple(Symbol("M", "1"), "inertia", "1", 0j, 0j, 0.5),
+        ForceOrCouple(Symbol("M", "2"), "inertia", "2", 0j, 0j, -0.25),
+        ForceOrCouple(Symbol("G", "3"), "load", "3", 0j, -10j),
     )
     cells = [row[1:] for row in forces_table([forward, backward, force]).rows]
     assert cells == [("0.5 N·m", "ccw"), ("0.25 N·m", "cw"), ("10 N", "270.0°")]
@@ -203,7 +203,7 @@ def test_forces_on_one_line_do_not_hide_one_another(ways):
     sheet = DrawingSheet("T", "S", [0j, 1 + 0j])
     sheet.line([sheet.on(0j), sheet.on(0j) - 40j], DARK_COLOUR)  # a link: what goes down begins there at some cost
     forces = ForceArrows(sheet)
-    forces.draw(Acting(Symbol("F", str(k)), "load", "1", 0j, 1j * way) for k, way in enumerate(ways))
+    forces.draw(ForceOrCouple(Symbol("F", str(k)), "load", "1", 0j, 1j * way) for k, way in enumerate(ways))
     tips = [sum(mark.corners) / 3 for mark in sheet.marks if isinstance(mark, AreaMark) and is_head(mark)]
     assert len(tips) == 3 and all(abs(one - other) > 5 for one, other in combinations(tips, 2))
 

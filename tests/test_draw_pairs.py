@@ -24,7 +24,7 @@ from tmm_cli.drawing.symbols import (
 )
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import cross, dot
-from tmm_cli.mechanics.plans import acceleration_plan, force_plans, letters, lever_plan, velocity_plan
+from tmm_cli.mechanics.plans import acceleration_plan, force_plans, lever_plan, plan_letters, velocity_plan
 from tmm_cli.problem import build_problem, read_text
 
 WHEELS = ["gear", "inner", "planet", "rack"]
@@ -266,7 +266,7 @@ def test_under_a_piston_the_parts_start_where_the_cylinder_is_hinged_to_a_moving
 
 def test_a_point_p_is_not_the_pole():
     motion = solved("rack").motion
-    assert letters(motion.linkage)["P"] == "p′"
+    assert plan_letters(motion.linkage)["P"] == "p′"
     plan = velocity_plan(motion, 2)
     assert plan.ends["p"] == 0 and plan.ends["p′"] == pytest.approx(motion.named("P").v[2])
     lever = lever_plan(motion, solved("rack").reactions, solved("rack").lever, 2)

@@ -22,7 +22,7 @@ from tmm_cli.drawing.sheets import (
     output_path,
     scale_ratio,
 )
-from tmm_cli.mechanics.plans import ground_of
+from tmm_cli.mechanics.plans import drawing_area
 from tmm_cli.mechanics.quantities import LENGTH
 from tmm_cli.problem import build_problem, read_text
 
@@ -136,7 +136,7 @@ def test_the_scale_is_one_of_the_standard_and_the_figure_uses_the_field(name):
     mu = scale(sheet)
     assert 1000 * mu in (1, 2, 2.5, 4, 5, 10, 15, 20, 25, 40, 50, 75, 100)
     assert f", {scale_ratio(mu)}" in sheet.texts()
-    low, high = ground_of(sheet.paper)
+    low, high = drawing_area(sheet.paper)
     places = np.array(
         [z for m in sheet.marks if isinstance(m, LineMark) and m.layer != "frame" and m.z < 6 for z in m.places]
     )
@@ -201,6 +201,6 @@ def test_a_position_under_its_loads_fills_its_sheet(name):
     ((__, sheet),) = draw_position(here)
     marks = np.concatenate([np.ravel(m.places) for m in sheet.marks if isinstance(m, LineMark) and m.layer != "frame"])
     marks = marks[np.isfinite(marks)]
-    low, high = ground_of(sheet.paper)
+    low, high = drawing_area(sheet.paper)
     used = [np.ptp(part) / room for part, room in ((marks.real, (high - low).real), (marks.imag, (high - low).imag))]
     assert max(used) > 0.5 and max(used) <= 1

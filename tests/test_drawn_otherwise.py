@@ -14,8 +14,8 @@ from bank import EVERY, problem
 from random_linkages import any_linkage
 from transforms import mirrored, moved, renamed, reversed_in_time, turned, with_other_axes
 
-from tmm_cli.mechanics.analysis import Inputs, at_positions, solve, with_forces
-from tmm_cli.mechanics.forces import react
+from tmm_cli.mechanics.analysis import Inputs, motion_at_positions, solve, with_forces
+from tmm_cli.mechanics.forces import solve_reactions
 from tmm_cli.mechanics.kinematics import output_run
 from tmm_cli.mechanics.linkage import FRAME, Friction, Load, Output, Request, Sketch
 
@@ -93,7 +93,7 @@ def alike(one, other, names, points, *, sense, spin, shift=0j):
 
 def doubt_of_k(results):
     """Uncertainty of k: an end of a stroke is a zero of the slope, less sure the flatter the output lies there."""
-    ends = at_positions(results, np.array([stroke.start for stroke in results.strokes.strokes]))
+    ends = motion_at_positions(results, np.array([stroke.start for stroke in results.strokes.strokes]))
     bend = np.abs(output_run(ends, results.strokes.link)[2])
     return 10 * np.sum(np.minimum(1e-3, 1e-13 * results.strokes.travel / (bend + 1e-300)))
 
@@ -106,7 +106,7 @@ def as_drawn(name):
     if results.strokes is not None and results.strokes.strokes:
         working = "forward" if results.strokes.strokes[0].run > 0 else "backward"
         linkage = replace(linkage, output=Output(results.strokes.link, working))
-    there = at_positions(results, np.array([linkage.sketch.at]), 0)
+    there = motion_at_positions(results, np.array([linkage.sketch.at]), 0)
     points = {point: complex(there.spot(point)[0]) for point in linkage.moving_points}
     angles = {link: float(np.angle(there.poses[link].z[0])) for link in linkage.moving}
     return rubbing(replace(linkage, sketch=Sketch(linkage.sketch.at, points, angles))), results.asked
@@ -202,7 +202,7 @@ def test_reactions_of_loads_are_the_sum_of_those_of_each(chain):
     rest = [load for load in results.loads if load.kind != "load"]
     loads = [load for load in results.loads if load.kind == "load"]
     none, first, second = (
-        react(results.motion, results.structure, tuple(acting))
+        solve_reactions(results.motion, results.structure, tuple(acting))
         for acting in (rest, [*rest, *loads[::2]], [*rest, *loads[1::2]])
     )
     strongest = max(np.max(np.abs(r.force)) for r in (*results.reactions.all, *none.all))

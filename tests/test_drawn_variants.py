@@ -9,7 +9,7 @@ import pytest
 from test_commands import SHAPER
 
 from tmm_cli import solve
-from tmm_cli.batch import read_choices, read_task, with_vary
+from tmm_cli.batch import read_free_parameters, read_task, with_vary
 from tmm_cli.grading import Variety, draw, draw_for, draw_variants
 from tmm_cli.problem import ProblemError, read_text
 
@@ -91,7 +91,7 @@ def test_one_by_one_they_are_judged_as_together():
     ],
 )
 def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
-    found = {choice.name: choice.texts for choice in read_choices(task(vary=[vary]))}
+    found = {choice.name: choice.texts for choice in read_free_parameters(task(vary=[vary]))}
     assert found[vary.partition("=")[0]] == texts
 
 
@@ -118,5 +118,5 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
 )
 def test_ranges_that_are_none_are_refused(vary, message):
     with pytest.raises(ProblemError) as caught:
-        read_choices(task(vary=[vary]))
+        read_free_parameters(task(vary=[vary]))
     assert str(caught.value) == message

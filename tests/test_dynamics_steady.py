@@ -12,21 +12,21 @@ from scipy.integrate import quad, solve_ivp
 from test_commands import tmm
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.mechanics.dynamics import (
-    Cycle,
-    Kloss,
-    Linear,
+    KlossMotor,
+    LinearMotor,
+    MotorCycle,
     SteadyTask,
+    find_running_law,
     find_steady_running,
-    fitted,
-    fluctuation,
+    fit_curves,
     reduce_machine,
-    reduced_machine,
-    running,
+    reduce_mechanism,
+    speed_fluctuation,
 )
 from tmm_cli.mechanics.errors import NoFlywheelError, RunawayError, StandstillError, WeakMotorError
-from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.forces import collect_loads, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
@@ -54,13 +54,13 @@ MACHINES = st.builds(machine, st.floats(-500, -10), st.floats(-50, 50), st.float
 
 
 def test_rounding_errors_are_not_followed_by_panels_without_end():
-    noisy = fitted(lambda x: (1 + 1e-9 * np.sin(1e9 * x),), [0, TURN])[0]
+    noisy = fit_curves(lambda x: (1 + 1e-9 * np.sin(1e9 * x),), [0, TURN])[0]
     assert len(noisy.edges) < 5000
     assert noisy(np.linspace(0, TURN, 100)) == pytest.approx(np.ones(100), abs=1e-7)
 
 
 def test_a_sum_of_a_function_with_a_jump_is_exact():
-    curve = fitted(lambda x: (np.where(x < 2, np.exp(np.sin(x)), 3 - x),), [0, 2, TURN])[0]
+    curve = fit_curves(lambda x: (np.where(x < 2, np.exp(np.sin(x)), 3 - x),), [0, 2, TURN])[0]
     exact = quad(lambda x: np.exp(np.sin(x)), 0, 2, epsabs=1e-14)[0] + 3 * (TURN - 2) - (TURN**2 - 4) / 2
     assert curve.total == pytest.approx(exact, rel=1e-14)
     assert curve.summed()(np.array([2.0]))[0] == pytest.approx(quad(lambda x: np.exp(np.sin(x)), 0, 2)[0], rel=1e-14)
@@ -114,11 +114,11 @@ def test_energy_comes_back_after_a_cycle():
     assert ends[1] - ends[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(ends)))
 
 
-@pytest.mark.parametrize("motor", [Linear(500.0, 12.0), Kloss.rated(12.0, 11.6, 60.0, 2.2)])
+@pytest.mark.parametrize("motor", [LinearMotor(500.0, 12.0), KlossMotor.rated(12.0, 11.6, 60.0, 2.2)])
 @pytest.mark.parametrize("flywheel", [0.0, 5.0, 30.0])
 def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
     own = machine()
-    law = Cycle.of(own, motor).law(flywheel)
+    law = MotorCycle.of(own, motor).law(flywheel)
 
     def rate(x, energy):
         speed = np.sqrt(2 * energy / (flywheel + own.inertia(np.array([x]))))
@@ -136,7 +136,7 @@ def test_with_a_motor_every_cycle_is_as_the_one_before(motor, flywheel):
 def test_the_slip_of_a_motor_too_strong_is_that_of_the_equation_of_motion(times):
     """By the angle, with a stiff method; the load jumps at pi and at the end of the turn."""
     stall, free = 500.0 * times, 12.0
-    law = Cycle.of(machine(), Linear(stall, free)).law(0.0)
+    law = MotorCycle.of(machine(), LinearMotor(stall, free)).law(0.0)
 
     def rate(x, slip, acting):
         speed = free * (1 - slip)
@@ -158,20 +158,20 @@ def test_the_slip_of_a_motor_too_strong_is_that_of_the_equation_of_motion(times)
 @pytest.mark.parametrize("times", 10.0 ** np.arange(7))
 def test_a_motor_however_strong_turns_near_its_speed_without_load(times):
     """With the mean moment that the loads want; the speed sags by the moment over the slope of the characteristic."""
-    for motor in (Linear(500.0 * times, 12.0), Kloss.rated(12.0, 11.6, 60.0 * times, 2.2)):
-        law = Cycle.of(machine(), motor).law(0.0)
+    for motor in (LinearMotor(500.0 * times, 12.0), KlossMotor.rated(12.0, 11.6, 60.0 * times, 2.2)):
+        law = MotorCycle.of(machine(), motor).law(0.0)
         assert law.driving.total == pytest.approx(-machine().work_of_cycle, rel=1e-10)
         assert law.speed(np.linspace(0, 6, 100)) == pytest.approx(12.0, abs=5.0 / times)
 
 
 def test_a_flywheel_is_found_for_a_motor_too():
-    motor = Kloss.rated(12.0, 11.6, 60.0, 2.2)
+    motor = KlossMotor.rated(12.0, 11.6, 60.0, 2.2)
     found = find_steady_running(machine(), SteadyTask(11.0, 0.05, motor))
     assert found.delta == pytest.approx(0.05, rel=1e-10)
-    assert fluctuation(Cycle.of(machine(), motor).law(found.law.flywheel)) == pytest.approx(0.05, rel=1e-9)
+    assert speed_fluctuation(MotorCycle.of(machine(), motor).law(found.law.flywheel)) == pytest.approx(0.05, rel=1e-9)
 
 
-@pytest.mark.parametrize("motor", [Linear(500.0, 12.0), Kloss(12.0, 130.0, 0.14)])
+@pytest.mark.parametrize("motor", [LinearMotor(500.0, 12.0), KlossMotor(12.0, 130.0, 0.14)])
 def test_slopes_of_characteristics_are_their_derivatives(motor):
     slip, step = np.linspace(-0.1, 0.99, 40), 1e-6
     slope = (motor.at_slip(slip + step)[0] - motor.at_slip(slip - step)[0]) / (2 * step)
@@ -179,7 +179,7 @@ def test_slopes_of_characteristics_are_their_derivatives(motor):
 
 
 def test_an_asynchronous_motor_has_its_rated_and_its_breakdown_moment():
-    motor = Kloss.rated(157.0, 150.0, 20.0, 2.2)
+    motor = KlossMotor.rated(157.0, 150.0, 20.0, 2.2)
     assert motor.moment(np.array([150.0])) == pytest.approx(20.0)
     assert motor.moment(157.0 * (1 - np.array([motor.slip])))[0] == pytest.approx(44.0)
     assert motor.moment(np.array([157.0])) == pytest.approx(0.0, abs=1e-12)
@@ -187,25 +187,27 @@ def test_an_asynchronous_motor_has_its_rated_and_its_breakdown_moment():
 
 def test_a_motor_that_gives_less_than_the_mean_of_the_loads_cannot_carry_them():
     with pytest.raises(WeakMotorError) as weak:
-        find_steady_running(machine(load=-800.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
+        find_steady_running(machine(load=-800.0), SteadyTask(11.0, motor=KlossMotor.rated(12.0, 11.6, 60.0, 1.3)))
     assert weak.value.wanted == pytest.approx(400.0) and weak.value.most == pytest.approx(78.0)
 
 
 def test_a_machine_that_its_load_pushes_beyond_its_motor_runs_away():
     with pytest.raises(RunawayError) as away:
-        Cycle.of(machine(load=300.0), Kloss.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
+        MotorCycle.of(machine(load=300.0), KlossMotor.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
     assert away.value.pushing == pytest.approx(150.0) and away.value.most == pytest.approx(78.0)
     assert away.value.place == pytest.approx(np.pi / 2, abs=0.1)  # of the largest push
     with pytest.raises(RunawayError) as late:  # in the mean it could be held
-        Cycle.of(machine(load=300.0, until=1.5), Kloss.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
+        MotorCycle.of(machine(load=300.0, until=1.5), KlossMotor.rated(12.0, 11.6, 60.0, 1.3)).law(0.0)
     assert late.value.pushing == pytest.approx(300 * 1.5 / TURN) and late.value.speed > 24.0
-    held = Cycle.of(machine(load=60.0), Kloss.rated(12.0, 11.6, 60.0, 2.2)).law(5.0)
+    held = MotorCycle.of(machine(load=60.0), KlossMotor.rated(12.0, 11.6, 60.0, 2.2)).law(5.0)
     assert held.driving.total == pytest.approx(-60 * np.pi) and np.min(held.speed(np.linspace(0, 6, 50))) > 11.5
 
 
 def test_a_motor_that_a_load_stalls_on_the_way_stands_still():
     with pytest.raises(StandstillError) as stands:
-        find_steady_running(machine(load=-200.0, until=2.0), SteadyTask(11.0, motor=Kloss.rated(12.0, 11.6, 60.0, 1.3)))
+        find_steady_running(
+            machine(load=-200.0, until=2.0), SteadyTask(11.0, motor=KlossMotor.rated(12.0, 11.6, 60.0, 1.3))
+        )
     assert 0 <= stands.value.place <= np.pi
 
 
@@ -226,7 +228,7 @@ def test_ways_of_a_course_are_near_to_the_exact_one():
 )
 def test_a_mechanism_with_its_flywheel_keeps_the_energy_of_the_cycle(name):
     results = solved(name)
-    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
+    found = find_running_law(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
     assert found.delta == pytest.approx(1 / 30, rel=1e-10)
     gone = found.law.energy(np.array([0.0, found.machine.length]))
     assert gone[1] - gone[0] == pytest.approx(0, abs=1e-10 * np.max(np.abs(found.law.energy.coefficients[0])))
@@ -234,21 +236,21 @@ def test_a_mechanism_with_its_flywheel_keeps_the_energy_of_the_cycle(name):
 
 def test_a_constant_force_on_a_stroke_works_its_length():
     results = solved("shaper")
-    machine = reduced_machine(results.mechanism, results.start)
+    machine = reduce_mechanism(results.mechanism, results.start)
     assert machine.work_of_cycle == pytest.approx(-1500 * results.strokes.travel, rel=1e-12)
 
 
 def test_powers_balance_in_every_position_of_the_law_of_motion():
     """Balancing moment at omega, epsilon of the law: that of the driver less what speeds the flywheel up."""
     results = solved("shaper")
-    found = running(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
+    found = find_running_law(results.mechanism, results.start, SteadyTask(results.linkage.driver.rate, 1 / 30)).steady
     x = np.linspace(0.1, 6.2, 37)
     law, sense = found.law, results.linkage.driver.sense
     q = results.start + sense * x
-    motion = at_positions(results, q)
+    motion = motion_at_positions(results, q)
     motion = replace(motion, rate=sense * law.speed(x), acceleration=sense * law.acceleration(x))
-    loads = applied(motion, results.strokes)
-    balance = react(motion, results.structure, loads).balance.moment
+    loads = collect_loads(motion, results.strokes)
+    balance = solve_reactions(motion, results.structure, loads).balance.moment
     assert sense * balance == pytest.approx(found.moment - law.flywheel * law.acceleration(x), rel=1e-10, abs=1e-9)
 
 
@@ -262,7 +264,7 @@ def test_reactions_under_the_law_of_motion_agree_with_lagrange_multipliers(k):
     linkage = replace(results.linkage, driver=replace(driver, rate=rate, acceleration=acceleration))
     q = motion.q[k : k + 1]
     here = compute_motion(linkage, results.kernels, q, DriverMotion(float(q[0]), rate, acceleration, driver.sense))
-    reactions = react(here, results.structure, applied(here, results.strokes))
+    reactions = solve_reactions(here, results.structure, collect_loads(here, results.strokes))
     for pair in results.structure.pairs:
         own = results.reactions.of(pair.name).force[k]
         assert reactions.of(pair.name).force[0] == pytest.approx(own, rel=1e-13)

@@ -9,7 +9,7 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.drawing.sheets import draw_reaction_hodographs
-from tmm_cli.mechanics.analysis import at_places, with_extremes
+from tmm_cli.mechanics.analysis import results_at, with_extremes
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 
@@ -23,7 +23,7 @@ def found(name, stage):
 @pytest.mark.parametrize("name", ["crank-slider", "six-bar", "shaper", "crossed-slots"])
 def test_the_largest_reaction_is_the_largest_on_a_fine_grid(name):
     results, told = found(name, "forces")
-    fine = at_places(results, results.closely(20001)).reactions
+    fine = results_at(results, results.closely(20001)).reactions
     for reaction in fine.all:
         size, one = np.abs(reaction.force), told.get(("R", reaction.pair.name))
         if one is not None:
@@ -37,7 +37,7 @@ def test_what_is_told_is_there_where_it_is_told(name):
     results, told = found(name, "forces")
     for place in ("low", "high"):
         ones = [one for one in told.values() if one.kind == "R"]
-        there = at_places(results, np.array([getattr(one, f"{place}_at") for one in ones])).reactions
+        there = results_at(results, np.array([getattr(one, f"{place}_at") for one in ones])).reactions
         for k, one in enumerate(ones):
             size = np.abs(there.of(one.name).force[k])
             assert size == pytest.approx(getattr(one, place), abs=1e-9 * one.high)

@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch import NoTapeError, OneByOne, Places, Taped, TracedNumber, Variant, everything, prepare_batch, record
+from tmm_cli.batch import (
+    DriverSamples,
+    NoTapeError,
+    SequentialVariants,
+    TracedNumber,
+    TracedVariants,
+    Variant,
+    prepare_batch,
+    read_all,
+    trace_function,
+)
 from tmm_cli.mechanics.linkage import Request
 from tmm_cli.problem import (
     PhysicalValue,
@@ -60,8 +70,8 @@ def test_a_family_is_what_the_file_builds_for_the_same_numbers(name):
     make, first = maker(name, given)
     columns = np.array(first) * (1 + 0.02 * np.random.default_rng(1).uniform(-1, 1, (5, len(first))))
     q = np.linspace(0.1, 6.1, 12)
-    found = Taped(make, first, everything, forces=True)(columns, Places(np.zeros(0), q))
-    known = prepare_batch([make(row).linkage for row in columns], everything)
+    found = TracedVariants(make, first, read_all, forces=True)(columns, DriverSamples(np.zeros(0), q))
+    known = prepare_batch([make(row).linkage for row in columns], read_all)
     expected, sound = known(q), known.sound(q)["moving"]
     linkage = make(first).linkage
     if linkage.driver.acceleration:
@@ -96,7 +106,7 @@ def test_arithmetic_of_a_file_on_numbers_that_vary(text):
     def units_of(sample):
         return evaluate_quantity(sample, {}, units).dimension
 
-    found = record(
+    found = trace_function(
         lambda x, y: {"y": value(TracedNumber(0.02, x), TracedNumber(0.09, y), VariedUnits(units)).stand}, 1, 1
     )(a, b)["y"]
     assert found[:, 0] == pytest.approx([value(x, y, units) for x, y in zip(a[:, 0], b[:, 0], strict=True)], rel=1e-13)
@@ -106,16 +116,16 @@ def test_groups_with_passive_constraints_are_not_on_the_tape_of_variants():
     name = "crossed-slots"
     make, first = maker(name, list(read_file(str(ROOT / f"problems/{name}.yaml")).data["parameters"])[:1])
     with pytest.raises(NoTapeError):
-        Taped(make, first, everything)
+        TracedVariants(make, first, read_all)
 
 
 def test_groups_followed_beside_their_neighbours_are_those_followed_alone():
     make, first = maker("press-class-iii", ["OA", "CE", "FE"])
     columns = np.array(first) * (1 + 0.2 * np.random.default_rng(2).uniform(-1, 1, (3, 3)))
     q = np.linspace(0.1, 6.1, 12)
-    found = OneByOne(make, first, everything)(columns, Places(np.zeros(0), q))
+    found = SequentialVariants(make, first, read_all)(columns, DriverSamples(np.zeros(0), q))
     for k, row in enumerate(columns):
         linkage = make(row).linkage
-        batch = replace(prepare_batch(linkage, everything, forces=False), program=None)
+        batch = replace(prepare_batch(linkage, read_all, forces=False), program=None)
         for key, alone in batch(q).items():
             assert np.allclose(found[key][k], alone, rtol=0, atol=1e-12 * np.nanmax(np.abs(alone)), equal_nan=True)

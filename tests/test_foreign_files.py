@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from test_commands import ROOT, tmm
 
-from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.mechanics.analysis import results_at
 from tmm_cli.problem import DIGITS, ProblemError, build_any_problem, problem_file_text, read_mechanism, read_text
 from tmm_cli.synthesis import load, solve
 
@@ -32,7 +32,7 @@ def imported(text, file="file"):
 
 def places(results, angle, names):
     """Of points in m, with the crank at an angle (rad)."""
-    motion = at_places(results, np.array([angle])).motion
+    motion = results_at(results, np.array([angle])).motion
     return [complex(motion.named(name).x[0]) for name in names]
 
 

@@ -14,9 +14,17 @@ from bank import moved
 from models import PROBLEMS
 from test_commands import tmm
 
-from tmm_cli.animation import PLACE, ROW, TURN, card, gallery_page, picture_of, places_of
+from tmm_cli.animation import (
+    ROW,
+    STEPS_PER_MM,
+    STEPS_PER_RADIAN,
+    chain_places,
+    draw_first_frame,
+    gallery_page,
+    make_card,
+)
 from tmm_cli.language import spoken
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import SpatialChain, SpatialPair
 
@@ -27,7 +35,7 @@ HOSTILE = '</script><script>alert(1)</script><img src=x onerror="alert(2)">'
 
 @cache
 def card_of(name):
-    return card(str(PROBLEMS / f"{name}.yaml"))
+    return make_card(str(PROBLEMS / f"{name}.yaml"))
 
 
 @cache
@@ -82,11 +90,11 @@ def test_bodies_are_in_their_places_between_the_frames(name):
     """Half-way, where it is worst, by a tenth of a mm of a picture of 120 mm at most."""
     results, turning = moved(name), card_of(name).turning
     last = max(len(course) for body in turning.bodies for course in body if not isinstance(course, int)) - 1
-    exact = picture_of(results, at_positions(results, results.closely(2 * last + 1), 0))
+    exact = draw_first_frame(results, motion_at_positions(results, results.closely(2 * last + 1), 0))
     for body, own in zip(turning.bodies, (exact.bodies[n] for n, __ in layers_of(exact) if n != FRAME), strict=True):
         for half in range(0, 2 * last, 5):
-            x, y = (value(course, PLACE, half / 2, turning.loops) for course in body[:2])
-            turn = value(body[2], TURN, half / 2, turning.loops)
+            x, y = (value(course, STEPS_PER_MM, half / 2, turning.loops) for course in body[:2])
+            turn = value(body[2], STEPS_PER_RADIAN, half / 2, turning.loops)
             assert x - 1j * y == pytest.approx(own.place[half], abs=0.1)
             assert -turn == pytest.approx(own.angle[half], abs=2e-3)
 
@@ -94,7 +102,7 @@ def test_bodies_are_in_their_places_between_the_frames(name):
 def test_links_of_a_chain_stand_in_rows_above_what_they_hang_on():
     ends = ("ab", "ac", "bd", "cd", "0a")
     pairs = tuple(SpatialPair(f"p{k}", i, j, 1) for k, (i, j) in enumerate(ends))
-    places = places_of(SpatialChain(tuple("abcd"), pairs))
+    places = chain_places(SpatialChain(tuple("abcd"), pairs))
     assert [places[link].imag / ROW for link in "0abcd"] == [0, 1, 2, 2, 3]
     assert len(set(places.values())) == 5
 
@@ -106,7 +114,7 @@ def layers_of(picture):
 def test_what_is_asked_for_a_single_position_moves_as_far_as_its_driver_can_go(tmp_path):
     text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
     (tmp_path / "x.yaml").write_text(re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M), "utf-8")
-    turning = card(str(tmp_path / "x.yaml")).turning
+    turning = make_card(str(tmp_path / "x.yaml")).turning
     assert turning.bodies and not turning.loops
 
 
@@ -118,7 +126,7 @@ def hostile_folder(folder):
 
 
 def test_texts_of_files_are_data(tmp_path):
-    html = gallery_page([card(str(hostile_folder(tmp_path) / "a.yaml"))])
+    html = gallery_page([make_card(str(hostile_folder(tmp_path) / "a.yaml"))])
     assert "<img" not in html and "<script>alert" not in html
     assert html.count("</script>") == 2
     data_of(html)
@@ -129,10 +137,10 @@ def test_the_page_says_nothing_of_the_machine_that_it_was_written_on(tmp_path):
     files = [tmp_path / "bank" / "sine.yaml", tmp_path / "bank" / "presses" / "press.yaml"]
     for file in files:
         shutil.copy(PROBLEMS / "sine.yaml", file)
-    html = gallery_page([card(str(file)) for file in files])
+    html = gallery_page([make_card(str(file)) for file in files])
     assert str(tmp_path) not in html and "<code>sine.yaml</code>" in html
     assert f"<code>{Path('presses', 'press.yaml')}</code>" in html
-    assert "<code>sine.yaml</code>" in gallery_page([card(str(files[0]))])
+    assert "<code>sine.yaml</code>" in gallery_page([make_card(str(files[0]))])
 
 
 def test_a_broken_file_is_said_and_left_out(tmp_path):
@@ -155,7 +163,7 @@ def test_a_broken_file_is_said_and_left_out(tmp_path):
 
 def test_the_page_speaks_other_languages():
     with spoken("ru"):
-        html = gallery_page([card(str(PROBLEMS / "slotted-lever.yaml"))])
+        html = gallery_page([make_card(str(PROBLEMS / "slotted-lever.yaml"))])
     assert '<html lang="ru">' in html and "ускоренный обратный ход" in html and "1,552" in html
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 import pytest
 from test_commands import ROOT
 
-from tmm_cli.batch import cluster, here, processes, read_task, workers
+from tmm_cli.batch import in_processes, on_cluster, read_task, run_here, workers
 from tmm_cli.grading import Given, Mark, StudentMarks, Submission, VariantTable, graded, keep, read_kept, run
 from tmm_cli.problem import ProblemError, read_text
 
@@ -38,7 +38,7 @@ def counted(done):
     """The way of this process, and how many students it was given."""
 
     def way(jobs, stopped):
-        for number, marks in here(jobs, stopped):
+        for number, marks in run_here(jobs, stopped):
             done.append(len(marks))
             yield number, marks
 
@@ -91,7 +91,7 @@ def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
     ids=lambda one: one.student,
 )
 def test_marks_of_every_kind_of_submission_are_the_same_in_a_second_run(submission, tmp_path):
-    first, again = (graded(task(), TABLE, [submission], here, tmp_path / ".graded") for __ in range(2))
+    first, again = (graded(task(), TABLE, [submission], run_here, tmp_path / ".graded") for __ in range(2))
     assert repr(again) == repr(first) == repr(graded(task(), TABLE, [submission]))
 
 
@@ -114,14 +114,14 @@ def test_a_task_that_has_changed_is_graded_anew(tmp_path):
 )
 def test_what_is_damaged_of_the_kept_marks_is_graded_again(spoil, tmp_path):
     kept, done = tmp_path / ".graded", []
-    first = graded(task(), TABLE, GROUP, here, kept)
+    first = graded(task(), TABLE, GROUP, run_here, kept)
     kept.write_bytes(spoil(kept.read_bytes()))
     assert repr(graded(task(), TABLE, GROUP, counted(done), kept)) == repr(first)
     assert sum(done) > 0
     assert repr(graded(task(), TABLE, GROUP, counted(done := []), kept)) == repr(first) and not done
 
 
-@pytest.mark.parametrize("way", [here, processes(2)], ids=["here", "processes"])
+@pytest.mark.parametrize("way", [run_here, in_processes(2)], ids=["here", "processes"])
 def test_what_is_graded_before_a_stop_is_kept_and_the_gradebook_is_the_same_to_the_last_bit(way, small, tmp_path):
     kept, seen, done = tmp_path / ".graded", [], []
     part = graded(task(), TABLE, GROUP, way, kept, seen.append, lambda: any(seen))
@@ -150,9 +150,9 @@ def test_a_table_of_other_parameters_is_refused_before_the_work():
 
 
 def test_no_scheduler_is_one_line(monkeypatch):
-    monkeypatch.setattr(workers, "ANSWERS", 0.2)
+    monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
     with pytest.raises(ProblemError, match="no scheduler answers there"):
-        graded(task(), TABLE, GROUP, cluster("tcp://127.0.0.1:9"))
+        graded(task(), TABLE, GROUP, on_cluster("tcp://127.0.0.1:9"))
 
 
 @pytest.mark.parametrize(
@@ -161,16 +161,16 @@ def test_no_scheduler_is_one_line(monkeypatch):
 def test_an_address_that_is_none_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(ProblemError) as refused:
-        graded(task(), TABLE, GROUP, cluster(address))
+        graded(task(), TABLE, GROUP, on_cluster(address))
     told = f"this is no address of a scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
     assert str(refused.value) == told
 
 
 def test_a_server_that_says_nothing_is_one_line(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr(workers, "ANSWERS", 0.2)
+    monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as server, pytest.raises(ProblemError, match="no scheduler answers"):
-        graded(task(), TABLE, GROUP, cluster(f"127.0.0.1:{server.getsockname()[1]}"))
+        graded(task(), TABLE, GROUP, on_cluster(f"127.0.0.1:{server.getsockname()[1]}"))
 
 
 def started(tmp_path, kind, *options, path=ROOT):
@@ -196,17 +196,17 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
     processes_of_dask = [started(tmp_path, "scheduler", "--host", "127.0.0.1", "--port", "0")]
     try:
         address = address_of(tmp_path)
-        monkeypatch.setattr(workers, "ANSWERS", 0.5)
+        monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.5)
         with pytest.raises(ProblemError, match="the scheduler has no workers") as refused:
-            graded(task(), TABLE, GROUP, cluster(address))
+            graded(task(), TABLE, GROUP, on_cluster(address))
         assert refused.value.allowed == f"dask worker {address}"
-        monkeypatch.setattr(workers, "ANSWERS", 60)
+        monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 60)
         (tmp_path / "old" / "tmm_cli").mkdir(parents=True)
         (tmp_path / "old" / "tmm_cli" / "__init__.py").write_text('__version__ = "0.0.1"\n', encoding="utf-8")
         worker = started(tmp_path, "worker", "--no-nanny", "--nthreads", "1", path=tmp_path / "old")
         processes_of_dask.append(worker)
         with pytest.raises(ProblemError, match="a worker has another version of tmm than this one"):
-            graded(task(), TABLE, GROUP, cluster(address))
+            graded(task(), TABLE, GROUP, on_cluster(address))
     finally:
         for process in processes_of_dask:
             process.kill()
@@ -215,8 +215,8 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
 
 def test_a_job_that_reaches_a_worker_with_another_program_is_not_done():
     with pytest.raises(ProblemError, match="another version of tmm"):
-        workers._of_program("another", "en", lambda: 1)
-    assert workers._of_program(workers.program_digest(), "en", lambda: 1) == 1
+        workers._run_with_same_program("another", "en", lambda: 1)
+    assert workers._run_with_same_program(workers.program_digest(), "en", lambda: 1) == 1
 
 
 @pytest.fixture
@@ -247,7 +247,7 @@ def test_a_cluster_that_loses_a_worker_on_the_way_gives_the_same_gradebook(dask,
         if sum(seen) == 2:
             workers[0].kill()
 
-    assert repr(graded(task(), TABLE, GROUP, cluster(address), None, lose)) == repr(graded(task(), TABLE, GROUP))
+    assert repr(graded(task(), TABLE, GROUP, on_cluster(address), None, lose)) == repr(graded(task(), TABLE, GROUP))
     assert seen == [0, *[1] * 12]
 
 
@@ -257,9 +257,9 @@ def test_a_cluster_that_loses_all_its_workers_is_one_line(dask, monkeypatch):
 
     def lose(count):
         if count:
-            monkeypatch.setattr(workers, "ANSWERS", 2)
+            monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 2)
             for one in processes_of_dask:
                 one.kill()
 
     with pytest.raises(ProblemError, match="the scheduler has no workers"):
-        graded(task(), TABLE, GROUP, cluster(address), None, lose)
+        graded(task(), TABLE, GROUP, on_cluster(address), None, lose)

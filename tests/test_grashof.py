@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import ProblemError, read_text
 from tmm_cli.synthesis import (
     CRANK_SLIDER_TYPES,
@@ -153,7 +153,7 @@ def test_the_ordinary_stages_find_the_same_links_turning(seed):
     assert [demand.measure(results) for demand in results.problem.synthesis.outcome.demands] == [float(found.turns[0])]
     if results.driver_range.full:
         closely = results.closely(721)
-        motion = at_positions(results, closely, 0)
+        motion = motion_at_positions(results, closely, 0)
         for link, turns in (("2", found.turns[1]), ("3", found.turns[2])):
             angle = np.unwrap(motion.angle(link))
             assert round(abs(angle[-1] - angle[0]) / (2 * np.pi)) == int(turns)

@@ -14,7 +14,7 @@ from test_commands import tmm
 
 from tests import messages
 from tmm_cli import load, solve
-from tmm_cli.cli import bounds_of, each, opened, speaking
+from tmm_cli.cli import accuracy_of, for_each_file, open_problem, with_language_option
 from tmm_cli.drawing.paper import filling_axis
 from tmm_cli.language import CATALOGUES, N_, Phrase, _, language, numeral, spoken, translated
 from tmm_cli.mechanics.forces import balance_symbol, load_symbols
@@ -107,7 +107,7 @@ def test_files_for_machines_are_the_same_in_every_language(problem, tmp_path, al
     for tongue in ("en", "ru"):
         with spoken(tongue):
             results = solve(load(f"problems/{problem}.yaml"))
-            folder = write_results(results, tmp_path / tongue, digits=bounds_of(results, True)).folder
+            folder = write_results(results, tmp_path / tongue, digits=accuracy_of(results, True)).folder
         found[tongue] = {file.name: file.read_bytes() for file in folder.iterdir()}
     assert len(found["en"]) > 5
     assert found["en"] == found["ru"]
@@ -120,12 +120,12 @@ def test_a_file_says_in_which_language_it_speaks_and_the_command_overrides_it(tm
     heard = []
 
     def work(name):
-        heard.append((opened(name), language())[1])
+        heard.append((open_problem(name), language())[1])
         return 0
 
     for asked, files in (None, [str(file), "problems/crank-slider.yaml"]), ("sr", [str(file)]):
         with pytest.raises(typer.Exit):
-            speaking(lambda files=files: each(files, work))(lang=asked)
+            with_language_option(lambda files=files: for_each_file(files, work))(lang=asked)
     assert heard == ["ru", "en", "sr"]
     assert language() == "en"
 

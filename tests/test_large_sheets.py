@@ -26,7 +26,7 @@ from tmm_cli.drawing.layout import (
 )
 from tmm_cli.drawing.paper import CircleMark, Drawing, LineMark, TextMark, cut_text, wrap_text
 from tmm_cli.drawing.run import all_sheets
-from tmm_cli.mechanics.plans import ROUND
+from tmm_cli.mechanics.plans import ROUND_SCALES
 
 
 @given(st.lists(st.tuples(st.floats(10, 300), st.floats(10, 200)), min_size=1, max_size=12))
@@ -159,7 +159,9 @@ def test_scales_are_round(name):
     for sheet in drawn(name).values():
         for __, one in sheet.pictures:
             if one.mu is not None:
-                assert any(one.mu / 10 ** np.floor(np.log10(one.mu * 1.000001)) == pytest.approx(f) for f in ROUND)
+                assert any(
+                    one.mu / 10 ** np.floor(np.log10(one.mu * 1.000001)) == pytest.approx(f) for f in ROUND_SCALES
+                )
 
 
 def test_every_drawing_of_a_run_stands_on_a_large_sheet():

@@ -13,8 +13,8 @@ from models import PROBLEMS, file_of
 from multibody import compared
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.analysis import at_places, redriven
-from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.analysis import results_at, with_driver
+from tmm_cli.mechanics.forces import collect_loads, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.structure import analyse_structure
@@ -54,7 +54,7 @@ def results(request):
 def along(results, shares=SHARES):
     """The same results at places over the whole of what the file asks for."""
     way = results.closely(101)
-    return at_places(results, way[0] + (way[-1] - way[0]) * np.array(shares))
+    return results_at(results, way[0] + (way[-1] - way[0]) * np.array(shares))
 
 
 def turned(results, link):
@@ -105,10 +105,10 @@ def test_backwards_in_time_velocities_turn_round_and_forces_stay(results):
         one, two = motion.centre(link), other.centre(link)
         assert np.max(np.abs(one.v + two.v)) <= 1e-12 * np.max(np.abs(one.v), initial=1e-3)
         assert np.max(np.abs(one.a - two.a)) <= 1e-12 * np.max(np.abs(one.a), initial=1e-3)
-    loads = applied(motion, results.strokes)
+    loads = collect_loads(motion, results.strokes)
     given = {x.name: x for x in loads if x.kind == "load" and x.name in {y.name for y in it.loads}}
-    again = tuple(given.get(x.name, x) for x in applied(other, results.strokes))
-    one, two = react(motion, results.structure, loads), react(other, results.structure, again)
+    again = tuple(given.get(x.name, x) for x in collect_loads(other, results.strokes))
+    one, two = solve_reactions(motion, results.structure, loads), solve_reactions(other, results.structure, again)
     largest = max(np.max(np.abs(r.force)) for r in one.all)
     for first, second in zip(one.all, two.all, strict=True):
         assert np.max(np.abs(first.force - second.force)) < 1e-12 * largest
@@ -167,7 +167,7 @@ def test_engine_leaves_only_even_harmonics_of_inertia():
 
 def test_press_goes_down_at_a_nearly_constant_speed():
     results = solved("press-class-iii")
-    zone = at_places(results, np.radians(np.linspace(44.5, 169.5, 251)))
+    zone = results_at(results, np.radians(np.linspace(44.5, 169.5, 251)))
     speed = zone.motion.named("D").v.imag
     middle = (np.max(speed) + np.min(speed)) / 2
     assert middle == pytest.approx(-0.2985, abs=1e-4)
@@ -203,11 +203,11 @@ def test_class_iv_ratio_by_instant_centres():
 def test_class_iv_is_one_of_class_iii_when_driven_from_the_other_end():
     problem = load(str(PROBLEMS / "class-iv.yaml"))
     assert analyse_structure(problem.linkage).mechanism_class == 4
-    assert analyse_structure(redriven(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
+    assert analyse_structure(with_driver(problem.linkage, "4")).formula == "I(0,4) -> III(1,2,3,5)"
 
 
 def test_cardan_gear_draws_an_exact_straight_line():
-    results = at_places(solved("cardan-gear"), np.linspace(0, 2 * np.pi, 73))
+    results = results_at(solved("cardan-gear"), np.linspace(0, 2 * np.pi, 73))
     motion = results.motion
     p, q, rate = motion.named("P"), motion.q, motion.rate[0]
     assert np.max(np.abs(p.x.imag)) < 1e-14
@@ -230,7 +230,7 @@ def test_planetary_press_dwells_where_its_rod_is_the_radius_of_curvature():
     assert abs(d.a[12]) < 1e-13
     assert results.strokes.travel == pytest.approx(0.2, abs=1e-15)
     assert len(results.strokes.strokes) == 2
-    dwell = at_places(results, np.radians(np.linspace(234.4, 305.6, 101))).motion.named("D").x.imag
+    dwell = results_at(results, np.radians(np.linspace(234.4, 305.6, 101))).motion.named("D").x.imag
     assert np.max(dwell) - np.min(dwell) < 0.001 * 0.2
     # Willis, with the ring at rest: (omega_2 - omega_1)/(0 - omega_1) = 3
     assert results.motion.link("2").first == pytest.approx(-2.0, abs=1e-14)
@@ -251,13 +251,13 @@ def test_a_toothed_sector_doubles_the_strokes():
     assert [abs(s.run) * 1000 for s in results.strokes.strokes] == pytest.approx([stroke] * 4, abs=1e-11)
     assert stroke == pytest.approx(57.519, abs=5e-4)
     assert results.motion.link("4").first == pytest.approx(-3 * results.motion.link("3").first, abs=1e-14)
-    wheel = turned(at_places(results, results.closely(721)), "4")
+    wheel = turned(results_at(results, results.closely(721)), "4")
     assert math.degrees(np.max(wheel) - np.min(wheel)) == pytest.approx(180, abs=0.01)
 
 
 def test_geared_cranks_draw_an_exact_straight_line():
     results = solved("gear-straight-line")
-    c = at_places(results, results.closely(73)).motion.named("C")
+    c = results_at(results, results.closely(73)).motion.named("C")
     assert np.max(np.abs(c.x.real)) < 1e-14
     assert np.max(np.abs(c.v.real)) < 1e-14
     root = math.sqrt(120**2 - 50**2)
@@ -274,7 +274,7 @@ def test_a_wheel_on_a_rocker_comes_back_in_every_turn_whatever_its_ratio(ratio):
         build_problem(read_text(text.replace("teeth: [120, 40], module: 2", ratio), "rocker.yaml")), "kinematics"
     )
     assert (results.driver_range.full, results.driver_range.turns, results.driver_range.repeats) == (True, 1, True)
-    run = at_places(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x
+    run = results_at(results, results.driver_range.start + 2 * np.pi * np.arange(4)).motion.named("F").x
     assert np.max(np.abs(run - run[0])) < 1e-14
 
 
@@ -282,7 +282,7 @@ def test_summing_lever_repeats_after_three_turns_only():
     results = solved("summing-lever")
     assert results.driver_range.turns == 3
     q = results.start + 2 * np.pi * np.arange(4)
-    run = at_places(results, q).motion.named("E").x.imag
+    run = results_at(results, q).motion.named("E").x.imag
     assert run[3] == pytest.approx(run[0], abs=1e-14)
     assert min(abs(run[1] - run[0]), abs(run[2] - run[0])) > 0.001
     assert results.motion.link("2").first == pytest.approx(-2 / 3, abs=1e-15)
@@ -307,7 +307,7 @@ def test_flat_follower_touches_its_slope_away_from_the_cams_axis():
     slope = 15 / 8 * 12 / math.radians(50)
     assert 1000 * contact.at[[2, 6]].real == pytest.approx([slope, -slope], abs=1e-12)
     assert slope == pytest.approx(25.783, abs=5e-4)
-    force = at_places(results, results.closely(361)).reactions.of("cam").onto("2")
+    force = results_at(results, results.closely(361)).reactions.of("cam").onto("2")
     assert np.all(force.imag > 0)
 
 

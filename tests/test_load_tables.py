@@ -13,13 +13,13 @@ from test_commands import ROOT, tmm
 from tmm_cli import load, prepare, solve
 from tmm_cli.batch import Task, prepare_batch as prepare_all
 from tmm_cli.drawing.sheets import dense_coordinates
-from tmm_cli.mechanics.accuracy import bounds, judged
-from tmm_cli.mechanics.analysis import at_places
-from tmm_cli.mechanics.dynamics import reduced_machine
+from tmm_cli.mechanics.accuracy import bound_values, judge_values
+from tmm_cli.mechanics.analysis import results_at
+from tmm_cli.mechanics.dynamics import reduce_mechanism
 from tmm_cli.mechanics.numerics import DoubleDouble, InterpolationTable, to_float
 from tmm_cli.problem import build_any_problem, read_text, template_text
 from tmm_cli.reports import collect_warnings, input_data_tables
-from tmm_cli.sweep import Mechanisms, read_axes, swept
+from tmm_cli.sweep import SweptMechanisms, read_axes, run_sweep
 
 CRANK_SLIDER = """tmm: 1
 units: {{length: mm, angle: deg}}
@@ -275,7 +275,7 @@ def test_what_is_no_share_of_a_stroke_is_refused(tmp_path, row, shown):
 
 def test_a_longer_crank_shifts_rows_of_shares_with_the_stroke_in_digits():
     results = slider("share of stroke", [("0", 0), ("1", 1000)], turns="ccw")
-    of_load = judged(results, lambda own: {"F": np.abs(own.loads[0].force)}).lengths["F"]
+    of_load = judge_values(results, lambda own: {"F": np.abs(own.loads[0].force)}).lengths["F"]
 
     def force(phi, crank, rod):
         place = crank * np.cos(phi) + np.sqrt(rod**2 - (crank * np.sin(phi)) ** 2)
@@ -293,7 +293,7 @@ def test_a_sweep_takes_the_stroke_of_each_mechanism_for_its_shares():
     def peaks(against, table):
         text = CRANK_SLIDER.format(against=against, table=table).replace("length: 50", "length: OA")
         tree = read_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"), "x.yaml")
-        return swept(Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:3"]), ["M_b"]))
+        return run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["OA=40..60:3"]), ["M_b"]))
 
     shares = peaks("share of stroke", "[[0, 0], [0.3, 900], [1, 100]]")
     lengths = peaks("stroke", "[[0, 0], [0.6 * OA, 900], [2 * OA, 100]]")
@@ -354,7 +354,7 @@ def test_work_of_a_load_that_jumps_is_the_area_under_its_table(turns, against):
     more = "dynamics: {flywheel: {inertia: 20}}\nmasses: {3: {mass: 1}}\n"
     results = slider(against, rows, more=more, turns=turns)
     area = 0.06 * (1500 + 900) / 2 + 0.02 * 300  # J
-    work = reduced_machine(results.mechanism, results.start).work_of_cycle
+    work = reduce_mechanism(results.mechanism, results.start).work_of_cycle
     assert abs(work) == pytest.approx(area, rel=1e-12)
     (load,) = [one for one in results.loads if one.name == "gas"]
     first = results.strokes.strokes[0]
@@ -395,7 +395,7 @@ def test_many_positions_at_once_and_digits_know_a_table_that_jumps():
     forces = np.radians([0, 5000, 5000 - 3000 * 30 / 110, 0, 0])
     (load,) = [one for one in results.loads if one.name == "gas"]
     assert np.radians(np.abs(load.force)) == pytest.approx(forces, abs=1e-9)
-    values, digits = bounds(results)
+    values, digits = bound_values(results)
     finite = [np.nanmax(bound / np.maximum(np.abs(values[key]), 1)) for key, bound in digits.bound.items()]
     assert max(finite) < 1e-9
 
@@ -403,7 +403,7 @@ def test_many_positions_at_once_and_digits_know_a_table_that_jumps():
 def test_a_diagram_draws_the_jump_at_its_place_with_both_values():
     results = slider("stroke", SAW, more=" ", turns="ccw")
     q, borders = dense_coordinates(results)
-    moments = at_places(results, q).reactions.balance.moment
+    moments = results_at(results, q).reactions.balance.moment
     first = results.strokes.strokes[0]
     for argument, (before, after) in JUMPS:
         place = 100 + 100 * float(argument) if first.run > 0 else 200 - 100 * float(argument)
@@ -498,9 +498,9 @@ def test_a_sweep_finds_the_peak_of_a_load_that_jumps():
     text = CRANK_SLIDER.format(against="share of stroke", table="[[0, 0], [0.3, 0], [0.3, 900], [1, 100]]")
     text = text.replace("length: 50", "length: OA").replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}")
     tree = read_text(text, "x.yaml")
-    found = swept(Mechanisms(tree, read_axes(Task(tree), ["OA=40..60:2"]), ["M_b"]))
+    found = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["OA=40..60:2"]), ["M_b"]))
     assert found.taped
     for (crank,), (peak,) in zip(found.points, found.values, strict=True):
         own = solve(build_any_problem(read_text(text.replace("OA: 50", f"OA: {crank}"), "x.yaml")))
-        moment = at_places(own, np.linspace(0, 2 * np.pi, 20_001)).reactions.balance.moment
+        moment = results_at(own, np.linspace(0, 2 * np.pi, 20_001)).reactions.balance.moment
         assert peak == pytest.approx(np.max(np.abs(moment)), rel=1e-6)

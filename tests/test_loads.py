@@ -8,8 +8,8 @@ from models import PARALLELOGRAM, solved_text
 from scipy.interpolate import CubicSpline
 
 from tmm_cli import prepare, solve
-from tmm_cli.mechanics.analysis import at_positions
-from tmm_cli.mechanics.dynamics import reduced_machine
+from tmm_cli.mechanics.analysis import motion_at_positions
+from tmm_cli.mechanics.dynamics import reduce_mechanism
 from tmm_cli.mechanics.numerics import InterpolationTable
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import collect_warnings, doubts, input_data_tables
@@ -36,7 +36,7 @@ def solved(tail, turns="ccw"):
 
 def work_of_cycle(results):
     """Of all loads, J."""
-    return reduced_machine(results.mechanism, results.start).work_of_cycle
+    return reduce_mechanism(results.mechanism, results.start).work_of_cycle
 
 
 def load(results, name):
@@ -141,7 +141,7 @@ def test_a_force_that_two_links_have_of_one_another_in_their_hinge_moves_nothing
 def test_a_load_of_a_window_works_there_alone(turns):
     """A constant force in one quarter of the turn works its size times the way of the slider in it."""
     results = solved("loads: {f: {on: 3, force: [-300, 0], when: [0, 90]}}", turns)
-    at = at_positions(results, np.radians([0, 90])).named("B").x.real
+    at = motion_at_positions(results, np.radians([0, 90])).named("B").x.real
     way = (at[1] - at[0]) * (1 if turns == "ccw" else -1)
     assert work_of_cycle(results) == pytest.approx(-300 * way, rel=1e-12)
     acts = load(results, "f").force != 0

@@ -10,10 +10,10 @@ import pytest
 from tmm_cli import load, prepare, solve
 from tmm_cli.batch import Task, read_task
 from tmm_cli.grading import Given, Submission, VariantTable, grade
-from tmm_cli.mechanics.accuracy import judged
+from tmm_cli.mechanics.accuracy import judge_values
 from tmm_cli.problem import ProblemError, build_any_problem, build_problem, read_text
 from tmm_cli.reports import input_data_tables
-from tmm_cli.sweep import Mechanisms, read_axes, swept
+from tmm_cli.sweep import SweptMechanisms, read_axes, run_sweep
 
 V_ENGINE = Path("tests/data/v-compressor.yaml").read_text(encoding="utf-8")
 R, ROD = 0.05, 0.2  # m
@@ -130,7 +130,7 @@ def test_the_digits_of_a_load_by_the_stroke_of_another_piston_are_judged():
     def moment(found):
         return {("M_b", "1", ""): found.reactions.balance.moment}
 
-    bound = judged(results, moment).bound["M_b", "1", ""]
+    bound = judge_values(results, moment).bound["M_b", "1", ""]
     largest = np.max(np.abs(results.reactions.balance.moment))
     assert np.all(bound < 1e-12 * largest)
 
@@ -138,7 +138,7 @@ def test_the_digits_of_a_load_by_the_stroke_of_another_piston_are_judged():
 def test_a_sweep_solves_each_mechanism_with_the_strokes_of_both_pistons():
     """The largest balancing moment of the cycle, for cranks of two radii."""
     tree = read_text(TWO_PISTONS, "pistons.yaml")
-    found = swept(Mechanisms(tree, read_axes(Task(tree), ["r=40..50:2"]), ["M_b"]))
+    found = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["r=40..50:2"]), ["M_b"]))
     assert found.taped
     for (crank,), (largest,) in zip(found.points, found.values, strict=True):
         closely = TWO_PISTONS.replace("r: 50", f"r: {crank}").replace("count: 12", "count: 3600")

@@ -12,7 +12,7 @@ from models import PROBLEMS
 from random_linkages import linkage
 from test_properties import CHAINS, SEEDS, generic
 
-from tmm_cli.mechanics.forces import loaded_parts
+from tmm_cli.mechanics.forces import list_free_bodies
 from tmm_cli.mechanics.numerics import cross, dot
 
 IN_DETAIL = [name for name in NAMES if "detail: [" in (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")]
@@ -29,7 +29,7 @@ def detailed(name):
 def equations(name):
     """Of the first position in detail, by what they give."""
     results, (k, *_) = detailed(name)
-    parts = loaded_parts(results.motion, results.reactions, k)
+    parts = list_free_bodies(results.motion, results.reactions, k)
     return {equation.sought.symbol.name: equation for part in parts for equation in part.equations if equation.sought}
 
 
@@ -44,7 +44,7 @@ def exactness(term, centre):
 
 def held(motion, reactions, k):
     """All equations of a position, each checked: moments come to nothing, arms stand across the lines of forces."""
-    found = [equation for part in loaded_parts(motion, reactions, k) for equation in part.equations]
+    found = [equation for part in list_free_bodies(motion, reactions, k) for equation in part.equations]
     for equation in found:
         largest = max((exactness(term, equation.centre) for term in equation.terms), default=0.0)
         assert abs(sum(t.moment for t in equation.terms)) <= 1e-13 * largest * len(equation.terms)
@@ -110,7 +110,7 @@ def test_the_rod_s_moments_give_the_tangential_reaction():
 @pytest.mark.parametrize("name", ["shaper", "course-3", "press-class-iii", "lifting-boom", "excavator", "cylinder"])
 def test_forces_along_a_guide_come_to_nothing_and_give_what_no_moments_give(name):
     results, (k, *_) = detailed(name)
-    sums = [s for part in loaded_parts(results.motion, results.reactions, k) for s in part.sums]
+    sums = [s for part in list_free_bodies(results.motion, results.reactions, k) for s in part.sums]
     assert sums
     for one in sums:
         size = sum(part.acting.size for part in one.parts)
@@ -125,7 +125,7 @@ def test_the_stone_s_forces_along_the_slot_give_the_normal_reaction():
     motion = results.motion
     along = complex(motion.named("D").x[k] - motion.named("C").x[k]) / 0.65
     by_hand = dot(along, 1.5 * (-9.81j - complex(motion.centre("2").a[k])))
-    group = next(part for part in loaded_parts(motion, results.reactions, k) if part.links == ("2", "3"))
+    group = next(part for part in list_free_bodies(motion, results.reactions, k) if part.links == ("2", "3"))
     stone = next(one for one in group.sums if one.link == "2")
     assert stone.found.acting.symbol.name == "R₁₂ⁿ" and stone.value == pytest.approx(abs(by_hand), rel=1e-10)
 

@@ -12,7 +12,7 @@ import pytest
 
 from tests.test_language import Cyrillic
 from tmm_cli import load, solve
-from tmm_cli.animation import charts
+from tmm_cli.animation import chart_quantities
 from tmm_cli.drawing.run import all_sheets, position_remarks
 from tmm_cli.language import CATALOGUES, spoken
 from tmm_cli.note import html, note
@@ -91,7 +91,7 @@ def noted(results, problem):
 
 
 def charted(results, problem):
-    return (one.words for one in charts(results, results))
+    return (one.words for one in chart_quantities(results, results))
 
 
 @pytest.mark.parametrize("way", [drawn, tabled, said, noted, charted], ids=lambda way: way.__name__)

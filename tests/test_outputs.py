@@ -11,7 +11,7 @@ import pytest
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import ProblemError, build_problem, read_text
 
 SIX_BAR, SHAPER, EXCAVATOR = (Path(f"problems/{name}.yaml") for name in ("six-bar", "shaper", "excavator"))
@@ -53,12 +53,12 @@ def test_the_end_of_a_crank_goes_over_the_diameter_of_its_circle_both_ways():
 
 def test_extremes_of_a_coupler_and_of_its_point_are_where_they_rest_and_nothing_is_beyond_them():
     results, found = strokes_of(with_outputs(SIX_BAR, "2", "K"))
-    many = at_positions(results, results.closely(7201))
+    many = motion_at_positions(results, results.closely(7201))
     K = many.named("K").x
     for name, values in (("2", many.link("2").angle), ("K.x", K.real), ("K.y", K.imag)):
         (low, down), (high, up) = ends(found[name])
         assert low <= np.min(values) <= low + 1e-6 and high - 1e-6 <= np.max(values) <= high
-        there = at_positions(results, np.array([down, up]))
+        there = motion_at_positions(results, np.array([down, up]))
         velocity = {"2": there.link("2").first, "K.x": there.named("K").first.real, "K.y": there.named("K").first.imag}
         assert np.max(np.abs(velocity[name])) < 1e-14
 

@@ -9,17 +9,17 @@ from hypothesis import given, settings, strategies as st
 from random_linkages import linkage
 from test_properties import CHAINS, SEEDS, generic, solved as solved_for
 
-from tmm_cli.mechanics.forces import Symbol, compute_lever, named, reaction_symbol
+from tmm_cli.mechanics.forces import Symbol, compute_lever, reaction_symbol, symbol_of_name
 from tmm_cli.mechanics.numerics import cross, dot
 from tmm_cli.mechanics.plans import (
-    ROUND,
-    Reading,
+    ROUND_SCALES,
+    PlanReading,
     acceleration_plan,
+    angular_values,
     force_plans,
     lever_plan,
-    readings,
+    plan_readings,
     round_scale,
-    turns,
     velocity_plan,
 )
 
@@ -108,7 +108,7 @@ def test_the_crank_of_the_lever_lies_along_the_crank_and_couples_are_pairs_of_fo
 def test_scale_factors_are_round_and_the_figure_fits(width, height):
     mu = round_scale(width, height, 200, 150)
     assert max(width / mu - 200, height / mu - 150) < 1e-6 * 200
-    assert any(mu / 10 ** np.floor(np.log10(mu * 1.0000001)) == pytest.approx(f) for f in (*ROUND, 1.0))
+    assert any(mu / 10 ** np.floor(np.log10(mu * 1.0000001)) == pytest.approx(f) for f in (*ROUND_SCALES, 1.0))
 
 
 def test_reactions_are_named_from_link_to_link():
@@ -124,30 +124,30 @@ def test_nothing_is_left_of_the_lever_when_nothing_acts():
 def test_each_vector_is_read_off_once_and_equal_ones_together():
     results = solved("shaper")
     motion, k = results.motion, 3
-    found = {s: r for r in readings(velocity_plan(motion, k)) for s in r.symbols}
+    found = {s: r for r in plan_readings(velocity_plan(motion, k)) for s in r.symbols}
     both = found[Symbol("v", "A")]
     assert both.symbols == (Symbol("v", "A"), Symbol("v", "S2")) and both.segment == "pa"
     assert found[Symbol("v", "E")].size == abs(motion.named("E").v[k])
     assert found[Symbol("v", "ED")].size == pytest.approx(
         abs(motion.named("E").v[k] - motion.named("D").v[k]), rel=1e-12
     )
-    found = {s: r for r in readings(acceleration_plan(motion, k)) for s in r.symbols}
+    found = {s: r for r in plan_readings(acceleration_plan(motion, k)) for s in r.symbols}
     omega, epsilon = motion.link("3").omega[k], motion.link("3").epsilon[k]
     assert found[Symbol("a", "DC", "n")].size == pytest.approx(0.65 * omega**2, rel=1e-12)
     assert found[Symbol("a", "DC", "τ")].size == pytest.approx(0.65 * abs(epsilon), rel=1e-12)
-    assert found[Symbol("a", "AO", "τ")] == Reading((Symbol("a", "AO", "τ"),), "", 0.0)
+    assert found[Symbol("a", "AO", "τ")] == PlanReading((Symbol("a", "AO", "τ"),), "", 0.0)
 
 
 def test_links_that_only_slide_turn_with_nothing_and_signs_are_senses():
     motion = solved("shaper").motion
-    found = {t.symbol.below: t.value for t in turns(motion, 3, "omega")}
+    found = {t.symbol.below: t.value for t in angular_values(motion, 3, "omega")}
     assert set(found) == {"1", "2", "3", "4"}
     assert found["1"] == pytest.approx(82 * np.pi / 30) and found["2"] == found["3"] == motion.link("3").omega[3]
 
 
 def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points():
     results = solved("course-2")
-    found = [s for r in readings(acceleration_plan(results.motion, 2)) for s in r.symbols]
+    found = [s for r in plan_readings(acceleration_plan(results.motion, 2)) for s in r.symbols]
     assert Symbol("a", "D5E", "n") not in found and Symbol("a", "DC", "n") in found
     assert Symbol("a", "DD5", "k") in found  # zero, as the guide does not turn: worth a line
 
@@ -166,4 +166,4 @@ def test_a_guide_that_only_slides_has_no_parts_of_acceleration_about_its_points(
     ],
 )
 def test_a_load_has_a_letter_with_its_word_below_the_line(name, letter, below):
-    assert named(name, "P") == Symbol(letter, below)
+    assert symbol_of_name(name, "P") == Symbol(letter, below)

@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings, strategies as st
 from random_linkages import TYPES, linkage
 
 from tmm_cli.mechanics.assembly import assemble
-from tmm_cli.mechanics.forces import applied, compute_lever, react
+from tmm_cli.mechanics.forces import collect_loads, compute_lever, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Link
@@ -30,8 +30,8 @@ def solved(it, offsets=(0.0, 0.01, -0.01), law=None):
     q = it.sketch.at + np.array(offsets)
     d = it.driver
     motion = compute_motion(it, kernels, q, law or DriverMotion(q[0], d.rate, d.acceleration, d.sense))
-    loads = applied(motion, None)
-    reactions = react(motion, structure, loads)
+    loads = collect_loads(motion, None)
+    reactions = solve_reactions(motion, structure, loads)
     return structure, motion, loads, reactions
 
 

@@ -8,7 +8,13 @@ from random_linkages import any_linkage
 from transforms import mirrored, renamed, reversed_in_time, sized, turned
 
 from tmm_cli.mechanics.assembly import assemble
-from tmm_cli.mechanics.forces import applied, compute_energy, compute_lever, power, react
+from tmm_cli.mechanics.forces import (
+    collect_loads,
+    compute_energy,
+    compute_lever,
+    reduced_driving_moment,
+    solve_reactions,
+)
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import cross
@@ -40,8 +46,8 @@ def solved(it, offsets=OFFSETS, kernels=None):
     """Motion and forces of a linkage about its sketch."""
     structure = analyse_structure(it)
     motion = compute_motion(it, kernels or assemble(it, structure), it.sketch.at + np.array(offsets), law_of(it))
-    loads = applied(motion, None)
-    return structure, motion, loads, react(motion, structure, loads)
+    loads = collect_loads(motion, None)
+    return structure, motion, loads, solve_reactions(motion, structure, loads)
 
 
 @pytest.fixture(scope="module", params=LINKAGES, ids=lambda made: "-".join((*made[1], made[2])))
@@ -148,7 +154,7 @@ def in_equilibrium(it, motion, loads, reactions, name):
 
 def test_lever_and_powers_agree_with_the_force_plan(found):
     _, motion, loads, reactions = found
-    drivers = power(motion, reactions)
+    drivers = reduced_driving_moment(motion, reactions)
     check = compute_lever(motion, loads, drivers)
     scale = np.max(np.sum([np.abs(item.moment) for item in check.items], axis=0), initial=1.0)
     same(check.balancing, drivers, scale)

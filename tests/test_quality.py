@@ -11,7 +11,7 @@ import pytest
 from models import SI, results_of
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import build_any_problem, read_text
 from tmm_cli.reports import walk
 
@@ -254,7 +254,7 @@ def folds(problem, equations, r, guide):
     found = sorted(limit.place for limit in results.driver_range.limits)
     exact = []
     for place, inside in zip(found, (1, -1), strict=True):
-        motion = at_positions(results, np.array([place + 1e-6 * inside]))
+        motion = motion_at_positions(results, np.array([place + 1e-6 * inside]))
         pose = motion.poses["3"]
         start = (pose.x[0].real, pose.x[0].imag, np.angle(pose.z[0]), place)
         root = mp.findroot(lambda *v: (*equations(*v), determinant(r, guide, *v)), tuple(map(mp.mpf, start)))
@@ -278,7 +278,7 @@ def test_strokes_of_a_class_iii_group():
     problem["output"] = {"link": "4"}
     results = results_of(problem, "kinematics")
     for stroke in results.strokes.strokes:
-        pose = at_positions(results, np.array([stroke.start])).poses["3"]
+        pose = motion_at_positions(results, np.array([stroke.start])).poses["3"]
 
         def stops(x, y, t, q):
             # velocities of plate and crank with C at rest: rows of the equations by x, y, t, and by q

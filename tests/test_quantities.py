@@ -9,7 +9,7 @@ from models import PROBLEMS
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.drawing.sheets import detailed_drawings, draw_lever, draw_motion_plans
-from tmm_cli.mechanics.accuracy import quantities
+from tmm_cli.mechanics.accuracy import list_values
 from tmm_cli.mechanics.quantities import (
     BALANCE,
     BALANCING,
@@ -66,7 +66,7 @@ def test_a_vector_has_its_components_and_its_size_in_a_table(shaper):
 
 
 def test_bounds_and_prepare_read_the_same_values(shaper):
-    bounded, batch = quantities(shaper), prepare(load(str(PROBLEMS / "shaper.yaml")))(shaper.motion.q)
+    bounded, batch = list_values(shaper), prepare(load(str(PROBLEMS / "shaper.yaml")))(shaper.motion.q)
     for quantity in (q for q in (*POINT, REACTION[0], BALANCING) if q.leading):
         for kind, name, component in (key for key in bounded if key[0] == quantity.name):
             value = np.asarray(batch[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{kind}"])

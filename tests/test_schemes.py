@@ -18,7 +18,7 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.cli import named_types, schemes as scheme_files, skeleton
+from tmm_cli.cli import read_group_types, schemes as scheme_files, write_scheme
 from tmm_cli.drawing.sheets import GROUP_EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure import ROMAN, analyse_structure, group_class
@@ -156,7 +156,7 @@ def same(one, other):
     [(3, 1, "II", 7), (5, 1, "RRR,RRP", 51), (5, 1, "III,IV", 3), (4, 2, "II", 5), (6, 2, "RRR", 8)],
 )
 def test_no_two_schemes_are_isomorphic(links, mobility, groups, count):
-    found = schemes(links, mobility, named_types(groups))
+    found = schemes(links, mobility, read_group_types(groups))
     assert len(found) == count
     assert not any(same(one, other) for one, other in combinations(found, 2))
 
@@ -189,7 +189,7 @@ def test_schemes_of_turning_pairs_are_the_chains_with_a_frame_and_a_crank(links)
 
 @pytest.mark.parametrize("links, mobility, groups", [(5, 1, "II,III,IV"), (6, 2, "II,III"), (7, 1, "RRR,RRP")])
 def test_schemes_are_admissible(links, mobility, groups):
-    for scheme in schemes(links, mobility, named_types(groups)):
+    for scheme in schemes(links, mobility, read_group_types(groups)):
         assert scheme.mobility == mobility and scheme.links == links
         assert all(len({known for known, _, _ in group.outer}) > 1 for group in scheme.groups)
         assert len({frozenset((i, j)) for i, j, _ in scheme.joints}) == len(scheme.joints)
@@ -212,12 +212,12 @@ def test_schemes_of_seven_links_in_the_usual_groups_are_not_too_many():
     ],
 )
 def test_the_problem_of_a_class_ii_scheme_is_that_scheme_and_runs(links, groups, some):
-    for scheme in schemes(links, 1, named_types(groups))[some]:
+    for scheme in schemes(links, 1, read_group_types(groups))[some]:
         is_that_scheme_and_runs(scheme)
 
 
 def is_that_scheme_and_runs(scheme):
-    made = skeleton(scheme, "a scheme")
+    made = write_scheme(scheme, "a scheme")
     problem = build_problem(read_text(made.text, "scheme.yaml"))
     results = solve(problem)
     structure = results.structure
@@ -235,9 +235,9 @@ def is_that_scheme_and_runs(scheme):
     [(5, "III,IV", slice(0, None, 2)), (7, "RRR,III,IV", slice(69, None, 40))],
 )
 def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, monkeypatch):
-    monkeypatch.setattr(scheme_files, "FEW", 2)  # poses: the best of few is not as good, the structure is one
-    for scheme in schemes(links, 1, named_types(groups))[some]:
-        problem = build_problem(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
+    monkeypatch.setattr(scheme_files, "FEW_CANDIDATES", 2)  # poses
+    for scheme in schemes(links, 1, read_group_types(groups))[some]:
+        problem = build_problem(read_text(write_scheme(scheme, "a scheme").text, "scheme.yaml"))
         structure = analyse_structure(problem.linkage)
         assert structure.formula == scheme.formula
         assert (structure.mobility, structure.freedom) == (1, 1)
@@ -246,14 +246,14 @@ def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, m
 
 def test_a_crank_rocker_and_crank_sliders_of_all_kinds_turn_fully():
     for scheme in (*schemes(3)[:4], *schemes(5, 1, ("RRR", "RRP"))[::10]):
-        problem = build_problem(read_text(skeleton(scheme, "a scheme").text, "scheme.yaml"))
+        problem = build_problem(read_text(write_scheme(scheme, "a scheme").text, "scheme.yaml"))
         assert solve(problem, "kinematics").driver_range.full, scheme.joints
 
 
 def test_a_problem_is_the_same_every_time_and_its_dimensions_are_whole():
     scheme = schemes(5, 1, ("RPR", "RPP"))[7]
-    text = skeleton(scheme, "a scheme").text
-    assert text == skeleton(scheme, "a scheme").text
+    text = write_scheme(scheme, "a scheme").text
+    assert text == write_scheme(scheme, "a scheme").text
     sizes = re.findall(r"length: ([^,}]+)|\[([-0-9.]+), ([-0-9.]+)\]", text.split("masses:")[0].split("points:", 1)[1])
     assert sizes and all(re.fullmatch(r"-?\d+", number) for row in sizes for number in row if number)
 
@@ -328,8 +328,8 @@ def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_pa
 @pytest.mark.parametrize("links, mobility", [(4, 2), (5, 3), (6, 2)])
 def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
     every = {4: 2, 5: 3, 6: 16}[links]
-    for scheme in schemes(links, mobility, named_types("RRR,RRP"))[::every]:
-        made = skeleton(scheme, scheme.formula)
+    for scheme in schemes(links, mobility, read_group_types("RRR,RRP"))[::every]:
+        made = write_scheme(scheme, scheme.formula)
         assert made is not None
         results = solve(build_problem(read_text(made.text, "scheme.yaml")))
         assert len(results.linkage.drivers) == results.structure.mobility == mobility

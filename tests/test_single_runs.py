@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from tmm_cli import load, solve
-from tmm_cli.mechanics.dynamics import Kloss, Linear, Profile, RunTask, acceleration, reduce_machine, run
+from tmm_cli.mechanics.dynamics import (
+    DriveProfile,
+    KlossMotor,
+    LinearMotor,
+    RunTask,
+    driver_acceleration,
+    integrate_run,
+    reduce_machine,
+)
 from tmm_cli.mechanics.errors import LongRunError, StandstillError
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import collect_warnings, walk
@@ -24,7 +32,7 @@ def machine(inertia=2.0, load=0.0, until=np.pi, ripple=0.0):
 
 
 def test_a_constant_moment_speeds_a_rotor_up_evenly():
-    found = run(machine(), RunTask(drive=lambda t, x: 6.0 + 0 * t))
+    found = integrate_run(machine(), RunTask(drive=lambda t, x: 6.0 + 0 * t))
     assert found.ending == "way"
     assert found.time[-1] == pytest.approx(np.sqrt(2 * TURN / 3), rel=1e-10)
     assert found.speed[-1] == pytest.approx(np.sqrt(2 * 3 * TURN), rel=1e-10)
@@ -32,26 +40,26 @@ def test_a_constant_moment_speeds_a_rotor_up_evenly():
 
 
 def test_a_brake_stops_a_rotor_where_its_energy_is_used_up():
-    found = run(machine(), RunTask(speed=3.0, brake=4.0))
+    found = integrate_run(machine(), RunTask(speed=3.0, brake=4.0))
     assert found.ending == "standstill"
     assert found.way[-1] == pytest.approx(9 / 4, rel=1e-10)  # J w^2 / 2 over the moment
     assert found.time[-1] == pytest.approx(3 / 2, rel=1e-10)
 
 
 def test_a_motor_of_direct_current_comes_to_its_speed_exponentially():
-    found = run(machine(), RunTask(motor=Linear(50.0, 10.0), longest=0.7))
+    found = integrate_run(machine(), RunTask(motor=LinearMotor(50.0, 10.0), longest=0.7))
     assert found.ending == "time"
     assert found.speed == pytest.approx(10 * (1 - np.exp(-50 / (2 * 10) * found.time)), rel=1e-9, abs=1e-12)
 
 
 def test_a_trial_step_may_be_so_quick_that_its_square_is_infinite():
-    found = acceleration(machine(ripple=0.6), RunTask(), np.zeros(1), np.ones(1), np.array([1e200]))
+    found = driver_acceleration(machine(ripple=0.6), RunTask(), np.zeros(1), np.ones(1), np.array([1e200]))
     assert found == np.inf  # the step is not taken; a file with a drive of 1e9 over ten turns came to this
 
 
 @pytest.mark.parametrize("times", [10, 1e3, 1e5])
 def test_a_motor_too_strong_brings_its_machine_to_its_speed_without_load(times):
-    found = run(machine(load=-80.0, ripple=0.6), RunTask(motor=Linear(500.0 * times, 12.0)))
+    found = integrate_run(machine(load=-80.0, ripple=0.6), RunTask(motor=LinearMotor(500.0 * times, 12.0)))
     assert found.ending == "way" and found.balance < 1e-10
     assert found.speed[-1] == pytest.approx(12.0, rel=0.1 / times)
     assert found.time[-1] == pytest.approx(TURN / 12.0, rel=1 / times)
@@ -60,15 +68,15 @@ def test_a_motor_too_strong_brings_its_machine_to_its_speed_without_load(times):
 @pytest.mark.parametrize(
     "task",
     [
-        RunTask(motor=Linear(500.0, 12.0)),
-        RunTask(motor=Kloss(12.0, 300.0, 0.3), flywheel=3.0),
+        RunTask(motor=LinearMotor(500.0, 12.0)),
+        RunTask(motor=KlossMotor(12.0, 300.0, 0.3), flywheel=3.0),
         RunTask(speed=10.0, brake=200.0),
         RunTask(drive=lambda t, x: 150 * np.exp(-t) + 5 * x),
-        RunTask(drive=Profile("time", (0.0, 0.4, 0.41, 9.0), (250.0, 250.0, 20.0, 20.0))),
+        RunTask(drive=DriveProfile("time", (0.0, 0.4, 0.41, 9.0), (250.0, 250.0, 20.0, 20.0))),
     ],
 )
 def test_works_are_the_change_of_kinetic_energy(task):
-    found = run(machine(load=-80.0, ripple=0.6), task)
+    found = integrate_run(machine(load=-80.0, ripple=0.6), task)
     assert found.balance < 1e-10
     assert found.ending in ("way", "standstill")
 
@@ -77,7 +85,7 @@ def test_works_are_the_change_of_kinetic_energy(task):
 def test_a_drive_that_jumps_is_constant_before_and_after(against):
     """J = 2: 6 N m give 3 rad/s2; from the jump on 50 N m give 25 rad/s2."""
     at = 0.8 if against == "time" else 3 * 0.8**2 / 2
-    found = run(machine(), RunTask(drive=Profile(against, (0.0, at, at, 99.0), (6.0, 6.0, 50.0, 50.0))))
+    found = integrate_run(machine(), RunTask(drive=DriveProfile(against, (0.0, at, at, 99.0), (6.0, 6.0, 50.0, 50.0))))
     way, speed = 3 * 0.8**2 / 2, 3 * 0.8
     last = np.sqrt(speed**2 + 2 * 25 * (TURN - way))
     assert found.speed[-1] == pytest.approx(last, rel=1e-10)
@@ -88,18 +96,18 @@ def test_a_drive_that_jumps_is_constant_before_and_after(against):
 
 def test_what_drives_less_than_the_load_does_not_start():
     with pytest.raises(StandstillError) as stands:
-        run(machine(load=-80.0), RunTask(drive=lambda t, x: 79.0 + 0 * t))
+        integrate_run(machine(load=-80.0), RunTask(drive=lambda t, x: 79.0 + 0 * t))
     assert stands.value.place == 0
 
 
 def test_a_place_of_the_way_is_passed_once_at_its_time_and_speed():
-    own, task = machine(load=-80.0, ripple=0.6), RunTask(motor=Linear(500.0, 12.0))
-    found = run(own, task)
+    own, task = machine(load=-80.0, ripple=0.6), RunTask(motor=LinearMotor(500.0, 12.0))
+    found = integrate_run(own, task)
     time, speed = found.at(found.way[1:-1])
     assert time == pytest.approx(found.time[1:-1], rel=1e-9)
     assert speed == pytest.approx(found.speed[1:-1], rel=1e-9)
     assert np.isnan(found.at(np.array([7.0]))[0]).all()
-    changes = acceleration(own, task, time, found.way[1:-1], speed)
+    changes = driver_acceleration(own, task, time, found.way[1:-1], speed)
     assert changes == pytest.approx(found.acceleration[1:-1], rel=1e-7, abs=1e-6)
 
 
@@ -125,9 +133,9 @@ def test_a_press_takes_its_blow_from_the_flywheel_and_the_motor():
 
 
 def test_a_run_that_wants_very_many_steps_ends_with_what_it_came_to(monkeypatch):
-    monkeypatch.setattr("tmm_cli.mechanics.dynamics.single_run.MOST", 500)
+    monkeypatch.setattr("tmm_cli.mechanics.dynamics.single_run.MOST_EVALUATIONS", 500)
     with pytest.raises(LongRunError) as stopped:
-        run(machine(load=-2.0, ripple=1.5), RunTask(motor=Linear(50.0, 10.0)))
+        integrate_run(machine(load=-2.0, ripple=1.5), RunTask(motor=LinearMotor(50.0, 10.0)))
     assert 0 < stopped.value.way < TURN and stopped.value.count == 500
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from models import PARALLELOGRAM, solved_text
 
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import ProblemError
 from tmm_cli.reports import collect_warnings, quality_tables
 
@@ -48,7 +48,7 @@ moved = partial(solved_text, stage="kinematics")
 def everywhere(results, number=701):
     """Over the whole cycle, but for places in a change point."""
     driver_range = results.driver_range
-    return at_positions(results, np.linspace(driver_range.start + 0.0071, driver_range.end + 0.0071, number))
+    return motion_at_positions(results, np.linspace(driver_range.start + 0.0071, driver_range.end + 0.0071, number))
 
 
 @pytest.mark.parametrize("at, B", [("60 deg", "[350, 86]"), ("-100 deg", "[283, -98]"), ("179 deg", "[200, 2]")])
@@ -145,7 +145,7 @@ def test_a_kite_whose_hinges_meet_has_its_rotation_in_the_table():
 
 def test_a_place_is_found_alone():
     results = moved(PARALLELOGRAM)
-    alone = [float(at_positions(results, np.array([q])).first["3"].w[0]) for q in (-20.0, -1.0, 1.0, 4.0, 100.0)]
+    alone = [float(motion_at_positions(results, np.array([q])).first["3"].w[0]) for q in (-20.0, -1.0, 1.0, 4.0, 100.0)]
     assert alone == pytest.approx([1.0] * 5)
 
 
@@ -199,7 +199,7 @@ def test_a_dead_position_in_which_the_driver_turns_back_has_no_limits():
     results = moved(text)
     end = float(results.driver_range.end)
     assert not results.driver_range.full
-    motion = at_positions(results, np.array([end]))
+    motion = motion_at_positions(results, np.array([end]))
     assert motion.limits is None and not motion.moving.any()
 
 

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from test_loads import MACHINE
 
 from tmm_cli import prepare, solve
-from tmm_cli.mechanics.accuracy import bounds
+from tmm_cli.mechanics.accuracy import bound_values
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
 from tmm_cli.reports import input_data_tables
 
@@ -105,7 +105,7 @@ def test_a_driver_may_stand_in_a_position():
 
 @pytest.mark.parametrize("between", ["linear", "smooth"])
 def test_digits_of_a_law_by_table_are_judged(between):
-    values, digits = bounds(solved(table(swaying, between=between)))
+    values, digits = bound_values(solved(table(swaying, between=between)))
     worst = max(np.nanmax(bound / max(np.nanmax(np.abs(values[key])), 1)) for key, bound in digits.bound.items())
     assert worst < 1e-11
 

@@ -17,7 +17,7 @@ import pytest
 from bank import NAMES, solved
 from test_commands import tmm
 
-from tmm_cli.mechanics.analysis import quantities
+from tmm_cli.mechanics.analysis import list_quantities
 from tmm_cli.reports import csv_text, tables, to_json
 
 SNAPSHOT = Path(__file__).parent / "data" / "stable_names.json"
@@ -70,7 +70,7 @@ def names_of_problem(name: str) -> dict[str, list[str]]:
     results = solved(name)
     return {
         "csv": sorted(headings(name)),
-        "quantities": sorted(quantities(results.linkage, results.structure)),
+        "quantities": sorted(list_quantities(results.linkage, results.structure)),
     }
 
 

@@ -10,8 +10,8 @@ from functools import partial
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
-from tmm_cli.batch import processes
-from tmm_cli.cli import tell_fault
+from tmm_cli.batch import in_processes
+from tmm_cli.cli import report_fault
 from tmm_cli.mechanics.quantities import NUMBER, product_text
 from tmm_cli.problem import UnitSystem, build_any_problem
 from tmm_cli.reports import Column, Table, csv_text, table_of_words
@@ -277,9 +277,9 @@ def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_
 
 def test_a_fault_in_another_process_is_placed_where_it_was_raised(capsys):
     try:
-        list(processes(2)([partial(product_text, 3)] * 2, lambda: False))
+        list(in_processes(2)([partial(product_text, 3)] * 2, lambda: False))
     except Exception as error:
-        assert tell_fault(error, ["grade"]) == 3
+        assert report_fault(error, ["grade"]) == 3
     assert re.match(
         r"internal fault: AttributeError at tmm_cli/mechanics/quantities\.py:\d+ \(", capsys.readouterr().err
     )

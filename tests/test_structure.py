@@ -15,7 +15,7 @@ from models import CLASS_III, SI, results_of
 from test_commands import SHAPER, tmm
 
 from tmm_cli import solve
-from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.mechanics.analysis import results_at
 from tmm_cli.mechanics.structure import (
     analyse_structure,
     basic_schemes,
@@ -129,7 +129,7 @@ def test_position_0_is_the_start_of_the_working_stroke_and_loads_of_it_act_in_it
     results = solved("shaper")
     speed = results.motion.slide(results.linkage.slides[1]).v
     assert abs(speed[0]) < 1e-12 * np.max(np.abs(speed))
-    close = at_places(results, results.closely(721)[1:-1])
+    close = results_at(results, results.closely(721)[1:-1])
     load = next(x for x in close.loads if x.name == "F")
     speed = close.motion.slide(results.linkage.slides[1]).v
     moving = np.abs(speed) > 1e-9

@@ -13,7 +13,7 @@ from test_loads import MACHINE
 
 from tmm_cli.batch import Task
 from tmm_cli.drawing.paper import contour_lines, hatch_polygons, region_polygons
-from tmm_cli.mechanics.analysis import at_places
+from tmm_cli.mechanics.analysis import results_at
 from tmm_cli.problem import ProblemError, apply_settings, build_any_problem, read_file, read_text
 from tmm_cli.sweep import (
     APART,
@@ -21,12 +21,12 @@ from tmm_cli.sweep import (
     REFUSED,
     STOPS,
     WORKS,
-    Mechanisms,
+    SweptMechanisms,
     read_axes,
     read_shown,
     refuse_points,
-    sheets,
-    swept,
+    run_sweep,
+    sweep_sheets,
 )
 from tmm_cli.synthesis import measures, solve
 
@@ -37,8 +37,8 @@ TURN = 2 * np.pi
 
 def sweep(file, over, show=()):
     tree = read_file(str(PROBLEMS / f"{file}.yaml"))
-    mechanisms = Mechanisms(tree, read_axes(Task(tree), over), show)
-    return swept(mechanisms)
+    mechanisms = SweptMechanisms(tree, read_axes(Task(tree), over), show)
+    return run_sweep(mechanisms)
 
 
 def one_by_one(file, settings):
@@ -50,7 +50,7 @@ def largest(read, results):
     """Over the cycle: about the highest of many places, and on either side of the ends of the strokes."""
 
     def size(q):
-        return np.abs(read(at_places(results, np.atleast_1d(q))))
+        return np.abs(read(results_at(results, np.atleast_1d(q))))
 
     ends = [s.start for s in results.strokes.strokes] if results.strokes else []
     beside = [end + away for end in ends for away in (-1e-10, 1e-10)]
@@ -105,7 +105,7 @@ loads: {P: {on: 3, at: B, force: [F, 0], when: [100, 200]}}
 positions: {count: 4}
 """
     tree = read_text(text, "x.yaml")
-    found = swept(Mechanisms(tree, read_axes(Task(tree), ["F=1000..2000:2"]), ["M_b"]))
+    found = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["F=1000..2000:2"]), ["M_b"]))
     peak = 50 * np.sin(np.radians(100))
     assert found.values[:, 0] == pytest.approx([peak, 2 * peak], rel=1e-9)
 
@@ -125,7 +125,7 @@ def test_the_peak_of_the_balancing_moment_is_that_of_the_cycle_and_not_of_the_po
     """Crank-slider without masses under F = 1000 N: M_b = F v_B / omega, its peak by the formula of the slider."""
     text = MACHINE.replace("length: 50", "length: r").replace("tmm: 1", "tmm: 1\nparameters: {r: 50}")
     tree = read_text(text + "gravity: 0\nloads: {F: {on: 3, force: [1000, 0]}}\npositions: {count: 5}\n", "x.yaml")
-    found = swept(Mechanisms(tree, read_axes(Task(tree), ["r=20..80:4"]), ["M_b,v_B,x_B,phi_1,phi_2"]))
+    found = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["r=20..80:4"]), ["M_b,v_B,x_B,phi_1,phi_2"]))
     assert found.taped
     omega, rod = 2 * np.pi, 0.15
     for (radius,), values in zip(found.points / 1000, found.values, strict=True):
@@ -141,7 +141,7 @@ def test_the_peak_of_the_balancing_moment_is_that_of_the_cycle_and_not_of_the_po
 
 def test_positions_of_30_deg_miss_the_peak_of_the_shaper():
     tree = read_file(str(PROBLEMS / "shaper.yaml"))
-    found = swept(Mechanisms(tree, read_axes(Task(tree), ["OC=350..360:2"]), ["M_b"]))
+    found = run_sweep(SweptMechanisms(tree, read_axes(Task(tree), ["OC=350..360:2"]), ["M_b"]))
     results = one_by_one("shaper", ["OC=350"])
     assert found.values[0, 0] == pytest.approx(largest(lambda r: r.reactions.balance.moment, results), rel=1e-9)
     assert found.values[0, 0] == pytest.approx(328.9, abs=0.05)
@@ -180,8 +180,8 @@ def test_over_two_parameters_each_line_is_a_sweep_over_one():
     assert both.shape == (3, 3)
     for row, l1 in enumerate(both.axes[0].values):
         tree = apply_settings(read_file(str(PROBLEMS / "crank-rocker.yaml")), [f"l1={l1:g}"])
-        mechanisms = Mechanisms(tree, read_axes(Task(tree), ["l4=300..500:3"]), ["psi,k,M_b"])
-        one = swept(mechanisms)
+        mechanisms = SweptMechanisms(tree, read_axes(Task(tree), ["l4=300..500:3"]), ["psi,k,M_b"])
+        one = run_sweep(mechanisms)
         here = slice(3 * row, 3 * row + 3)
         assert both.state[here].tolist() == one.state.tolist()
         assert np.allclose(both.values[here], one.values, rtol=1e-12, equal_nan=True)
@@ -321,10 +321,10 @@ def test_the_command_writes_what_it_shows(tmp_path):
 
 def test_a_sheet_a_quantity_over_two_parameters_and_one_for_all_over_one():
     two = sweep("crank-rocker", ["l1=60..240:7", "l4=300..500:5"], ["psi,k"])
-    assert [name for name, __ in sheets("", two, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)] == [
+    assert [name for name, __ in sweep_sheets("", two, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)] == [
         "sweep-psi",
         "sweep-k",
     ]
     one = sweep("crank-rocker", ["l1=60..240:7"], ["psi,k"])
-    ((name, drawing),) = sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
+    ((name, drawing),) = sweep_sheets("", one, Task(read_file(str(PROBLEMS / "shaper.yaml"))).units)
     assert name == "sweep" and {"works", "does not turn fully"} <= set(drawing.texts())

@@ -14,7 +14,16 @@ from test_properties import CHAINS
 
 import tmm_cli
 from tmm_cli import load, solve
-from tmm_cli.batch import CHECKS, CHUNK, DependsOnData, NotAlikeError, everything, prepare_batch, record, varying
+from tmm_cli.batch import (
+    CHECKS,
+    CHUNK,
+    DependsOnData,
+    NotAlikeError,
+    prepare_batch,
+    read_all,
+    trace_function,
+    varying_numbers,
+)
 from tmm_cli.mechanics.structure import analyse_structure
 
 Q = np.linspace(0.1, 6.3, 24)
@@ -158,11 +167,11 @@ def test_class_ii_problems_of_the_bank():
 
 def test_linkages_of_different_kinds_are_not_put_together():
     with pytest.raises(NotAlikeError):
-        varying([linkage_of("shaper"), linkage_of("six-bar")])
+        varying_numbers([linkage_of("shaper"), linkage_of("six-bar")])
 
 
 def test_numbers_are_worked_out_before_the_data_come():
-    program = record(lambda x: {"y": (x * 2.0) * 0.5 + 0.0 * x, "z": x - x, "w": (x * (1 + 2j)).imag}, 2)
+    program = trace_function(lambda x: {"y": (x * 2.0) * 0.5 + 0.0 * x, "z": x - x, "w": (x * (1 + 2j)).imag}, 2)
     assert program.operations == 1  # x 2; y is x itself, z is nothing
     found = program(np.array([1.0, 3.0]))
     assert list(found["y"]) == [1, 3] and list(found["z"]) == [0, 0] and list(found["w"]) == [2, 6]
@@ -170,13 +179,13 @@ def test_numbers_are_worked_out_before_the_data_come():
 
 def test_branches_by_data_are_refused():
     with pytest.raises(DependsOnData):
-        record(lambda x: {"y": 1.0 if x > 0 else 2.0}, 2)
+        trace_function(lambda x: {"y": 1.0 if x > 0 else 2.0}, 2)
     with pytest.raises(DependsOnData):
-        record(lambda x: {"y": np.asarray(x)}, 2)
+        trace_function(lambda x: {"y": np.asarray(x)}, 2)
 
 
 def test_a_table_is_read_on_tape():
-    program = record(lambda x: {"y": np.interp(np.mod(x, 2.0), [0.0, 1.0, 2.0], [0.0, 5.0, 0.0])}, 2)
+    program = trace_function(lambda x: {"y": np.interp(np.mod(x, 2.0), [0.0, 1.0, 2.0], [0.0, 5.0, 0.0])}, 2)
     assert np.allclose(program(np.array([0.5, 1.5, 2.2]))["y"], [2.5, 2.5, 1.0])
 
 
@@ -193,4 +202,4 @@ def test_keys_name_what_they_are():
     it = linkage_of("crank-slider")
     names = set(prepare_batch(it)(Q))
     assert {"A.x", "B.v", "S2.a", "2.omega", "R.A", "M.x", "T.1"} <= names
-    assert everything.__doc__ and "R.A" in everything.__doc__
+    assert read_all.__doc__ and "R.A" in read_all.__doc__

@@ -13,10 +13,17 @@ from test_commands import ROOT
 from test_cylinders import SWINGING
 
 from tmm_cli import load, solve
-from tmm_cli.batch import OneByOne, Places, Taped, everything, prepare_batch, solved as stages
-from tmm_cli.mechanics.accuracy import widened
+from tmm_cli.batch import (
+    DriverSamples,
+    SequentialVariants,
+    TracedVariants,
+    prepare_batch,
+    read_all,
+    solve_stages as stages,
+)
+from tmm_cli.mechanics.accuracy import as_double_doubles
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble, find_assemblies
-from tmm_cli.mechanics.forces import applied, react
+from tmm_cli.mechanics.forces import collect_loads, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion, GroupState, NewtonSolver, Telescope, TelescopeParts
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import EPS, to_double_double
@@ -78,7 +85,7 @@ def test_it_moves_and_holds_as_newtons_method_says(chain, seed):
         assert near(one.first[link].v, other.first[link].v) and near(one.first[link].w, other.first[link].w)
         assert near(one.second[link].a, other.second[link].a, 10.0), link
         assert near(one.second[link].e, other.second[link].e, 10.0), link
-    one, other = (react(m, structure, applied(m, None)) for m in (one, other))
+    one, other = (solve_reactions(m, structure, collect_loads(m, None)) for m in (one, other))
     size = max(np.max(np.abs(r.force)) for r in other.all)
     for mine, theirs in zip(one.all, other.all, strict=True):
         assert (mine.pair.name, mine.on, mine.by) == (theirs.pair.name, theirs.on, theirs.by)
@@ -97,13 +104,13 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
     heavier = replace(linkage, links={name: replace(link, mass=1.25 * link.mass) for name, link in links.items()})
     slide = replace(linkage.slides[-1], through=1.01 * linkage.slides[-1].through)
     longer = replace(linkage, slides=(*linkage.slides[:-1], slide))
-    batch = prepare_batch([linkage, heavier, longer], everything)
+    batch = prepare_batch([linkage, heavier, longer], read_all)
     assert batch.program is not None
     q = linkage.sketch.at + np.linspace(-0.01, 0.01, 5)
     found = batch(q)
     for k, one in enumerate(batch.linkages):
         structure = analyse_mobile_structure(one)
-        expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
+        expected = stages(one, structure, assemble(one, structure), q, read_all, True, None)
         for name in found:
             assert near(found[name][k] if np.ndim(found[name]) > 1 else found[name], expected[name]), name
 
@@ -111,7 +118,7 @@ def test_on_a_tape_it_is_what_the_stages_say(chain):
 @pytest.mark.parametrize("chain", CHAINS)
 def test_in_double_doubles_it_has_all_of_its_digits(chain):
     linkage = swinging(2, chain)
-    wide = widened(linkage)
+    wide = as_double_doubles(linkage)
     _, closed, iterated = both(linkage)
     q = to_double_double(linkage.sketch.at + np.linspace(-0.01, 0.01, 5))
     one, other = (compute_motion(wide, [kernel.rebind(wide)], q, LAW) for kernel in (closed, iterated))
@@ -225,11 +232,11 @@ positions: {at: [first, (first + last)/2, last]}
 def test_candidates_whose_strokes_vary_are_on_one_tape():
     """The boom goes from 10 to 60 deg in each of them, so that the cylinder goes another way in each."""
     search = Candidates(read_task(read_text(LIFT, "x.yaml")))
-    assert isinstance(search.program, Taped)
+    assert isinstance(search.program, TracedVariants)
     variants = search.numbers(np.random.default_rng(3).random((5, 3)))
-    places = Places(np.linspace(0, 1, 7), np.zeros(0))
+    places = DriverSamples(np.linspace(0, 1, 7), np.zeros(0))
     found = search.program(variants, places)
-    expected = OneByOne(search.task.make, search.first, search.outputs, forces=True)(variants, places)
+    expected = SequentialVariants(search.task.make, search.first, search.outputs, forces=True)(variants, places)
     for name in found:
         assert near(found[name], expected[name]), name
 
@@ -255,7 +262,7 @@ def digger():
 def test_drivers_of_each_candidate_pass_through_its_own_sketch():
     search = digger()
     variants = np.array([[0.56], [0.6], [0.64]])
-    found = search.program(variants, Places(np.linspace(0, 1, 7), np.zeros(0)))
+    found = search.program(variants, DriverSamples(np.linspace(0, 1, 7), np.zeros(0)))
     for k, numbers in enumerate(variants):
         own = search.task.make(numbers.tolist())
         structure, q = analyse_mobile_structure(own.linkage), np.linspace(*own.ends, 7)
@@ -270,8 +277,8 @@ def test_a_batch_of_linkages_with_sketches_of_their_own_moves_each_from_its_own(
     make = digger().task.make
     linkages = [make([x]).linkage for x in (0.58, 0.62)]
     q = 1.1 + np.linspace(0, 0.02, 5)
-    found = prepare_batch(linkages, everything)(q)
+    found = prepare_batch(linkages, read_all)(q)
     for k, one in enumerate(linkages):
         structure = analyse_mobile_structure(one)
-        expected = stages(one, structure, assemble(one, structure), q, everything, True, None)
+        expected = stages(one, structure, assemble(one, structure), q, read_all, True, None)
         assert all(near(1.0 * found[name][k], 1.0 * expected[name]) for name in found)

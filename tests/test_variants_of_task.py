@@ -7,7 +7,7 @@ import pytest
 from test_commands import ROOT, SHAPER
 
 from tmm_cli import solve
-from tmm_cli.batch import families, read_task
+from tmm_cli.batch import read_task, split_families
 from tmm_cli.grading import Given, Submission, VariantTable, grade, numbers_of, solve as solved
 from tmm_cli.problem import ProblemError, read_text
 
@@ -27,7 +27,7 @@ def task():
 
 def family_of(own, table=TABLE):
     dimensions, columns = numbers_of(own, table, list(table.rows))
-    return next(families(lambda numbers: own.make(table.names, dimensions, numbers), columns))[1]
+    return next(split_families(lambda numbers: own.make(table.names, dimensions, numbers), columns))[1]
 
 
 def test_a_family_is_what_its_variants_are_one_by_one():
@@ -93,7 +93,7 @@ def test_a_variant_that_its_sketch_shows_badly_is_found_alone():
     own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
     table = VariantTable(("CE",), {"1": ("180",), "2": ("185",), "3": ("230",)})
     dimensions, columns = numbers_of(own, table, list(table.rows))
-    found = list(families(lambda numbers: own.make(table.names, dimensions, numbers), columns))
+    found = list(split_families(lambda numbers: own.make(table.names, dimensions, numbers), columns))
     assert [rows.tolist() for rows, _ in found] == [[0, 1], [2]]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from test_synthesis_any_linkage import block, text_of
 
-from tmm_cli.batch import OneByOne
+from tmm_cli.batch import SequentialVariants
 from tmm_cli.problem import read_text
 from tmm_cli.synthesis import Candidates, read_task
 
@@ -33,7 +33,7 @@ def test_candidates_on_the_tape_are_those_one_by_one(kind):
     candidates = Candidates(read_task(read_text(text, "x.yaml")))
     assert candidates.taped
     forces = any(quantity.forces for quantity in candidates.quantities)
-    one = OneByOne(candidates.task.make, candidates.first, candidates.outputs, forces=forces)
+    one = SequentialVariants(candidates.task.make, candidates.first, candidates.outputs, forces=forces)
     numbers = candidates.numbers(np.random.default_rng(5).random((5, len(candidates.low))))
     found, expected = (of(numbers, candidates.places) for of in (candidates.program, one))
     assert candidates.cycle == one.driver_range(numbers[:1]).span[0, 0]

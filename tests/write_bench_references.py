@@ -16,7 +16,7 @@ from multibody import Multibody
 
 from tmm_cli import solve
 from tmm_cli.bench import Case
-from tmm_cli.mechanics.analysis import at_positions
+from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.problem import build_problem, read_text
 
 NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-class-iii")
@@ -47,7 +47,7 @@ def solved(name, q=None):
     results = solve(build_problem(read_text(source, f"{name}.yaml")), "kinematics")
     if q is None:
         q = results.start + results.linkage.driver.sense * 2 * np.pi * (np.arange(COUNT) + OFF) / COUNT
-    return results, at_positions(results, q), source
+    return results, motion_at_positions(results, q), source
 
 
 def answers(results, motion, k):

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import xlsxwriter
 
-from tmm_cli.batch import families, read_task
+from tmm_cli.batch import read_task, split_families
 from tmm_cli.grading import VariantTable, cases, numbers_of, predicted, right
 from tmm_cli.problem import read_file
 
@@ -128,7 +128,7 @@ def written(asked, value):
 def sheets(task, table, random):
     """Answers of every student, as text; None: nothing that could be read."""
     dimensions, columns = numbers_of(task, table, NAMES)
-    family = next(families(lambda x: task.make(table.names, dimensions, x), columns))[1]
+    family = next(split_families(lambda x: task.make(table.names, dimensions, x), columns))[1]
     known = right(family, task.asked)
     by_kind = {type(case).__name__: case for case in reversed(cases(family))}
     found = []

@@ -41,7 +41,7 @@ INERTIA: Final = {"U": {"U": "U", "M": "M"}, "Φ": {"U": "Φ", "M": "M_Φ"}}  # 
 
 
 @dataclass(frozen=True)
-class Course:
+class CourseNotation:
     """How a course writes: its language, the number of the frame, the letter of inertia forces ("": the language's).
 
     for_programs: with the words on which scripts rely (`words_of_files`).
@@ -53,8 +53,8 @@ class Course:
     for_programs: bool = False
 
 
-USUAL: Final = Course()
-_course: ContextVar[Course] = ContextVar("course", default=USUAL)
+USUAL: Final = CourseNotation()
+_course: ContextVar[CourseNotation] = ContextVar("course", default=USUAL)
 
 
 class Phrase(str):
@@ -175,7 +175,7 @@ def language() -> str:
     return _course.get().language
 
 
-def course() -> Course:
+def course() -> CourseNotation:
     """How is written here and now."""
     return _course.get()
 
@@ -201,7 +201,7 @@ def word_of_files(text: str) -> str:
 
 
 @contextmanager
-def written_as(course: Course) -> Iterator[None]:
+def written_as(course: CourseNotation) -> Iterator[None]:
     """Write inside as a course does."""
     before = _course.set(course)
     try:
@@ -220,7 +220,7 @@ def write(frame: str, inertia: str) -> None:
     _course.set(replace(_course.get(), frame=frame, inertia=inertia))
 
 
-def speaking(course: Course, work: Callable[[], Found]) -> Found:
+def speaking(course: CourseNotation, work: Callable[[], Found]) -> Found:
     """What some work gives when it writes as this course does; for work that goes to another process."""
     with written_as(course):
         return work()

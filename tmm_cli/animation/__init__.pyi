@@ -1,14 +1,19 @@
 """A mechanism that turns on a page: what the results say at places close together, and a script that moves it."""
 
-from .gallery.card import Card as Card, card as card
-from .gallery.moving_picture import PLACE as PLACE, ROW as ROW, TURN as TURN, places_of as places_of
+from .gallery.card import Card as Card, make_card as make_card
+from .gallery.moving_picture import (
+    ROW as ROW,
+    STEPS_PER_MM as STEPS_PER_MM,
+    STEPS_PER_RADIAN as STEPS_PER_RADIAN,
+    chain_places as chain_places,
+)
 from .gallery.page import gallery_page as gallery_page
 from .page import (
-    FEWEST as FEWEST,
+    FEWEST_FRAMES as FEWEST_FRAMES,
     FRAMES as FRAMES,
-    MOST as MOST,
+    MOST_BYTES as MOST_BYTES,
     animation_page as animation_page,
-    charts as charts,
-    frames as frames,
-    picture_of as picture_of,
+    chart_quantities as chart_quantities,
+    draw_first_frame as draw_first_frame,
+    results_in_frames as results_in_frames,
 )

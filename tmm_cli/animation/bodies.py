@@ -30,7 +30,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, unit
 
 
 @dataclass
-class Body:
+class MovingBody:
     """Where it is (mm on the sheet), its angle (rad, followed through turns), how much longer it is than drawn: each
     in every frame; its marks in its own axes.
     """
@@ -46,7 +46,7 @@ class Body:
 
     def take(self, marks: list[Mark]) -> None:
         """Marks drawn at the first frame move with the body from now on."""
-        self.marks += [_turned(mark, self.own) for mark in marks]
+        self.marks += [_in_body_axes(mark, self.own) for mark in marks]
 
     def at(self, own: Any, k: int) -> Any:
         """A place of the body on the sheet, in a frame."""
@@ -54,7 +54,7 @@ class Body:
         return self.place[k] + local * np.exp(1j * self.angle[k])
 
 
-def _turned(mark: Mark, own: Callable[[complex], complex]) -> Mark:
+def _in_body_axes(mark: Mark, own: Callable[[complex], complex]) -> Mark:
     match mark:
         case LineMark():
             return replace(mark, places=tuple(map(own, mark.places)))
@@ -66,38 +66,40 @@ def _turned(mark: Mark, own: Callable[[complex], complex]) -> Mark:
 
 
 @dataclass
-class Picture:
+class MechanismPicture:
     """A mechanism taken apart into bodies by their names; links have theirs, the frame is one too."""
 
     sheet: DrawingSheet
     motion: Motion
     scene: MechanismScene
-    bodies: dict[str, Body]
+    bodies: dict[str, MovingBody]
     forms: Mapping[str, LinkForm]
 
     @classmethod
-    def of(cls, sheet: DrawingSheet, motion: Motion, scene: MechanismScene) -> Picture:
+    def of(cls, sheet: DrawingSheet, motion: Motion, scene: MechanismScene) -> MechanismPicture:
         """A scene in its first frame, drawn on a sheet; what belongs to no body, as the touch of two wheels, is not."""
         linkage, pairs = scene.linkage, scene.structure.pairs
         drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK_COLOUR))
         picture = cls(sheet, motion, scene, {}, drawn.forms)
         picture._masses()
         parts, alike = {name for name, __ in sheet.parts}, np.ones(motion.q.shape)
-        picture.bodies[FRAME] = Body(np.zeros_like(motion.q) * 0j, np.zeros_like(motion.q), alike)
+        picture.bodies[FRAME] = MovingBody(np.zeros_like(motion.q) * 0j, np.zeros_like(motion.q), alike)
         for link in linkage.moving:
             pose = motion.poses[link].spread(motion.q.shape)
             angle = pose.turned if pose.unwrapped is not None else np.unwrap(pose.turned)
-            picture.bodies[link] = Body(sheet.origin + pose.x / sheet.mu, angle, alike)
+            picture.bodies[link] = MovingBody(sheet.origin + pose.x / sheet.mu, angle, alike)
         for slide in linkage.slides:
             if BOX_BODY.format(slide.name) in parts:
                 angle = picture.bodies[slide.carrier].angle + float(np.angle(unit(slide.direction)))
-                picture.bodies[BOX_BODY.format(slide.name)] = Body(picture._spots(slide.runner, slide.at), angle, alike)
+                picture.bodies[BOX_BODY.format(slide.name)] = MovingBody(
+                    picture._spots(slide.runner, slide.at), angle, alike
+                )
         for spring in linkage.springs:
             start, end = picture._spots(spring.i, spring.at_i), picture._spots(spring.j, spring.at_j)
             length = np.abs(end - start)
             if SPRING_BODY.format(spring.name) in parts and length.min() > 0:
                 angle = np.unwrap(np.angle(end - start))
-                picture.bodies[SPRING_BODY.format(spring.name)] = Body(start, angle, length / length[0])
+                picture.bodies[SPRING_BODY.format(spring.name)] = MovingBody(start, angle, length / length[0])
         for name, which in sheet.parts:
             if name in picture.bodies:
                 picture.bodies[name].take(sheet.marks[which])
@@ -128,10 +130,13 @@ class Picture:
 # Names of points and numbers of links, which go with the bodies that carry them.
 
 
-OUT, BOX_SIDE = 4.0, 6.5  # mm from a hinge to its name; from the middle of a box to the number of its link
+LABEL_DISTANCE, NUMBER_DISTANCE = (
+    4.0,
+    6.5,
+)  # mm from a hinge to its name; from the middle of a box to the number of its link
 
 
-def labels(picture: Picture, names: Sequence[str]) -> list[dict[str, Any]]:
+def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[str, Any]]:
     """Names of points beyond the ends of links, numbers beside links: in the axes of the bodies that carry them."""
     linkage, found = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
     for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
@@ -141,18 +146,23 @@ def labels(picture: Picture, names: Sequence[str]) -> list[dict[str, Any]]:
         local = complex(linkage.local(carrier, name))
         found.setdefault((carrier, complex(round(local.real, 9), round(local.imag, 9))), []).append(name)
     points = [
-        {"body": names.index(link), "at": pair(_beyond(picture, link, local)), "text": ", ".join(text), "kind": "point"}
+        {
+            "body": names.index(link),
+            "at": page_coordinates(_point_label_place(picture, link, local)),
+            "text": ", ".join(text),
+            "kind": "point",
+        }
         for (link, local), text in found.items()
     ]
     numbers = [
-        {"body": names.index(link), "at": pair(_beside(picture, link)), "text": link, "kind": "link"}
+        {"body": names.index(link), "at": page_coordinates(_number_place(picture, link)), "text": link, "kind": "link"}
         for link in linkage.moving
         if np.isfinite(picture.forms[link].middle)
     ]
     return [*points, *numbers]
 
 
-def _beyond(picture: Picture, link: str, local: complex) -> complex:
+def _point_label_place(picture: MechanismPicture, link: str, local: complex) -> complex:
     """Where the name of a point is, in its link's axes: away from the middle of the link, outside a slider's box."""
     sheet, scene = picture.sheet, picture.scene
     at, driven = sheet.on(scene.place(link, local)), cylinder_drivers(scene.linkage)
@@ -160,13 +170,15 @@ def _beyond(picture: Picture, link: str, local: complex) -> complex:
     boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
     own = picture.bodies[link].own(at)
     if link == FRAME:
-        return own + OUT * (-1 if at.real < sheet.origin.real else 1)
+        return own + LABEL_DISTANCE * (-1 if at.real < sheet.origin.real else 1)
     places = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
     out = own - picture.bodies[link].own(sum(places) / len(places))
-    return own + (2 * OUT if boxed else OUT) * (out / abs(out) if abs(out) > 1 else complex(0.8, 0.6))
+    return own + (2 * LABEL_DISTANCE if boxed else LABEL_DISTANCE) * (
+        out / abs(out) if abs(out) > 1 else complex(0.8, 0.6)
+    )
 
 
-def _beside(picture: Picture, link: str) -> complex:
+def _number_place(picture: MechanismPicture, link: str) -> complex:
     """Where the number of a link is, in its axes: on its plate, beside its longest line, or beside its box."""
     form, own = picture.forms[link], picture.bodies[link].own
     if len(form.hull) > 2:
@@ -175,9 +187,9 @@ def _beside(picture: Picture, link: str) -> complex:
     if abs(end - start) > 1:
         return own(form.middle + 3j * (end - start) / abs(end - start))
     slide = next((slide for slide in picture.scene.linkage.slides if slide.runner == link), None)
-    return own(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * BOX_SIDE)
+    return own(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * NUMBER_DISTANCE)
 
 
-def pair(z: complex) -> list[float]:
+def page_coordinates(z: complex) -> list[float]:
     """x and y with y down."""
     return [round(z.real, 2) + 0.0, round(-z.imag, 2) + 0.0]

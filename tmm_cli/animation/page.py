@@ -13,24 +13,24 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.animation.bodies import Body, Picture, labels, pair
+from tmm_cli.animation.bodies import MechanismPicture, MovingBody, body_labels, page_coordinates
 from tmm_cli.drawing.formats import svg_element
 from tmm_cli.drawing.paper import THIN_COLOUR, VECTOR_COLOURS, DrawingSheet, mark_corners, with_unit
 from tmm_cli.drawing.sheets import MotionPlanKind, QuantityPlot, balancing_plots, motion_plan_kinds, output_plots
 from tmm_cli.drawing.symbols import MechanismScene, fit_points, frame_pivots, points_to_scale
 from tmm_cli.language import ENGLISH, _, language, spelt
-from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.analysis import Results, results_at
 from tmm_cli.mechanics.forces import subscript
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Real, Vector, largest_magnitude, without_rounding
-from tmm_cli.mechanics.plans import in_letters
+from tmm_cli.mechanics.plans import with_subscripts
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.problem import ProblemError
 
-PLAN, ROOM = 100.0, 12.0  # units of a plan's longest side, of the room about it
-USUAL = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
+PLAN_SIDE, PLAN_MARGIN = 100.0, 12.0  # units of a plan's longest side, of the room about it
+SIZE_LIMIT = 1.5  # times what nearly all places have: beyond it (at dead positions) a plan is cut
 MOST_LETTERS = 4  # at one point of a plan
-LEAST = 1e-6  # of a plan: nearer points are one
+LEAST_DISTANCE = 1e-6  # of a plan: nearer points are one
 
 
 def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
     def index(places: Iterable[complex]) -> int:
         course = np.array(list(places))
         for number, other in enumerate(points):
-            if np.max(np.abs(other - course)) < LEAST * size:
+            if np.max(np.abs(other - course)) < LEAST_DISTANCE * size:
                 return number
         points.append(course)
         return len(points) - 1
@@ -64,33 +64,33 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
             }
     below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN_COLOUR)
     every = np.concatenate(points)
-    every = every[np.abs(every) <= USUAL * size]
-    scale = PLAN / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
+    every = every[np.abs(every) <= SIZE_LIMIT * size]
+    scale = PLAN_SIDE / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
     return {
         "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
             unit=spelt(sort.unit)
         ),
-        "points": [[rounded(z.real, 4), rounded(z.imag, 4)] for z in points],
+        "points": [[round_figures(z.real, 4), round_figures(z.imag, 4)] for z in points],
         "vectors": below,
-        "letters": [{"point": n, "text": _together(text)} for n, text in letters.items()],
+        "letters": [{"point": n, "text": _join_letters(text)} for n, text in letters.items()],
         "scale": float(f"{scale:.5g}"),
-        "view": [round(side, 1) for side in sides(every * scale, ROOM)],
+        "view": [round(side, 1) for side in field_sides(every * scale, PLAN_MARGIN)],
     }
 
 
-def sides(places: Vector, room: float) -> tuple[float, float, float, float]:
+def field_sides(places: Vector, room: float) -> tuple[float, float, float, float]:
     """Of a field with room about places, as a page has it: left, top (y down), width and height."""
     x, y = places.real, -places.imag
     return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
-def _together(letters: list[str]) -> str:
+def _join_letters(letters: list[str]) -> str:
     """Letters of one point, not more than have room."""
     few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
-    return ", ".join(map(in_letters, few))
+    return ", ".join(map(with_subscripts, few))
 
 
-def charts(results: Results, whole: Results) -> Iterable[QuantityPlot]:
+def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]:
     """Motion of the first outputs, and what balances the drivers."""
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
@@ -103,7 +103,7 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
     def values(si: Real) -> list[float | None]:
         clean = without_rounding(si, largest_magnitude(si))
-        return rounded(results.problem.units.from_si(clean, quantities.dimension), 5)
+        return round_figures(results.problem.units.from_si(clean, quantities.dimension), 5)
 
     return {
         "title": with_unit(quantities.words, quantities.dimension, results.problem.units),
@@ -123,7 +123,7 @@ def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
     return found
 
 
-def rounded(values: Any, digits: int) -> list[float | None]:
+def round_figures(values: Any, digits: int) -> list[float | None]:
     """To so many significant figures; none where there is no value."""
     array = np.asarray(values, float)
     return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in array.tolist()]
@@ -137,18 +137,18 @@ FRAMES = 180  # a turn
 SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 
 
-def frames(results: Results, count: int) -> Results:
+def results_in_frames(results: Results, count: int) -> Results:
     """The same results at about so many places a turn at which the mechanism moves. Raises ProblemError."""
     q = results.closely(count * (results.turns or 1) + 1)
-    moved = at_places(results, q)
+    moved = results_at(results, q)
     assert moved.motion is not None
     moves = moved.motion.moving
     if np.count_nonzero(moves) < 2 or np.ptp(q) == 0:
         raise ProblemError(_("nothing moves in what is asked for"), path=("positions",))
-    return moved if moves.all() else at_places(results, q[moves])
+    return moved if moves.all() else results_at(results, q[moves])
 
 
-def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any]:
+def page_data(results: Results, whole: Results, picture: MechanismPicture) -> dict[str, Any]:
     """Everything that the script needs; places in mm of a sheet with y down, angles in rad, plans in SI."""
     motion = picture.motion
     names = list(picture.bodies)
@@ -161,87 +161,89 @@ def content(results: Results, whole: Results, picture: Picture) -> dict[str, Any
         "driver": {
             "name": ("φ" if driver.kind == "turn" else "s") + subscript(driver.link),
             "unit": units.spelt(measure),
-            "values": rounded(units.from_si(motion.q, measure), 5),
+            "values": round_figures(units.from_si(motion.q, measure), 5),
             "turn": units.from_si(2 * np.pi, ANGLE) if driver.kind == "turn" else 0,
         },
         "bodies": [body_data(picture.bodies[name]) for name in names],
-        "labels": labels(picture, names),
+        "labels": body_labels(picture, names),
         "plans": [plan_data(motion, sort) for sort in motion_plan_kinds()],
-        "charts": [chart_data(results, one) for one in charts(results, whole)],
+        "charts": [chart_data(results, one) for one in chart_quantities(results, whole)],
         "marks": position_marks(results, motion),
     }
 
 
-def picture_of(whole: Results, motion: Motion) -> Picture:
+def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
     """The mechanism in the first frame on a sheet that has room for all of its ways."""
     linkage = whole.linkage
     scene = MechanismScene(linkage, whole.structure, motion.poses, 0)
     places = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
     sheet = DrawingSheet("", "", paper=PAPER)
     fit_points(sheet, points_to_scale(scene, places), 0.0, LARGEST)
-    return Picture.of(sheet, motion, scene)
+    return MechanismPicture.of(sheet, motion, scene)
 
 
-def view(picture: Picture) -> tuple[float, float, float, float]:
+def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]:
     """What of the sheet is ever drawn on: left, top (y down), width and height, mm."""
     local = [(own, np.array([z for mark in own.marks for z in mark_corners(mark)])) for own in picture.bodies.values()]
     times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
-    return sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
+    return field_sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
 
 
-def body_data(own: Body) -> dict[str, Any]:
+def body_data(own: MovingBody) -> dict[str, Any]:
     """Where a body is in each frame; one number of what does not change."""
     return {
-        "x": steady(own.place.real, 2),
-        "y": steady(-own.place.imag, 2),
-        "turn": steady(-own.angle, 4),
-        "stretch": steady(own.stretch, 4),
+        "x": rounded_frames(own.place.real, 2),
+        "y": rounded_frames(-own.place.imag, 2),
+        "turn": rounded_frames(-own.angle, 4),
+        "stretch": rounded_frames(own.stretch, 4),
     }
 
 
-def steady(values: Real, digits: int) -> Any:
+def rounded_frames(values: Real, digits: int) -> Any:
     """Rounded; one number where all are the same."""
     found = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
     return found[0] if min(found) == max(found) else found
 
 
-def paths(picture: Picture) -> Iterable[list[list[float]]]:
+def point_paths(picture: MechanismPicture) -> Iterable[list[list[float]]]:
     """Ways of all moving points."""
     for name in picture.scene.linkage.moving_points:
-        yield [pair(z) for z in (picture.sheet.origin + picture.motion.spot(name) / picture.sheet.mu).tolist()]
+        yield [
+            page_coordinates(z) for z in (picture.sheet.origin + picture.motion.spot(name) / picture.sheet.mu).tolist()
+        ]
 
 
-MOST = 300_000  # bytes of a page
-FEWEST = 36  # frames a turn
+MOST_BYTES = 300_000  # bytes of a page
+FEWEST_FRAMES = 36  # frames a turn
 TEXT = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})  # nothing in JSON ends a script
 
 
 def animation_page(results: Results) -> str:
     """The page of a mechanism, with fewer frames where it would be larger than it may be. Raises ProblemError."""
     count = FRAMES
-    made = _page(results, count)
-    while len(made.encode()) > MOST and count > FEWEST:
+    made = _build_page(results, count)
+    while len(made.encode()) > MOST_BYTES and count > FEWEST_FRAMES:
         count = count * 3 // 4
-        made = _page(results, count)
+        made = _build_page(results, count)
     return made
 
 
-def _page(results: Results, count: int) -> str:
-    whole = frames(results, count)
+def _build_page(results: Results, count: int) -> str:
+    whole = results_in_frames(results, count)
     assert whole.motion is not None
-    picture = picture_of(whole, whole.motion)
+    picture = draw_first_frame(whole, whole.motion)
     names = list(picture.bodies)
     bodies = "\n".join(
         f'<g data-body="{names.index(name)}">{"".join(svg_element(mark, 0.0) for mark in marks)}</g>'
         for name, marks in picture.layers()
     )
-    return filled(
+    return fill_page(
         "",
         title=escape(results.problem.title),
-        view=" ".join(f"{side:.1f}" for side in view(picture)),
-        paths="".join(_path(way) for way in paths(picture)),
+        view=" ".join(f"{side:.1f}" for side in picture_view(picture)),
+        paths="".join(_path_html(way) for way in point_paths(picture)),
         bodies=bodies,
-        data=data_text(content(results, whole, picture)),
+        data=data_text(page_data(results, whole, picture)),
         hint=escape(_("Space: play or stop. Left and right: step. Up and down: speed. Drag in a diagram to go there.")),
         back="" if results.turns else escape(_("The way back is played backwards: all is shown as on the way there.")),
         play=escape(_("play or stop")),
@@ -251,7 +253,7 @@ def _page(results: Results, count: int) -> str:
     )
 
 
-def filled(folder: str, **texts: str) -> str:
+def fill_page(folder: str, **texts: str) -> str:
     """The page in a folder here, with its style and its script, which alone its policy allows, and with these texts."""
     own = files("tmm_cli.animation")
     whole, style, script = (own.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js"))
@@ -264,7 +266,7 @@ def data_text(data: Any) -> str:
     return json.dumps(data, separators=(",", ":"), allow_nan=False).translate(TEXT)
 
 
-def _path(way: Iterable[Iterable[float]]) -> str:
+def _path_html(way: Iterable[Iterable[float]]) -> str:
     return f'<polyline points="{" ".join(",".join(f"{x:g}" for x in place) for place in way)}"/>'
 
 

@@ -1,55 +1,68 @@
 """Many linkages of one kind at once: a batch at places of the driver, or variants whose numbers come later."""
 
-from .family import Family as Family, families as families, named_strokes as named_strokes, together as together
+from .family import (
+    VariantFamily as VariantFamily,
+    build_family as build_family,
+    split_families as split_families,
+    working_and_idle_strokes as working_and_idle_strokes,
+)
 from .prepare import (
     CHECKS as CHECKS,
-    SURE as SURE,
+    CONVERGED as CONVERGED,
     Batch as Batch,
-    everything as everything,
     prepare_batch as prepare_batch,
-    reactions_of as reactions_of,
-    solved as solved,
+    read_all as read_all,
+    solve_forces as solve_forces,
+    solve_stages as solve_stages,
 )
 from .task import (
-    MOST as MOST,
+    MOST_VALUES as MOST_VALUES,
     NUMBER_WITH_UNIT as NUMBER_WITH_UNIT,
-    SAME as SAME,
-    Asked as Asked,
+    STEP_TOLERANCE as STEP_TOLERANCE,
     Blocks as Blocks,
     Chosen as Chosen,
+    Question as Question,
     Range as Range,
     Task as Task,
     Two as Two,
-    choice_values as choice_values,
-    read_choices as read_choices,
+    bounds_text as bounds_text,
+    parameter_values as parameter_values,
+    read_free_parameters as read_free_parameters,
     read_task as read_task,
-    two as two,
     with_vary as with_vary,
 )
-from .trace_program import CHUNK as CHUNK, Program as Program
-from .traced_arrays import DependsOnData as DependsOnData, TracedNumber as TracedNumber, record as record
-from .traced_variants import OneByOne as OneByOne, Taped as Taped, variants_of as variants_of
+from .trace_program import CHUNK as CHUNK, TraceProgram as TraceProgram
+from .traced_arrays import (
+    DependsOnData as DependsOnData,
+    TracedNumber as TracedNumber,
+    trace_function as trace_function,
+)
+from .traced_variants import (
+    SequentialVariants as SequentialVariants,
+    TracedVariants as TracedVariants,
+    make_variants as make_variants,
+)
 from .variant import (
     WANTED as WANTED,
+    DriverSamples as DriverSamples,
     Make as Make,
     NotAlikeError as NotAlikeError,
     NoTapeError as NoTapeError,
-    Places as Places,
     Variant as Variant,
-    alike as alike,
-    changed as changed,
-    each as each,
-    numbers as numbers,
-    sketch_of as sketch_of,
-    stands as stands,
-    stood_for as stood_for,
-    varying as varying,
+    compute_sketch as compute_sketch,
+    numeric_leaves as numeric_leaves,
+    placeholder_linkage as placeholder_linkage,
+    resolve_traced as resolve_traced,
+    same_assembly as same_assembly,
+    split_columns as split_columns,
+    varying_numbers as varying_numbers,
+    with_numbers as with_numbers,
 )
 from .workers import (
-    Way as Way,
-    begin as begin,
-    cluster as cluster,
-    here as here,
-    processes as processes,
+    JobRunner as JobRunner,
+    in_processes as in_processes,
+    initialize_worker as initialize_worker,
+    on_cluster as on_cluster,
     program_digest as program_digest,
+    run_here as run_here,
 )

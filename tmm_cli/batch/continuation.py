@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.trace_program import Program
-from tmm_cli.batch.traced_arrays import TracedArray, record
-from tmm_cli.batch.variant import each
+from tmm_cli.batch.trace_program import TraceProgram
+from tmm_cli.batch.traced_arrays import TracedArray, trace_function
+from tmm_cli.batch.variant import split_columns
 from tmm_cli.mechanics.groups import (
     BranchTrace,
     ClosedFormSolver,
@@ -27,13 +27,13 @@ from tmm_cli.mechanics.groups import (
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
-EACH = 1440  # places of a table in a turn of the driver, or in its whole range
-STEPS = 4  # of Newton's method from the trace's own nodes to places of a table
+TABLE_PIECES = 1440  # places of a table in a turn of the driver, or in its whole range
+TABLE_NEWTON_STEPS = 4  # of Newton's method from the trace's own nodes to places of a table
 
-Stands = Sequence[Any]
+Placeholders = Sequence[Any]
 
 
-def unrolled(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
+def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
     """The groups with those that are found by iteration as straight lines. Raises NotUnrolledError."""
     there = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
@@ -45,12 +45,14 @@ def unrolled(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSol
     )
 
 
-def wants(kernels: Sequence[GroupSolver]) -> int:
+def count_initial_guesses(kernels: Sequence[GroupSolver]) -> int:
     """How many starts the groups take."""
     return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear)
 
 
-def started(kernels: Sequence[GroupSolver], stands: Stands, steps: int | None = None) -> tuple[GroupSolver, ...]:
+def with_initial_guesses(
+    kernels: Sequence[GroupSolver], stands: Placeholders, steps: int | None = None
+) -> tuple[GroupSolver, ...]:
     """The groups with their starts, one after another; steps: of Newton's method, if not the usual ones."""
     found, at = [], 0
     for kernel in kernels:
@@ -62,7 +64,7 @@ def started(kernels: Sequence[GroupSolver], stands: Stands, steps: int | None = 
     return tuple(found)
 
 
-def sure(states: LinkStates) -> Any:
+def newton_converged(states: LinkStates) -> Any:
     """Where the steps on a tape have closed all groups that take such."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
@@ -71,7 +73,7 @@ def sure(states: LinkStates) -> Any:
     return found
 
 
-def wound(states: LinkStates) -> Any:
+def accumulated_angles_agree(states: LinkStates) -> Any:
     """Where turns of wheels are those of the tables that groups in closed form have."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
@@ -80,27 +82,27 @@ def wound(states: LinkStates) -> Any:
     return found
 
 
-def unknowns(states: LinkStates) -> Mapping[str, Any]:
+def free_unknowns(states: LinkStates) -> Mapping[str, Any]:
     """Free unknowns x and their rates v by the driver's place, numbered; and where they are `sure`."""
-    found: dict[str, Any] = {"sure": sure(states)}
+    found: dict[str, Any] = {"sure": newton_converged(states)}
     number = 0
     for kernel in states.kernels:
         if isinstance(kernel, UnrolledNewton) and not kernel.linear:
             links = kernel.group.links
-            places = [p for link in links for p in _parts(states.poses[link].x, states.poses[link].unwrapped)]
-            rates = [p for link in links for p in _parts(states.first[link].v, states.first[link].w)]
+            places = [p for link in links for p in _components(states.poses[link].x, states.poses[link].unwrapped)]
+            rates = [p for link in links for p in _components(states.first[link].v, states.first[link].w)]
             for x, v in zip(kernel.values(places), kernel.values(rates), strict=True):
                 found |= {f"x{number}": x, f"v{number}": v}
                 number += 1
     return found
 
 
-def _parts(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
+def _components(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
     return vector.real, vector.imag, angle
 
 
 @dataclass(frozen=True)
-class Table:
+class StartTable:
     """Unknowns of a group at places of the driver: polynomials (4, unknowns, pieces), of equal pieces from low on.
 
     gain: what they grow by in a cycle of that many pieces, where the way is closed; else None.
@@ -112,7 +114,7 @@ class Table:
     gain: Real | None
 
     @classmethod
-    def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> Table:
+    def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> StartTable:
         """From unknowns and rates (unknowns, places) at even places; nan where they are not known."""
         h = float(q[1] - q[0])
         a, b, one, other = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
@@ -139,48 +141,49 @@ class Table:
         return found
 
 
-class Starts:
+class InitialGuesses:
     """Starts of all groups of a linkage at any places of its driver."""
 
     def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
         """kernels: as straight lines."""
         own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         traces = [kernel.trace for kernel in own if kernel.trace is not None]
-        self.tables: list[Table] = []
+        self.tables: list[StartTable] = []
         if not own:
             return
-        closing = _closing(linkage, kernels)
+        closing = _closing_program(linkage, kernels)
         first = 0
         for kernel, trace in zip(own, traces, strict=True):
-            q = _places(trace, turns=linkage.driver.kind == "turn")
-            found = closing(q, *(x for k, t in zip(own, traces, strict=True) for x in _traced(k, t, q)))
+            q = _table_coordinates(trace, turns=linkage.driver.kind == "turn")
+            found = closing(q, *(x for k, t in zip(own, traces, strict=True) for x in _unknowns_from_trace(k, t, q)))
             numbers = range(first, first + len(kernel.free))
             lost = np.where(found["sure"], 0.0, np.nan)
             x, v = (np.stack([found[f"{part}{k}"] + lost for k in numbers]) for part in "xv")
-            self.tables.append(Table.of(q, x, v, closed=trace.closed))
+            self.tables.append(StartTable.of(q, x, v, closed=trace.closed))
             first += len(kernel.free)
 
     def __call__(self, q: Real) -> list[Real]:
         return [x for table in self.tables for x in table(q)]
 
 
-def _closing(linkage: Linkage, kernels: Sequence[GroupSolver]) -> Program:
+def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceProgram:
     """Unknowns by places of the driver and starts that may be far."""
 
     def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
-        return unknowns(link_states(linkage, started(kernels, stands, STEPS), q, 1, blank=False))  # type: ignore[arg-type]
+        guessed = with_initial_guesses(kernels, stands, TABLE_NEWTON_STEPS)
+        return free_unknowns(link_states(linkage, guessed, q, 1, blank=False))  # type: ignore[arg-type]
 
-    return record(stages, *[2] * (1 + wants(kernels)))
+    return trace_function(stages, *[2] * (1 + count_initial_guesses(kernels)))
 
 
-def _places(trace: BranchTrace, *, turns: bool) -> Real:
+def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
     """Even places along a trace."""
     low, high = float(trace.q[0]), float(trace.q[-1])
-    count = EACH * max(1, round((high - low) / (2 * np.pi))) if turns else EACH
+    count = TABLE_PIECES * max(1, round((high - low) / (2 * np.pi))) if turns else TABLE_PIECES
     return low + (high - low) * np.arange(count + 1) / count
 
 
-def _traced(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
+def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
     """Free unknowns near places of a trace."""
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
@@ -195,20 +198,20 @@ def _traced(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
 # and a variant whose quarter steps lead nowhere either has come to its end.
 
 
-CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
-CORRECTION_STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
-ROUNDS = 12  # at most from the first linkage to a variant
+LARGEST_CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
+CORRECTOR_STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
+MOST_ROUNDS = 12  # at most from the first linkage to a variant
 FIRST_SHARE = 1 / 16  # of that way, which tells where the rest leads; it is tried in one step then
-AT_NODE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
-SHORTEST = 0.25  # of a step
-EACH_TURN, LEAST_TURN = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
-STEPS_OF_VARIANTS = 2  # of Newton's method, from ways in such steps
+NODE_TOLERANCE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
+SHORTEST_STEP = 0.25  # of a step
+STEPS_PER_TURN, LEAST_TURNS = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
+VARIANT_NEWTON_STEPS = 2  # of Newton's method, from ways in such steps
 
-Varied = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each (variants, 1)
+LinkageMaker = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each (variants, 1)
 
 
 @dataclass(frozen=True)
-class Ways:
+class ContinuedPaths:
     """Unknowns of variants along their ways from `at` on: x and their rates v (unknowns, variants, 2 n + 1).
 
     steps: their lengths down and up (variants, 1), 0 where nothing was looked at. gain: by what unknowns grow in a
@@ -221,13 +224,13 @@ class Ways:
     steps: tuple[Real, Real]
     gain: Real | None
 
-    def take(self, rows: Real) -> Ways:
+    def take(self, rows: Real) -> ContinuedPaths:
         """Of some variants."""
         gain = None if self.gain is None else self.gain[:, rows]
         down, up = self.steps
         return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
 
-    def of(self, part: slice) -> Ways:
+    def of(self, part: slice) -> ContinuedPaths:
         """Of some unknowns."""
         return replace(self, x=self.x[part], v=self.v[part], gain=None if self.gain is None else self.gain[part])
 
@@ -242,7 +245,7 @@ class Ways:
             q = q - whole * (2 * n * up)
         step = np.where(q < 0, down, up)
         share = q / np.where(step > 0, step, 1.0)
-        k = np.clip(np.floor(share + AT_NODE), -n, n - 1)
+        k = np.clip(np.floor(share + NODE_TOLERANCE), -n, n - 1)
         t = share - k
         flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
         x, v = (part.reshape(unknowns, -1) for part in (self.x, self.v))
@@ -250,28 +253,30 @@ class Ways:
         # the step of the piece: the piece from -1 to 0 is one of the way down
         one, other = (step * v.take(f, axis=1) for f in (flat, flat + 1))
         found = a + t * (one + t * (3 * (b - a) - 2 * one - other + t * (2 * (a - b) + one + other)))
-        found = np.where(np.abs(t) <= AT_NODE, a, found)  # a node, whatever lies after it
+        found = np.where(np.abs(t) <= NODE_TOLERANCE, a, found)  # a node, whatever lies after it
         if self.gain is not None:
             found = np.where(whole == 0, found, found + whole * self.gain)
         return list(found)
 
 
-class Marches:
+class Continuation:
     """Of linkages of one kind; kernels: those of the first one, as straight lines; first: its numbers."""
 
     def __init__(
-        self, varied: Varied, first: Sequence[float], linkage: Linkage, kernels: Sequence[GroupSolver]
+        self, varied: LinkageMaker, first: Sequence[float], linkage: Linkage, kernels: Sequence[GroupSolver]
     ) -> None:
         self.first, self.at, many = np.array(first, dtype=float), linkage.sketch.at, len(first)
         self.own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         unknown = [(kernel, column) for kernel in self.own for column in kernel.free]
-        self.x = np.array([_first(kernel, column) for kernel, column in unknown])
+        self.x = np.array([_unknown_at_sketch(kernel, column) for kernel, column in unknown])
         self.scale = np.array([1.0 if column % 3 == 2 else float(kernel.size) for kernel, column in unknown])
         self.turning = np.array([column % 3 == 2 for _, column in unknown])
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
             other = varied(data[:many])
-            own = started([_rough(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], CORRECTION_STEPS)
+            own = with_initial_guesses(
+                [_with_loose_tolerance(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], CORRECTOR_STEPS
+            )
             states = link_states(other, own, data[many], 1, blank=False)  # type: ignore[arg-type]
             dets = {
                 f"det{k}": at.det
@@ -281,9 +286,9 @@ class Marches:
                     if isinstance(kernel, UnrolledNewton) and not kernel.linear
                 )
             }
-            return {**unknowns(states), **dets}
+            return {**free_unknowns(states), **dets}
 
-        self.program = record(stages, *[1] * (many + 1 + wants(kernels)))
+        self.program = trace_function(stages, *[1] * (many + 1 + count_initial_guesses(kernels)))
         _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
     def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
@@ -291,7 +296,7 @@ class Marches:
 
         signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
         """
-        data = [*each(numbers), q[:, None], *(part[:, None] for part in x)]
+        data = [*split_columns(numbers), q[:, None], *(part[:, None] for part in x)]
         found = self.program(*data)
         dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
         sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
@@ -303,7 +308,7 @@ class Marches:
     def _near(self, found: Real, start: Real) -> Real:
         """Which variants closed near to their start."""
         with np.errstate(invalid="ignore"):
-            near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < CORRECTION
+            near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
         return near
 
     def sketched(self, numbers: Real) -> Real:
@@ -315,7 +320,7 @@ class Marches:
         there = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
         gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
         slope = np.zeros_like(there[0])
-        for _ in range(ROUNDS):
+        for _ in range(MOST_ROUNDS):
             share = np.minimum(gone + stride, 1.0)
             start = there[0] + slope * (share - gone)
             between = self.first + share[:, None] * (numbers - self.first)
@@ -330,7 +335,7 @@ class Marches:
                 break
         return np.where(gone == 1, there, np.nan)
 
-    def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> Ways:
+    def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> ContinuedPaths:
         """Ways of variants over ranges (variants, 1), in so many steps up and down at most.
 
         closed: they come round again after a range, which is then laid about the sketch.
@@ -349,7 +354,7 @@ class Marches:
             with np.errstate(invalid="ignore"):
                 other = np.any(np.abs(gain - around) > SAME_STATE * self.scale[:, None, None], axis=(0, 2))
             x[:, other] = np.nan  # a cycle later it is assembled otherwise
-        return Ways(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
+        return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
     def _marched(self, numbers: Real, there: Real, steps: Real, n: int) -> Real:
         """Unknowns and rates (2, unknowns, variants, 2 n + 1) from those at the sketch on.
@@ -378,7 +383,7 @@ class Marches:
             whole = np.flatnonzero(good & (gone == np.floor(gone)))
             ways[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
             size = np.where(good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * size), size), size / 2)
-            going = going & (gone < n) & (size >= SHORTEST)
+            going = going & (gone < n) & (size >= SHORTEST_STEP)
         nowhere = np.full((*there.shape, n), np.nan)
         side = {k: ways[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
         down = side[0][..., :0:-1] if 0 in side else nowhere
@@ -386,12 +391,12 @@ class Marches:
         return np.concatenate([down, there[..., None], up], axis=-1)
 
 
-def _rough(kernel: GroupSolver) -> GroupSolver:
+def _with_loose_tolerance(kernel: GroupSolver) -> GroupSolver:
     """A group that is closed as well as starts need be."""
     return replace(kernel, enough=CONVERGED) if isinstance(kernel, UnrolledNewton) else kernel
 
 
-def _first(kernel: UnrolledNewton, column: int) -> float:
+def _unknown_at_sketch(kernel: UnrolledNewton, column: int) -> float:
     """A free unknown of a group at the sketch."""
     assert kernel.start is not None
     x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.continuation import CORRECTION, EACH_TURN, Marches, Varied, Ways
-from tmm_cli.batch.prepare import straight
+from tmm_cli.batch.continuation import LARGEST_CORRECTION, STEPS_PER_TURN, Continuation, ContinuedPaths, LinkageMaker
+from tmm_cli.batch.prepare import traceable_groups
 from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
-from tmm_cli.batch.variant import Make, NoTapeError, each, stands, stood_for
+from tmm_cli.batch.variant import Make, NoTapeError, placeholder_linkage, resolve_traced, split_columns
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
 from tmm_cli.mechanics.assembly import SKETCH_CLOSE, analyse_mobile_structure, assemble, sketched_angles
 from tmm_cli.mechanics.errors import LinkageError
@@ -45,17 +45,17 @@ from tmm_cli.mechanics.structure import Structure, output_link
 
 
 @dataclass(frozen=True)
-class Marched(NewtonSolver):
+class ContinuedGroup(NewtonSolver):
     """Such a group. lines: the same as straight lines; ways: of its free unknowns, nan where none was found."""
 
     lines: UnrolledNewton = field(kw_only=True)
-    ways: Ways = field(kw_only=True)
+    ways: ContinuedPaths = field(kw_only=True)
 
-    def rebind(self, linkage: Linkage) -> Marched:
+    def rebind(self, linkage: Linkage) -> ContinuedGroup:
         lines = self.lines.rebind(linkage)
         return replace(self, group=lines.group, size=lines.size, constraints=lines.constraints, lines=lines)
 
-    def take(self, rows: Real) -> Marched:
+    def take(self, rows: Real) -> ContinuedGroup:
         """Of some variants."""
         return replace(self, ways=self.ways.take(rows))
 
@@ -80,14 +80,14 @@ class Marched(NewtonSolver):
         }
         shown = sketched_angles(self, found.linkage, known, drives)
         with np.errstate(invalid="ignore"):
-            followed = np.all(np.abs(z - unit(start.unwrapped)) < CORRECTION, axis=(1, 2))
+            followed = np.all(np.abs(z - unit(start.unwrapped)) < LARGEST_CORRECTION, axis=(1, 2))
             meant = np.all(np.abs(z[:, :1] - (z[:1, :1] if shown is None else unit(shown))) < SKETCH_CLOSE, axis=(1, 2))
             whole: Real = followed & meant & np.all((at.det * at.det[0, 0] > 0) & (at.margin > self.near), axis=1)
         return whole
 
 
-def marched(
-    varied: Varied, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
+def continue_groups(
+    varied: LinkageMaker, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
 ) -> tuple[GroupSolver, ...]:
     """The groups of the first variant as those of all, whose numbers are rows of columns; still to be rebound.
 
@@ -96,18 +96,18 @@ def marched(
     traces = [kernel.trace for kernel in kernels if isinstance(kernel, NewtonSolver) and not kernel.by_angle]
     if not traces:
         return kernels
-    lines = straight(linkage, kernels)
+    lines = traceable_groups(linkage, kernels)
     if lines is None or any(trace is None or not trace.closed or trace.dead.size for trace in traces):
         raise NoTapeError
     half = np.full((len(columns), 1), np.pi)
-    ways = Marches(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, EACH_TURN, closed=True)
+    ways = Continuation(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, STEPS_PER_TURN, closed=True)
     found: list[GroupSolver] = []
     first = 0
     for kernel, line in zip(kernels, lines, strict=True):
         if isinstance(kernel, NewtonSolver) and isinstance(line, UnrolledNewton) and not line.linear:
             last = first + len(line.free)
             own = kernel.group, kernel.size, kernel.constraints, kernel.start, None, kernel.passive, kernel.order
-            found.append(Marched(*own, lines=line, ways=ways.of(slice(first, last))))
+            found.append(ContinuedGroup(*own, lines=line, ways=ways.of(slice(first, last))))
             first = last
         else:
             found.append(kernel)
@@ -125,7 +125,7 @@ SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one a
 
 
 @dataclass(frozen=True, eq=False)
-class Family:
+class VariantFamily:
     """Variants that are assembled as the first one is. Their numbers are scalars or arrays (variants, 1).
 
     q: places of the driver (variants, positions), rad or m. strokes: with arrays (variants, 1) in the place of numbers;
@@ -143,47 +143,47 @@ class Family:
     def __len__(self) -> int:
         return len(self.q)
 
-    def take(self, rows: Sequence[int] | Real) -> Family:
+    def take(self, rows: Sequence[int] | Real) -> VariantFamily:
         """Some of the variants, or some of them again and again."""
         rows = np.asarray(rows)
-        kernels = tuple(kernel.take(rows) if isinstance(kernel, Marched) else kernel for kernel in self.kernels)
-        new = replace(self, kernels=kernels).changed(rows_of(self.linkage, rows), self.q[rows])
-        return replace(new, strokes=rows_of(self.strokes, rows), sound=self.sound[rows])
+        kernels = tuple(kernel.take(rows) if isinstance(kernel, ContinuedGroup) else kernel for kernel in self.kernels)
+        new = replace(self, kernels=kernels).changed(take_rows(self.linkage, rows), self.q[rows])
+        return replace(new, strokes=take_rows(self.strokes, rows), sound=self.sound[rows])
 
-    def changed(self, linkage: Linkage, q: Real | None = None) -> Family:
+    def changed(self, linkage: Linkage, q: Real | None = None) -> VariantFamily:
         """The same assemblies and strokes with other numbers, at other places."""
         kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
         structure = self.structure.rebind(linkage)
         return replace(self, linkage=linkage, structure=structure, kernels=kernels, q=self.q if q is None else q)
 
 
-def rows_of(record: Any, rows: Real) -> Any:
+def take_rows(record: Any, rows: Real) -> Any:
     """A record with these rows of its arrays (variants, 1)."""
     return map_record(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
 
 
-def families(make: Make, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
+def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
     """Families of the variants whose numbers are the rows of columns (variants, n): which rows, and the family.
 
     A variant that no stage takes comes with its error instead. Raises what `make` raises.
     """
     rows = np.arange(len(columns))
-    every = together(make, columns) if len(columns) > 1 else None
+    every = build_family(make, columns) if len(columns) > 1 else None
     if every is not None and np.any(every.sound):
         yield rows[every.sound], every.take(rows[every.sound])
         rows = rows[~every.sound]
     for row in rows:
         try:
-            yield np.array([row]), _alone(make, columns[row])
+            yield np.array([row]), _single_family(make, columns[row])
         except LinkageError as error:
             yield np.array([row]), error
 
 
-def together(make: Make, columns: Real) -> Family | None:
+def build_family(make: Make, columns: Real) -> VariantFamily | None:
     """All at once, sound or not, assembled as the first one; None where that cannot be. Raises what `make` raises."""
     first = columns[0].tolist()
     try:
-        varied = make([TracedNumber(x, column) for x, column in zip(first, each(columns), strict=True)])
+        varied = make([TracedNumber(x, column) for x, column in zip(first, split_columns(columns), strict=True)])
         plain = make(first).linkage
         structure = analyse_mobile_structure(plain)
         kernels = assemble(plain, structure)
@@ -196,38 +196,40 @@ def together(make: Make, columns: Real) -> Family | None:
             return None
         if cycle_turns(plain, kernels) != 1:  # strokes are looked for in one turn
             return None
-        kernels = marched(lambda data: stood_for(make, first, data, plain.sketch), columns, plain, kernels)
+        kernels = continue_groups(
+            lambda data: placeholder_linkage(make, first, data, plain.sketch), columns, plain, kernels
+        )
     except (DependsOnData, NoTapeError, LinkageError):
         return None
-    linkage = replace(stands(varied.linkage), sketch=plain.sketch)
+    linkage = replace(resolve_traced(varied.linkage), sketch=plain.sketch)
     structure = structure.rebind(linkage)
     kernels = tuple(kernel.rebind(linkage) for kernel in kernels)
-    request = stands(varied.request)
+    request = resolve_traced(varied.request)
     strokes, sound = _all_strokes(linkage, kernels, len(columns))
     if linkage.stroke_links and strokes is None:
         return None
-    q = places_of(request, strokes, linkage.driver.sense, len(columns))
-    return None if q is None else Family(linkage, structure, kernels, request, q, strokes, sound)
+    q = position_coordinates(request, strokes, linkage.driver.sense, len(columns))
+    return None if q is None else VariantFamily(linkage, structure, kernels, request, q, strokes, sound)
 
 
-def _alone(make: Make, row: Real) -> Family:
+def _single_family(make: Make, row: Real) -> VariantFamily:
     """One variant, found as a file of its own. Raises LinkageError."""
     variant = make(row.tolist())
     structure = analyse_mobile_structure(variant.linkage)
     mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
     q = np.asarray(mechanism.asked)[None, :]
     sound = np.array([True])
-    return Family(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
+    return VariantFamily(variant.linkage, structure, mechanism.kernels, variant.request, q, mechanism.strokes, sound)
 
 
 def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int) -> tuple[Strokes | None, Real]:
     """Strokes of the main output of all variants, with those of further links on which loads depend; None where one of
     these has none. And which variants have one working and one idle stroke of each, and turn fully."""
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
-    main, sound = _strokes(linkage, kernels, count, link)
+    main, sound = _output_strokes(linkage, kernels, count, link)
     others = []
     for link in linkage.stroke_links:
-        strokes, have = _strokes(linkage, kernels, count, link)
+        strokes, have = _output_strokes(linkage, kernels, count, link)
         if main is None or strokes is None:
             return None, sound
         others.append(strokes)
@@ -235,7 +237,7 @@ def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int)
     return main and replace(main, others=tuple(others)), sound
 
 
-def _strokes(
+def _output_strokes(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int, link: str | None
 ) -> tuple[Strokes | None, Real]:
     """Strokes of one output of all variants, and which have one working and one idle stroke and turn fully."""
@@ -243,7 +245,7 @@ def _strokes(
     whole = link_states(linkage, kernels, q, 1)
     sound = np.all(whole.moving, axis=1)
     for kernel in kernels:
-        if isinstance(kernel, Marched):
+        if isinstance(kernel, ContinuedGroup):
             sound = sound & kernel.kept(whole)
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound
@@ -259,10 +261,10 @@ def _strokes(
     at = np.nonzero(turns_back)[1].reshape(count, 2)
     rows = np.arange(count)[:, None]
     ends = find_roots(curve.slope, q[rows, at], q[rows, at + 1])
-    return named_strokes(linkage, curve, ends, resisted_direction(linkage, link)), sound
+    return working_and_idle_strokes(linkage, curve, ends, resisted_direction(linkage, link)), sound
 
 
-def named_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
+def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
     """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
@@ -285,7 +287,7 @@ def named_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any
     return Strokes(curve.link, curve.kind, tuple(found), "")
 
 
-def places_of(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
+def position_coordinates(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
     """The positions of every variant, (variants, positions); None where they need strokes that are not there."""
     ones = np.ones((count, 1))
     if request.places:

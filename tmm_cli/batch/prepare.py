@@ -16,24 +16,24 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch.continuation import (
-    EACH_TURN,
-    STEPS_OF_VARIANTS,
-    Marches,
-    Starts,
-    Ways,
-    started,
-    sure,
-    unrolled,
-    wants,
-    wound,
+    STEPS_PER_TURN,
+    VARIANT_NEWTON_STEPS,
+    Continuation,
+    ContinuedPaths,
+    InitialGuesses,
+    accumulated_angles_agree,
+    count_initial_guesses,
+    newton_converged,
+    unroll_groups,
+    with_initial_guesses,
 )
-from tmm_cli.batch.trace_program import Outputs, Program
+from tmm_cli.batch.trace_program import TraceOutputs, TraceProgram
 from tmm_cli.batch.trace_terms import Term
-from tmm_cli.batch.traced_arrays import DependsOnData, record
-from tmm_cli.batch.variant import changed, parts, varying
-from tmm_cli.mechanics.analysis import values
+from tmm_cli.batch.traced_arrays import DependsOnData, trace_function
+from tmm_cli.batch.variant import split_real_columns, varying_numbers, with_numbers
+from tmm_cli.mechanics.analysis import leading_values
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
-from tmm_cli.mechanics.forces import Reactions, applied, react, solve_friction
+from tmm_cli.mechanics.forces import Reactions, collect_loads, solve_friction, solve_reactions
 from tmm_cli.mechanics.groups import (
     ClosedFormSolver,
     DriverMotion,
@@ -48,21 +48,24 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.mechanics.structure import Structure
 
-Wanted = Callable[[Motion, Reactions | None], Mapping[str, Any]]
+OutputReader = Callable[[Motion, Reactions | None], Mapping[str, Any]]
 CHECKS = ("placed", "moving", "margin")
-SURE, WOUND = "sure", "wound"  # where Newton's steps were enough on a tape, where wheels turn as its tables say
-TOLD = (*CHECKS, SURE, WOUND)
-TIME = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
+CONVERGED, ANGLES_AGREE = (
+    "sure",
+    "wound",
+)  # where Newton's steps were enough on a tape, where wheels turn as its tables say
+CHECK_OUTPUTS = (*CHECKS, CONVERGED, ANGLES_AGREE)
+TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
 
 
-def everything(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     """Motion of all named points, centres of mass and links, all reactions, what balances the drivers.
 
     Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's second
     link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
     """
     found: dict[str, Any] = {}
-    for quantity, name, value in values(motion, reactions, first=True):
+    for quantity, name, value in leading_values(motion, reactions, first=True):
         if quantity.dimension != ANGLE:  # of a link its points tell it
             found[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{quantity.name}"] = value
     return found
@@ -79,25 +82,25 @@ class Batch:
     linkages: tuple[Linkage, ...]
     structure: Structure
     kernels: tuple[GroupSolver, ...]
-    wanted: Wanted
+    wanted: OutputReader
     forces: bool
     strokes: Strokes | None
-    program: Program | None
-    checks: Program | None = None
+    program: TraceProgram | None
+    checks: TraceProgram | None = None
     columns: tuple[Real, ...] = ()
     starts: Callable[[Real], list[Real]] | None = None
     others: dict[int, tuple[GroupSolver, ...]] = field(
         default_factory=dict
     )  # groups of linkages that were looked at alone
 
-    def __call__(self, q: Real) -> Outputs | Mapping[str, Real]:
+    def __call__(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
         """What was wanted, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
 
         Results are (variants, positions), or (positions,) of one linkage. Where `sound` says no they mean nothing.
         """
         return self._one_by_one(q) if self.program is None else self._played(self.program, q)
 
-    def sound(self, q: Real) -> Outputs | Mapping[str, Real]:
+    def sound(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
         """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`.
 
         `margin` is the least distance of a group from a dead position, 1 at best: a result has lost about as many of
@@ -110,18 +113,18 @@ class Batch:
         if self.checks is None:
             return np.zeros(np.shape(q), dtype=bool)
         q = np.asarray(q, dtype=float)
-        found = self.checks.only(*({SURE} & set(self.checks.outputs)))(
+        found = self.checks.only(*({CONVERGED} & set(self.checks.outputs)))(
             *self.columns, q, *(self.starts(q) if self.starts else ())
         )
-        return found[SURE] if SURE in found else np.ones(found.several_shape, dtype=bool)
+        return found[CONVERGED] if CONVERGED in found else np.ones(found.several_shape, dtype=bool)
 
-    def _played(self, program: Program, q: Real) -> Outputs:
+    def _played(self, program: TraceProgram, q: Real) -> TraceOutputs:
         """What a program gives, and the rest of it by the ordinary stages."""
         q = np.asarray(q, dtype=float)
         found = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
-        if SURE not in found:
+        if CONVERGED not in found:
             return found
-        sure, found = np.reshape(found.part(SURE), found.several_shape), found.without(SURE)
+        sure, found = np.reshape(found.part(CONVERGED), found.several_shape), found.without(CONVERGED)
         for k in np.flatnonzero(~np.all(sure, axis=1)).tolist():
             found = found.put(k, ~sure[k], self._solved(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
         return found
@@ -131,8 +134,12 @@ class Batch:
         linkage = self.linkages[k]
         if k not in self.others:
             self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
-        found = solved(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
-        return {name: np.broadcast_to(value, np.shape(q)) for name, value in found.items() if name not in (SURE, WOUND)}
+        found = solve_stages(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
+        return {
+            name: np.broadcast_to(value, np.shape(q))
+            for name, value in found.items()
+            if name not in (CONVERGED, ANGLES_AGREE)
+        }
 
     def _one_by_one(self, q: Real) -> Mapping[str, Real]:
         found = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
@@ -143,7 +150,7 @@ class Batch:
 
 def prepare_batch(
     linkages: Sequence[Linkage] | Linkage,
-    wanted: Wanted = everything,
+    wanted: OutputReader = read_all,
     *,
     forces: bool = True,
     own_places: bool = False,
@@ -165,41 +172,41 @@ def prepare_batch(
     # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
     alone = Batch(linkages, structure, kernels, wanted, forces, strokes, None)
-    lines = None if apart or first.friction else straight(first, kernels)
+    lines = None if apart or first.friction else traceable_groups(first, kernels)
     if lines is None:
         return alone
-    columns, together = parts(varying(linkages))
+    columns, together = split_real_columns(varying_numbers(linkages))
     if len(linkages) > 1 and not columns:  # all the same
         columns = [np.zeros((len(linkages), 1))]
     many = len(columns)
-    steps = STEPS_OF_VARIANTS if many else None
+    steps = VARIANT_NEWTON_STEPS if many else None
 
     def varied(data: Sequence[Any]) -> Linkage:
-        return changed(first, together(*data)) if columns else first
+        return with_numbers(first, together(*data)) if columns else first
 
     def stages(*data: Any) -> Mapping[str, Any]:
         linkage = varied(data[:many])
         own = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
-        own = started(own, data[many + 1 :], steps)
-        return solved(linkage, structure, own, data[many], wanted, forces, strokes, blank=False)
+        own = with_initial_guesses(own, data[many + 1 :], steps)
+        return solve_stages(linkage, structure, own, data[many], wanted, forces, strokes, blank=False)
 
-    axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * wants(lines))
+    axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * count_initial_guesses(lines))
     try:
-        whole = record(stages, *axes, data=dict(enumerate(columns)))
+        whole = trace_function(stages, *axes, data=dict(enumerate(columns)))
     except DependsOnData:  # laws of cams
         return alone
     starts: Callable[[Real], list[Real]] | None = None
-    if wants(lines):
-        starts = ways_of(varied, columns, first, lines) if columns else Starts(first, lines)
-    own = (SURE,) if isinstance(whole.outputs[SURE][0], Term) else ()
+    if count_initial_guesses(lines):
+        starts = continue_linkages(varied, columns, first, lines) if columns else InitialGuesses(first, lines)
+    own = (CONVERGED,) if isinstance(whole.outputs[CONVERGED][0], Term) else ()
     checks = whole.only(*CHECKS, *own)
-    program = whole.only(*(name for name in whole.outputs if name not in TOLD), *own)
+    program = whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), *own)
     return replace(alone, program=program, checks=checks, columns=tuple(columns), starts=starts)
 
 
-def ways_of(
+def continue_linkages(
     varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[GroupSolver]
-) -> Ways:
+) -> ContinuedPaths:
     """Ways of all linkages as far as that of the first one goes."""
     numbers = np.hstack(list(columns))
     traces = [kernel.followed for kernel in lines if kernel.followed is not None]
@@ -207,26 +214,26 @@ def ways_of(
     turns = (high - low) / (2 * np.pi) if first.driver.kind == "turn" else 1.0
     closed = all(trace.closed for trace in traces)
     ones = np.ones((len(numbers), 1))
-    march = Marches(varied, numbers[0].tolist(), first, lines)
-    return march(numbers, low * ones, high * ones, int(np.ceil(EACH_TURN * turns)), closed=closed)
+    march = Continuation(varied, numbers[0].tolist(), first, lines)
+    return march(numbers, low * ones, high * ones, int(np.ceil(STEPS_PER_TURN * turns)), closed=closed)
 
 
-def straight(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:
+def traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:
     """The groups as a tape can hold them; None where it cannot."""
     if any(kernel.way is not None for kernel in kernels if isinstance(kernel, ClosedFormSolver)):
         return None
     try:
-        return unrolled(linkage, kernels)
+        return unroll_groups(linkage, kernels)
     except NotUnrolledError:
         return None
 
 
-def solved(
+def solve_stages(
     linkage: Linkage,
     structure: Structure,
     kernels: tuple[GroupSolver, ...],
     q: Any,
-    wanted: Wanted,
+    wanted: OutputReader,
     forces: bool,
     strokes: Strokes | None,
     *,
@@ -246,18 +253,18 @@ def solved(
         )
         for link, d in drives_at(linkage, q).items()
     }
-    motion = compute_motion(linkage, kernels, q, TIME, blank=blank, drives=drives)
-    reactions = reactions_of(motion, structure, strokes) if forces else None
+    motion = compute_motion(linkage, kernels, q, TIME_LAW, blank=blank, drives=drives)
+    reactions = solve_forces(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
     checks = {"placed": motion.placed, "moving": motion.moving, "margin": margin}
-    turns = wound(motion)
-    return {**wanted(motion, reactions), **checks, SURE: sure(motion) & turns, WOUND: turns}
+    turns = accumulated_angles_agree(motion)
+    return {**wanted(motion, reactions), **checks, CONVERGED: newton_converged(motion) & turns, ANGLES_AGREE: turns}
 
 
-def reactions_of(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
+def solve_forces(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
     """The force plan under all that acts, friction too."""
-    acting = applied(motion, strokes)
-    free = react(motion, structure, acting)
+    acting = collect_loads(motion, strokes)
+    free = solve_reactions(motion, structure, acting)
     if not motion.linkage.friction:
         return free
     return solve_friction(motion, structure, acting, free).reactions

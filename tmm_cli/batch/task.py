@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
 from tmm_cli.batch.variant import Variant
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Quantity, quantities
+from tmm_cli.mechanics.analysis import NamedQuantity, list_quantities
 from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER, Dimension
@@ -49,8 +49,8 @@ from tmm_cli.problem import (
     validate_shape,
 )
 
-MOST = 10_000  # values of a parameter
-SAME = 1e-9  # of a step: what is left over by rounding
+MOST_VALUES = 10_000  # values of a parameter
+STEP_TOLERANCE = 1e-9  # of a step: what is left over by rounding
 
 Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
@@ -62,7 +62,7 @@ class Chosen(Strict):
     to: Value | None = Field(default=None, description="which they do not go beyond")
     step: Value | None = Field(default=None, description="from one value to the next")
     among: list[Value] | None = Field(
-        default=None, min_length=1, max_length=MOST, description="the values themselves, in the place of steps"
+        default=None, min_length=1, max_length=MOST_VALUES, description="the values themselves, in the place of steps"
     )
 
     @model_validator(mode="after")
@@ -88,7 +88,7 @@ def _bounds_or_choices(found: Any) -> Any:
 Range = Annotated[Two | Chosen, BeforeValidator(_bounds_or_choices)]
 
 
-def two(low: Any, high: Any) -> str:
+def bounds_text(low: Any, high: Any) -> str:
     """Two bounds as they are told in a refusal."""
     return _("{low} and {high}").format(low=low, high=high)
 
@@ -96,7 +96,7 @@ def two(low: Any, high: Any) -> str:
 MOST_ANSWERS = 200
 
 
-def _listed(found: object) -> object:
+def _as_list(found: object) -> object:
     return [found] if isinstance(found, int | str) else found
 
 
@@ -104,7 +104,7 @@ class AnswerRule(Strict):
     """A quantity that is asked, at one position or several."""
 
     of: str = Field(max_length=40, description="v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k")
-    at: Annotated[list[int], BeforeValidator(_listed)] = Field(
+    at: Annotated[list[int], BeforeValidator(_as_list)] = Field(
         default_factory=list,
         max_length=120,
         description="positions, as the students count them; none for H, k, W, class",
@@ -139,18 +139,22 @@ class Blocks(Strict):
 
 
 SI = UnitSystem({"length": "m", "angle": "rad", "inertia": "kg*m^2"})
-KINEMATICS, FORCES, COMPUTED = 0.03, 0.05, 0.005  # shares of the largest value: drawn, drawn, computed
+DRAWN_KINEMATICS_TOLERANCE, DRAWN_FORCES_TOLERANCE, COMPUTED_TOLERANCE = (
+    0.03,
+    0.05,
+    0.005,
+)  # shares of the largest value: drawn, drawn, computed
 
 
 @dataclass(frozen=True)
-class Asked:
+class Question:
     """One answer that is asked: a quantity, at a position (from 0, as the product counts; None: of the whole).
 
     number: the position as the students count it. tolerance: share of the largest value in the cycle. drawn: measured
     off a drawing.
     """
 
-    quantity: Quantity
+    quantity: NamedQuantity
     position: int | None
     number: int | None
     points: float
@@ -210,11 +214,11 @@ class Task:
         return self.problem.units
 
     @cached_property
-    def quantities(self) -> dict[str, Quantity]:
+    def quantities(self) -> dict[str, NamedQuantity]:
         """All that could be asked, by name."""
         whole = self.problem.whole
         with translate_errors(whole):
-            return quantities(whole.linkage, analyse_mobile_structure(whole.linkage))
+            return list_quantities(whole.linkage, analyse_mobile_structure(whole.linkage))
 
     @property
     def positions(self) -> int:
@@ -223,7 +227,7 @@ class Task:
         return len(request.places) or request.count
 
     @cached_property
-    def asked(self) -> tuple[Asked, ...]:
+    def asked(self) -> tuple[Question, ...]:
         """What is asked, in the order of the file."""
         rules, last = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
@@ -234,16 +238,16 @@ class Task:
                 for asked in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
             )
 
-    def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Asked]:
+    def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Question]:
         quantity = self.quantities.get(rule.of)
         if quantity is None:
-            one_of_each = {_kind(name): name for name in reversed(self.quantities)}.values()
+            one_of_each = {_quantity_kind(name): name for name in reversed(self.quantities)}.values()
             some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
             raise unknown_name_error(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
-        usual = FORCES if quantity.order >= 4 else KINEMATICS
-        tolerance = usual if drawn else COMPUTED
+        usual = DRAWN_FORCES_TOLERANCE if quantity.order >= 4 else DRAWN_KINEMATICS_TOLERANCE
+        tolerance = usual if drawn else COMPUTED_TOLERANCE
         if rule.tolerance is not None:
             tolerance = values.fraction(rule.tolerance, (*path, "tolerance"))
         points = float(values.positive(rule.points, NUMBER, (*path, "points"), zero=True))
@@ -264,8 +268,8 @@ class Task:
                     allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
                 )
         if quantity.whole:
-            return [Asked(quantity, None, None, points, tolerance, drawn)]
-        return [Asked(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]
+            return [Question(quantity, None, None, points, tolerance, drawn)]
+        return [Question(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]
 
     def _parameters(
         self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
@@ -329,19 +333,19 @@ def read_task(tree: Tree) -> Task:
     return task
 
 
-def _kind(name: str) -> tuple[str, bool]:
+def _quantity_kind(name: str) -> tuple[str, bool]:
     """What names of the same quantity of other things have in common."""
     kind, _of, thing = name.partition(" of ")
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
 
-STEPS = 50  # at least so many between two bounds that were given without a step
-VARY = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(.+?)\s*)?")
+LEAST_STEPS = 50  # at least so many between two bounds that were given without a step
+VARY_OPTION = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(.+?)\s*)?")
 NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
 @dataclass(frozen=True)
-class Choice:
+class FreeParameter:
     """A parameter that is free. texts: its values; dimension: None for bare numbers."""
 
     name: str
@@ -356,7 +360,7 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
     given: dict[Path, str] = {}
     for text in vary:
         words = f"--vary {text}"
-        found = VARY.fullmatch(text)
+        found = VARY_OPTION.fullmatch(text)
         if found is None:
             raise ProblemError(
                 _("a name, two bounds and perhaps a step are wanted"), allowed="--vary OA=80..140:5", file=words
@@ -369,15 +373,15 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
     return replace(tree, data={**tree.data, "variants": ranges}, given={**tree.given, **given}) if given else tree
 
 
-def read_choices(task: Task) -> tuple[Choice, ...]:
+def read_free_parameters(task: Task) -> tuple[FreeParameter, ...]:
     """What the block `variants` frees. Raises ProblemError."""
     try:
-        return _choices(task, task.blocks)
+        return _free_parameters(task, task.blocks)
     except ProblemError as error:
         raise error.located(task.tree.file, task.tree) from None
 
 
-def _choices(task: Task, blocks: Blocks) -> tuple[Choice, ...]:
+def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
     ranges = blocks.variants
     if not ranges:
         raise ProblemError(
@@ -390,16 +394,16 @@ def _choices(task: Task, blocks: Blocks) -> tuple[Choice, ...]:
         with prefix_errors("variants", name):
             (dimension,) = task.dimensions((name,))
             values = (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
-            texts = _with_units([str(value) for value in values])
+            texts = _with_common_unit([str(value) for value in values])
             read = [task.value(text) for text in texts]
             said = next((v.dimension for v in read if v.dimension), dimension)
             if not (isinstance(own, Chosen) and own.among):
-                texts = _steps(task, values, [task.number(value, said) for value in read], said, texts[0])
-            found.append(Choice(name, tuple(dict.fromkeys(texts)), said))
+                texts = _step_texts(task, values, [task.number(value, said) for value in read], said, texts[0])
+            found.append(FreeParameter(name, tuple(dict.fromkeys(texts)), said))
     return tuple(found)
 
 
-def _with_units(texts: Sequence[str]) -> list[str]:
+def _with_common_unit(texts: Sequence[str]) -> list[str]:
     """Numbers without a unit get that of the first one that has any."""
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
     unit = next((part[2] for part in parts if part and part[2]), "")
@@ -408,21 +412,21 @@ def _with_units(texts: Sequence[str]) -> list[str]:
     ]
 
 
-def _steps(
+def _step_texts(
     task: Task, values: Sequence[Any], sizes: Sequence[float], dimension: Dimension | None, first: str
 ) -> list[str]:
     """From low to high, in the unit in which the first was written."""
     low, high = sizes[:2]
     if not low < high:
-        raise ProblemError(_("the lower bound comes first"), found=two(*values[:2]), allowed=_("[low, high]"))
+        raise ProblemError(_("the lower bound comes first"), found=bounds_text(*values[:2]), allowed=_("[low, high]"))
     written = NUMBER_WITH_UNIT.fullmatch(first)
     unit = written[2] if written else task.units.symbol(dimension) if dimension else ""
     scale = task.number(task.value(f"1 {unit}"), dimension)
-    step = sizes[2] if len(sizes) > 2 else 10 ** math.floor(math.log10((high - low) / scale / STEPS)) * scale
-    count = (high - low) / step + SAME if step > 0 else math.inf
-    if not 1 <= count < MOST:
+    step = sizes[2] if len(sizes) > 2 else 10 ** math.floor(math.log10((high - low) / scale / LEAST_STEPS)) * scale
+    count = (high - low) / step + STEP_TOLERANCE if step > 0 else math.inf
+    if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1),
+            _("1 to {most} steps must lie between the bounds").format(most=MOST_VALUES - 1),
             path=("step",),
             found=quote(values[2]),
             allowed=_("another step; or bounds without steps, [low, high]"),
@@ -430,6 +434,6 @@ def _steps(
     return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 
 
-def choice_values(task: Task, choice: Choice) -> Real:
+def parameter_values(task: Task, choice: FreeParameter) -> Real:
     """The values of a choice: in SI, bare where it has no dimension."""
     return np.array([task.number(task.value(text), choice.dimension) for text in choice.texts])

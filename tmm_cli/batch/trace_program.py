@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.trace_terms import ONE_BY_ONE, Term, axes_of
+from tmm_cli.batch.trace_terms import UFUNCS, Term, axes_of
 
 Array = np.ndarray[Any, Any]
 
 
-class Outputs(Mapping[str, Array]):
+class TraceOutputs(Mapping[str, Array]):
     """Results by name, (variants, positions), or (positions,) where no data are over variants.
 
     Real and imaginary parts lie in planes of their own, `part` gives one of them; an array of complex numbers is put
@@ -45,17 +45,17 @@ class Outputs(Mapping[str, Array]):
             found = np.broadcast_to(found, self.shape)
         return (found.T if self.turned else found) if self.several else found.reshape(-1)
 
-    def without(self, name: str) -> Outputs:
+    def without(self, name: str) -> TraceOutputs:
         """All but one."""
         names = {one: parts for one, parts in self.names.items() if one != name}
-        return Outputs(names, self.planes, self.turned, self.several, self.shape)
+        return TraceOutputs(names, self.planes, self.turned, self.several, self.shape)
 
     @property
     def several_shape(self) -> tuple[int, int]:
         """Variants and positions."""
         return self.shape[::-1] if self.turned else self.shape
 
-    def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> Outputs:
+    def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
         """With other values of a variant at the positions of a mask; there are as many as it has, in their order."""
         planes = dict(self.planes)
         for name, parts in self.names.items():
@@ -66,7 +66,7 @@ class Outputs(Mapping[str, Array]):
                         plane = planes[term.number] = np.broadcast_to(plane, self.shape).copy()
                     own = plane[:, variant] if self.turned else plane[variant]
                     own[where] = values[name].imag if imaginary else values[name].real
-        return Outputs(self.names, planes, self.turned, self.several, self.shape)
+        return TraceOutputs(self.names, planes, self.turned, self.several, self.shape)
 
     def __getitem__(self, name: str) -> Array:
         if self.names[name][1] is None:
@@ -87,14 +87,14 @@ CHUNK = 9000  # numbers in a register: shorter ones cost more calls, longer ones
 
 
 @dataclass(frozen=True)
-class Program:
+class TraceProgram:
     """inputs: axes of each input (bit 1: variants, bit 2: positions); outputs: by name, real and imaginary terms."""
 
     terms: tuple[Term, ...]
     inputs: tuple[int, ...]
     outputs: Mapping[str, tuple[Any, Any]]
 
-    def only(self, *names: str) -> Program:
+    def only(self, *names: str) -> TraceProgram:
         """The program of some of its outputs alone."""
         return replace(self, outputs={name: self.outputs[name] for name in names})
 
@@ -104,10 +104,10 @@ class Program:
         return self._code.operations
 
     @cached_property
-    def _code(self) -> _Code:
-        return _Code(self)
+    def _code(self) -> _CompiledProgram:
+        return _CompiledProgram(self)
 
-    def __call__(self, *data: Any) -> Outputs:
+    def __call__(self, *data: Any) -> TraceOutputs:
         """Outputs for data of shapes (variants, 1), (positions,) or (variants, positions), as the inputs' axes say."""
         columns = [np.asarray(d, dtype=float) for d in data]
         variants = positions = 1
@@ -119,11 +119,11 @@ class Program:
         several = any(axes & 1 for axes in self.inputs)
         turned = positions < variants  # the longer axis last
         shape = (positions, variants) if turned else (variants, positions)
-        laid = [_laid(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
-        return Outputs(self.outputs, self._code.run(laid, shape), turned, several, shape)
+        laid = [_laid_out(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
+        return TraceOutputs(self.outputs, self._code.run(laid, shape), turned, several, shape)
 
 
-def _laid(value: Array, axes: int, turned: bool) -> Array:
+def _laid_out(value: Array, axes: int, turned: bool) -> Array:
     """Data with variants and positions on the axes of the registers."""
     if axes == 3:
         return np.ascontiguousarray(value.T if turned else value)
@@ -131,14 +131,14 @@ def _laid(value: Array, axes: int, turned: bool) -> Array:
     return value.reshape((1, -1) if last else (-1, 1))
 
 
-class _Code:
+class _CompiledProgram:
     """A program's two parts: what is the same in all positions (or all variants), once, and the rest chunk by chunk.
 
     The second part is a generated function: a call of NumPy a line, on its inputs i, outputs o and registers r.
     """
 
-    def __init__(self, program: Program) -> None:
-        used = _used(program)
+    def __init__(self, program: TraceProgram) -> None:
+        used = _needed_terms(program)
         self.everywhere = 0
         for axes in program.inputs:
             self.everywhere |= axes
@@ -151,10 +151,10 @@ class _Code:
         ordered = sorted(slots.values(), key=lambda t: t.truth)  # truths last
         self.slots = {t.number: k for k, t in enumerate(ordered)}
         self.truths = sum(t.truth for t in ordered)
-        writer = _Writer(full, self.slots)
+        writer = _ProgramWriter(full, self.slots)
         self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
-        names: dict[str, Any] = {f"f_{name}": function for name, function in ONE_BY_ONE.items()}
-        names |= {"copy": np.copyto, "where": np.where, "read": _read, "call": _call} | writer.constants
+        names: dict[str, Any] = {f"f_{name}": function for name, function in UFUNCS.items()}
+        names |= {"copy": np.copyto, "where": np.where, "read": _interpolate, "call": _call} | writer.constants
         exec(compile(writer.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
@@ -175,7 +175,7 @@ class _Code:
         with np.errstate(all="ignore"):
             known = {number: data[k] for number, k in self.inputs.items()}
             for term in self.before:
-                known[term.number] = _worked_out(term, known)
+                known[term.number] = _evaluate(term, known)
             own = [known[number] for number in self.outer]
             floats, truths = len(self.slots) - self.truths, self.truths
             rows, columns = shape
@@ -190,23 +190,23 @@ class _Code:
                     for left in range(0, columns, wide):
                         here = (slice(top, top + high), slice(left, left + wide))
                         size = (min(high, rows - top), min(wide, columns - left))
-                        parts = [_part(d, here) for d in own]
+                        parts = [_chunk_of(d, here) for d in own]
                         self.function(*parts, *[plane[here] for plane in found], *self.registers(size))
         return dict(zip(self.slots, found, strict=True)) | {n: known[n] for n in self.small}
 
 
-def _part(data: Array, here: tuple[slice, slice]) -> Array:
+def _chunk_of(data: Array, here: tuple[slice, slice]) -> Array:
     """A chunk of data, where it has that axis."""
     return data[here[0] if data.shape[0] > 1 else slice(None), here[1] if data.shape[1] > 1 else slice(None)]
 
 
-def _worked_out(term: Term, known: Mapping[int, Array]) -> Array:
+def _evaluate(term: Term, known: Mapping[int, Array]) -> Array:
     args = [known[a.number] if isinstance(a, Term) else a for a in term.args]
     if term.op == "where":
         return np.where(*args)
     if term.op == "table":
         return np.asarray(np.interp(args[0], *args[1]))
-    (called,), given = (args[0], args[1:]) if term.op == "call" else ((ONE_BY_ONE[term.op],), args)
+    (called,), given = (args[0], args[1:]) if term.op == "call" else ((UFUNCS[term.op],), args)
     found: Array = called(*given)
     return found
 
@@ -216,11 +216,11 @@ def _call(function: tuple[Any], *operands: Any) -> None:
     out[...] = function[0](*given)
 
 
-def _read(x: Array, table: tuple[Any, Any], out: Array) -> None:
+def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
     out[...] = np.interp(x, *table)
 
 
-def _used(program: Program) -> tuple[Term, ...]:
+def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
     """Terms that some output needs, in order."""
     wanted: set[int] = set()
     left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
@@ -232,7 +232,7 @@ def _used(program: Program) -> tuple[Term, ...]:
     return tuple(t for t in program.terms if t.number in wanted)
 
 
-class _Writer:
+class _ProgramWriter:
     """Writes the source of terms one after another; a register is free again after its last use.
 
     slots: which terms are outputs, and where. Results of outputs are written where they are wanted.

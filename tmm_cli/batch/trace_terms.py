@@ -16,7 +16,7 @@ import numpy as np
 
 Number = Any  # float, bool, or a NumPy scalar of any precision
 
-ONE_BY_ONE: dict[str, Any] = {
+UFUNCS: dict[str, Any] = {
     "sqrt": np.sqrt,
     "cos": np.cos,
     "sin": np.sin,
@@ -47,8 +47,18 @@ ONE_BY_ONE: dict[str, Any] = {
     "remainder": np.remainder,
     "rint": np.rint,
 }
-SWAPPED = {"add", "multiply", "minimum", "maximum", "bitwise_and", "bitwise_or", "logical_and", "logical_or", "equal"}
-TRUTHS = {
+COMMUTATIVE = {
+    "add",
+    "multiply",
+    "minimum",
+    "maximum",
+    "bitwise_and",
+    "bitwise_or",
+    "logical_and",
+    "logical_or",
+    "equal",
+}
+BOOLEAN_OPERATIONS = {
     "isfinite",
     "less",
     "less_equal",
@@ -84,7 +94,7 @@ class Term:
 
 
 @dataclass(repr=False)
-class Tape:
+class Trace:
     """All terms in the order in which they were written.
 
     data: of inputs, where they are known already; what is true of all of them needs not be asked for each.
@@ -102,7 +112,7 @@ class Tape:
         if found is None:
             for arg in args:
                 axes |= arg.axes if isinstance(arg, Term) else 0
-            found = Term(len(self.terms), op, args, axes, truth or op in TRUTHS)
+            found = Term(len(self.terms), op, args, axes, truth or op in BOOLEAN_OPERATIONS)
             self.terms.append(found)
             self.written[key] = found
         return found
@@ -110,13 +120,13 @@ class Tape:
     def apply(self, op: str, *args: Any) -> Any:
         """An operation on terms and numbers: a number where it can be worked out, else a term."""
         if not any(isinstance(a, Term) for a in args):
-            return ONE_BY_ONE[op](*args)[()]
-        simple: Any = SIMPLER.get(op)
+            return UFUNCS[op](*args)[()]
+        simple: Any = SIMPLIFICATIONS.get(op)
         if simple is not None:
             found = simple(self, *args)
             if found is not None:
                 return found
-        if op in SWAPPED:
+        if op in COMMUTATIVE:
             args = tuple(sorted(args, key=lambda a: (0, a.number) if isinstance(a, Term) else (1, 0)))
         return self.term(op, *args)
 
@@ -130,7 +140,7 @@ class Tape:
                 found = None
             else:
                 with np.errstate(all="ignore"):
-                    found = np.where(*args) if term.op == "where" else ONE_BY_ONE[term.op](*args)
+                    found = np.where(*args) if term.op == "where" else UFUNCS[term.op](*args)
             self.known[term.number] = found
         return self.known[term.number]
 
@@ -160,38 +170,38 @@ def is_number(value: Any, number: float) -> bool:
     return not isinstance(value, Term) and bool(value == number)
 
 
-def negated(value: Any) -> Any:
+def negated_operand(value: Any) -> Any:
     """What an operand is the negative of, if it is one."""
     return value.args[0] if isinstance(value, Term) and value.op == "negative" else None
 
 
-def _add(tape: Tape, a: Any, b: Any) -> Any:
+def _add(tape: Trace, a: Any, b: Any) -> Any:
     if is_number(a, 0):
         return b
     if is_number(b, 0):
         return a
-    if negated(b) is not None:
-        return tape.apply("subtract", a, negated(b))
-    if negated(a) is not None:
-        return tape.apply("subtract", b, negated(a))
+    if negated_operand(b) is not None:
+        return tape.apply("subtract", a, negated_operand(b))
+    if negated_operand(a) is not None:
+        return tape.apply("subtract", b, negated_operand(a))
     return None
 
 
-def _subtract(tape: Tape, a: Any, b: Any) -> Any:
+def _subtract(tape: Trace, a: Any, b: Any) -> Any:
     if is_number(b, 0):
         return a
     if is_number(a, 0):
         return tape.apply("negative", b)
     if a is b:
         return 0.0
-    if negated(b) is not None:
-        return tape.apply("add", a, negated(b))
-    if negated(a) is not None:
-        return tape.apply("negative", tape.apply("add", negated(a), b))
+    if negated_operand(b) is not None:
+        return tape.apply("add", a, negated_operand(b))
+    if negated_operand(a) is not None:
+        return tape.apply("negative", tape.apply("add", negated_operand(a), b))
     return None
 
 
-def _multiply(tape: Tape, a: Any, b: Any) -> Any:
+def _multiply(tape: Trace, a: Any, b: Any) -> Any:
     for one, other in ((a, b), (b, a)):
         if is_number(one, 0):
             return 0.0
@@ -199,14 +209,14 @@ def _multiply(tape: Tape, a: Any, b: Any) -> Any:
             return other
         if is_number(one, -1):
             return tape.apply("negative", other)
-        if negated(one) is not None:
-            return tape.apply("negative", tape.apply("multiply", negated(one), other))
+        if negated_operand(one) is not None:
+            return tape.apply("negative", tape.apply("multiply", negated_operand(one), other))
         if not isinstance(one, Term) and one < 0:
             return tape.apply("negative", tape.apply("multiply", -one, other))
-    return _gathered(tape, a, b)
+    return _group_factors(tape, a, b)
 
 
-def _gathered(tape: Tape, a: Any, b: Any) -> Any:
+def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
     """Factors that are the same everywhere, or in all positions, are multiplied among themselves."""
     for one, other in ((a, b), (b, a)):
         if isinstance(one, Term) and isinstance(other, Term) and one.op == "divide" and one.args[1] is other:
@@ -221,11 +231,11 @@ def _gathered(tape: Tape, a: Any, b: Any) -> Any:
     return None
 
 
-def _sqrt(tape: Tape, a: Any) -> Any:
+def _sqrt(tape: Trace, a: Any) -> Any:
     return tape.apply("absolute", a.args[0]) if a.op == "multiply" and a.args[0] is a.args[1] else None
 
 
-def _divide(tape: Tape, a: Any, b: Any) -> Any:
+def _divide(tape: Trace, a: Any, b: Any) -> Any:
     if is_number(a, 0):
         return 0.0
     if is_number(b, 1):
@@ -233,12 +243,12 @@ def _divide(tape: Tape, a: Any, b: Any) -> Any:
     if isinstance(b, Term) and b.op == "multiply" and a in b.args:  # x / (x y)
         return tape.apply("divide", 1.0, b.args[1] if b.args[0] is a else b.args[0])
     for k, part in enumerate((a, b)):
-        if negated(part) is not None:
+        if negated_operand(part) is not None:
             return tape.apply("negative", tape.apply("divide", *((part.args[0], b) if k == 0 else (a, part.args[0]))))
     return None
 
 
-def _negative(tape: Tape, a: Any) -> Any:
+def _negative(tape: Trace, a: Any) -> Any:
     if a.op == "negative":
         return a.args[0]
     if a.op == "subtract":
@@ -246,10 +256,10 @@ def _negative(tape: Tape, a: Any) -> Any:
     return None
 
 
-def _joined(settles: bool) -> Callable[[Tape, Any, Any], Any]:
+def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
     """Two truths, where one that is known may settle it: False an `and`, True an `or`."""
 
-    def joined(tape: Tape, a: Any, b: Any) -> Any:
+    def joined(tape: Trace, a: Any, b: Any) -> Any:
         for one, other in ((a, b), (b, a)):
             if not isinstance(one, Term):
                 return settles if bool(one) == settles else other
@@ -258,11 +268,11 @@ def _joined(settles: bool) -> Callable[[Tape, Any, Any], Any]:
     return joined
 
 
-def _absolute(tape: Tape, a: Any) -> Any:
+def _absolute(tape: Trace, a: Any) -> Any:
     return tape.apply("absolute", a.args[0]) if a.op == "negative" else a if a.op in ("absolute", "sqrt") else None
 
 
-SIMPLER = {
+SIMPLIFICATIONS = {
     "add": _add,
     "subtract": _subtract,
     "multiply": _multiply,
@@ -270,8 +280,8 @@ SIMPLER = {
     "negative": _negative,
     "absolute": _absolute,
     "sqrt": _sqrt,
-    "bitwise_and": _joined(False),
-    "logical_and": _joined(False),
-    "bitwise_or": _joined(True),
-    "logical_or": _joined(True),
+    "bitwise_and": _simplify_logic(False),
+    "logical_and": _simplify_logic(False),
+    "bitwise_or": _simplify_logic(True),
+    "logical_or": _simplify_logic(True),
 }

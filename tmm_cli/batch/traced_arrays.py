@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from tmm_cli.batch.trace_program import Program
-from tmm_cli.batch.trace_terms import ONE_BY_ONE, Tape, Term
+from tmm_cli.batch.trace_program import TraceProgram
+from tmm_cli.batch.trace_terms import UFUNCS, Term, Trace
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
@@ -25,7 +25,7 @@ class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of so
 class TracedArray(NDArrayOperatorsMixin):
     """An array of numbers to come. re and im: terms or numbers; im is None for real numbers and truths."""
 
-    tape: Tape
+    tape: Trace
     re: Any
     im: Any = None
 
@@ -83,7 +83,7 @@ class TracedArray(NDArrayOperatorsMixin):
             return TracedArray(self.tape, *found(self.tape, *parts))
         if ufunc.__name__ == "conjugate":
             return inputs[0]
-        if ufunc.__name__ not in ONE_BY_ONE or any(im is not None for _, im in parts):
+        if ufunc.__name__ not in UFUNCS or any(im is not None for _, im in parts):
             raise DependsOnData(f"{ufunc.__name__} cannot be written on a tape")
         return TracedArray(self.tape, self.tape.apply(ufunc.__name__, *(re for re, _ in parts)))
 
@@ -130,14 +130,14 @@ def _im(part: tuple[Any, Any]) -> Any:
     return 0.0 if part[1] is None else part[1]
 
 
-Part = tuple[Any, Any]
+ComplexParts = tuple[Any, Any]
 
 
-def _sum(op: str) -> Callable[[Tape, Part, Part], Part]:
+def _componentwise(op: str) -> Callable[[Trace, ComplexParts, ComplexParts], ComplexParts]:
     return lambda tape, a, b: (tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
 
 
-def _product(tape: Tape, a: Part, b: Part) -> Part:
+def _product(tape: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
     def times(x: Any, y: Any) -> Any:
         return tape.apply("multiply", x, y)
 
@@ -150,7 +150,7 @@ def _product(tape: Tape, a: Part, b: Part) -> Part:
     )
 
 
-def _quotient(tape: Tape, a: Part, b: Part) -> Part:
+def _quotient(tape: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
     if b[1] is None:
         return tape.apply("divide", a[0], b[0]), tape.apply("divide", a[1], b[0])
     square = _square(tape, b)
@@ -158,25 +158,25 @@ def _quotient(tape: Tape, a: Part, b: Part) -> Part:
     return tape.apply("divide", re, square), tape.apply("divide", im, square)
 
 
-def _square(tape: Tape, a: Part) -> Any:
+def _square(tape: Trace, a: ComplexParts) -> Any:
     return tape.apply("add", *(tape.apply("multiply", x, x) for x in a))
 
 
-def _both(tape: Tape, op: str, joined: str, a: Part, b: Part) -> Any:
+def _compare_parts(tape: Trace, op: str, joined: str, a: ComplexParts, b: ComplexParts) -> Any:
     return tape.apply(joined, tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
 
 
-COMPLEX: dict[str, Callable[..., Part]] = {
-    "add": _sum("add"),
-    "subtract": _sum("subtract"),
+COMPLEX: dict[str, Callable[..., ComplexParts]] = {
+    "add": _componentwise("add"),
+    "subtract": _componentwise("subtract"),
     "multiply": _product,
     "divide": _quotient,
     "negative": lambda tape, a: (tape.apply("negative", a[0]), tape.apply("negative", a[1])),
     "positive": lambda tape, a: a,
     "conjugate": lambda tape, a: (a[0], tape.apply("negative", a[1])),
     "absolute": lambda tape, a: (tape.apply("sqrt", _square(tape, a)), None),
-    "equal": lambda tape, a, b: (_both(tape, "equal", "bitwise_and", a, b), None),
-    "not_equal": lambda tape, a, b: (_both(tape, "not_equal", "bitwise_or", a, b), None),
+    "equal": lambda tape, a, b: (_compare_parts(tape, "equal", "bitwise_and", a, b), None),
+    "not_equal": lambda tape, a, b: (_compare_parts(tape, "not_equal", "bitwise_or", a, b), None),
     "isfinite": lambda tape, a: (
         tape.apply("bitwise_and", tape.apply("isfinite", a[0]), tape.apply("isfinite", a[1])),
         None,
@@ -196,14 +196,16 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
 }
 
 
-def record(function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None) -> Program:
+def trace_function(
+    function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None
+) -> TraceProgram:
     """Run a function on stand-ins for real arrays; what it gives by name are the outputs of the program.
 
     axes: on what each argument depends: 1 on the variant, 2 on the position, 3 on both. data: of some arguments, by
     their number, if the program is for these alone. Raises DependsOnData where the code takes a branch by numbers that
     differ.
     """
-    tape = Tape(dict(data or {}))
+    tape = Trace(dict(data or {}))
     stands = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
     outputs = {}
     for name, value in function(*stands).items():
@@ -212,7 +214,7 @@ def record(function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping
         else:
             one = np.ravel(value)[0]
             outputs[name] = (one.real, one.imag) if np.iscomplexobj(one) else (one, None)
-    return Program(tuple(tape.terms), axes, outputs)
+    return TraceProgram(tuple(tape.terms), axes, outputs)
 
 
 # Numbers that vary from linkage to linkage, for code that builds one: they branch like numbers, and are written down.
@@ -267,9 +269,9 @@ class TracedNumber(NDArrayOperatorsMixin):
         otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)
         if isinstance(value, bool | np.bool_):
             if otherwise is not None:
-                otherwise.append(ufunc(*(_stand(x) for x in inputs)) != bool(value))
+                otherwise.append(ufunc(*(_placeholder(x) for x in inputs)) != bool(value))
             return bool(value)
-        return TracedNumber(value, WRITTEN.get(ufunc, ufunc)(*(_stand(x) for x in inputs)), otherwise)
+        return TracedNumber(value, TRACEABLE_FORMS.get(ufunc, ufunc)(*(_placeholder(x) for x in inputs)), otherwise)
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         if function is not np.angle:
@@ -281,7 +283,7 @@ def _value(x: Any) -> Any:
     return x.value if isinstance(x, TracedNumber) else x
 
 
-def _stand(x: Any) -> Any:
+def _placeholder(x: Any) -> Any:
     return x.stand if isinstance(x, TracedNumber) else x
 
 
@@ -297,7 +299,7 @@ def _power(base: Any, exponent: Any) -> Any:
     return 1 / found if exponent < 0 else found
 
 
-WRITTEN = {
+TRACEABLE_FORMS = {
     np.power: _power,
     np.tan: lambda x: np.sin(x) / np.cos(x),
     np.arcsin: lambda x: np.arctan2(x, np.sqrt(1 - x * x)),

@@ -13,11 +13,29 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch.continuation import EACH_TURN, LEAST_TURN, STEPS_OF_VARIANTS, Marches, Ways, started, wants
-from tmm_cli.batch.prepare import TOLD, WOUND, Wanted, solved, straight
-from tmm_cli.batch.trace_program import Program
-from tmm_cli.batch.traced_arrays import DependsOnData, TracedArray, TracedNumber, record
-from tmm_cli.batch.variant import WANTED, DriverRanges, Make, NoTapeError, Places, Variant, each, sketch_of, stood_for
+from tmm_cli.batch.continuation import (
+    LEAST_TURNS,
+    STEPS_PER_TURN,
+    VARIANT_NEWTON_STEPS,
+    Continuation,
+    ContinuedPaths,
+    count_initial_guesses,
+    with_initial_guesses,
+)
+from tmm_cli.batch.prepare import ANGLES_AGREE, CHECK_OUTPUTS, OutputReader, solve_stages, traceable_groups
+from tmm_cli.batch.trace_program import TraceProgram
+from tmm_cli.batch.traced_arrays import DependsOnData, TracedArray, TracedNumber, trace_function
+from tmm_cli.batch.variant import (
+    WANTED,
+    DriverRanges,
+    DriverSamples,
+    Make,
+    NoTapeError,
+    Variant,
+    compute_sketch,
+    placeholder_linkage,
+    split_columns,
+)
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError
@@ -27,13 +45,13 @@ from tmm_cli.mechanics.linkage import Linkage, Sketch
 from tmm_cli.mechanics.numerics import Real
 
 
-class Taped:
+class TracedVariants:
     """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
 
     Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool = False) -> None:
+    def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
         """make: a variant for given numbers; first: those of the linkage whose assembly all have."""
         self.make, self.first, self.variant = make, first, make(first)
         self.linkage = self.variant.linkage
@@ -41,7 +59,7 @@ class Taped:
         self.kernels = assemble(self.linkage, self.structure)
         if self.linkage.friction or (forces and self.linkage.by_strokes):
             raise NoTapeError
-        self.lines = _straight(self.linkage, self.kernels)
+        self.lines = _traceable_groups(self.linkage, self.kernels)
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
         self.start = varied.start if forces else None  # nothing else hangs on where its law begins
@@ -49,16 +67,18 @@ class Taped:
         apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
         if apart or isinstance(self.start, TracedNumber):
             raise NoTapeError
-        own = any(isinstance(number, TracedNumber) for number in _ends(varied))
-        self.ends = record(self._ends, *[1] * len(first)) if own else None
+        own = any(isinstance(number, TracedNumber) for number in _extra_numbers(varied))
+        self.ends = trace_function(self._ends, *[1] * len(first)) if own else None
         self.program = self._program(wanted, forces, own)
-        self.marches = Marches(self._varied, first, self.linkage, self.lines) if wants(self.lines) else None
-        self._last: tuple[bytes, Ways] | None = None
+        self.marches = (
+            Continuation(self._varied, first, self.linkage, self.lines) if count_initial_guesses(self.lines) else None
+        )
+        self._last: tuple[bytes, ContinuedPaths] | None = None
 
     def _varied(self, data: Sequence[Any]) -> Linkage:
-        return stood_for(self.make, self.first, data, self.linkage.sketch)
+        return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
-    def _program(self, wanted: Wanted, forces: bool, own: bool) -> Program:
+    def _program(self, wanted: OutputReader, forces: bool, own: bool) -> TraceProgram:
         """Of the varying numbers, each (variants, 1), and the driver's places; own: each variant has its own."""
 
         many = len(self.first)
@@ -66,25 +86,26 @@ class Taped:
         def stages(*data: TracedArray) -> Mapping[str, Any]:
             linkage, q, stands = self._varied(data[:many]), data[many], data[many + 1 :]
             kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
-            kernels = started(kernels, stands, STEPS_OF_VARIANTS)
+            kernels = with_initial_guesses(kernels, stands, VARIANT_NEWTON_STEPS)
             structure = self.structure.rebind(linkage)
-            return solved(linkage, structure, kernels, q, wanted, forces, None, blank=False, start=self.start)
+            return solve_stages(linkage, structure, kernels, q, wanted, forces, None, blank=False, start=self.start)
 
-        whole = record(stages, *[1] * many, 3 if own else 2, *[3] * wants(self.lines))
-        return whole.only(*(name for name in whole.outputs if name not in TOLD), WOUND)
+        whole = trace_function(stages, *[1] * many, 3 if own else 2, *[3] * count_initial_guesses(self.lines))
+        return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
         """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
-            str(k): place.stand if isinstance(place, TracedNumber) else place for k, place in enumerate(_ends(varied))
+            str(k): place.stand if isinstance(place, TracedNumber) else place
+            for k, place in enumerate(_extra_numbers(varied))
         }
 
     def driver_range(self, columns: Real) -> DriverRanges:
         """The crank's turn, or the range of the driver."""
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
-        found = self.ends(*each(columns))
+        found = self.ends(*split_columns(columns))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
         numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
@@ -92,7 +113,7 @@ class Taped:
         variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
         return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
-    def without(self, part: str) -> Taped:
+    def without(self, part: str) -> TracedVariants:
         """Without results whose names have such a part."""
         new = copy(self)
         new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
@@ -103,33 +124,35 @@ class Taped:
         linkage = self.make([float(number) for number in numbers]).linkage
         kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
         if self.marches is not None:
-            kernels = started(kernels, list(self.marches.sketched(np.array([numbers]))[0]), STEPS_OF_VARIANTS)
-        return sketch_of(linkage, kernels)
+            kernels = with_initial_guesses(
+                kernels, list(self.marches.sketched(np.array([numbers]))[0]), VARIANT_NEWTON_STEPS
+            )
+        return compute_sketch(linkage, kernels)
 
-    def __call__(self, columns: Real, places: Places) -> Mapping[str, Real]:
+    def __call__(self, columns: Real, places: DriverSamples) -> Mapping[str, Real]:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
         q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
-        played = self.program(*each(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
-        found: Mapping[str, Real] = played.without(WOUND)
-        if not np.all(played[WOUND]):  # wheels have gone round otherwise than those of the first linkage
-            found = {name: np.where(played[WOUND], value, np.nan) for name, value in found.items()}
+        played = self.program(*split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        found: Mapping[str, Real] = played.without(ANGLES_AGREE)
+        if not np.all(played[ANGLES_AGREE]):  # wheels have gone round otherwise than those of the first linkage
+            found = {name: np.where(played[ANGLES_AGREE], value, np.nan) for name, value in found.items()}
         return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
 
-    def _ways(self, columns: Real, ranges: DriverRanges) -> Ways:
+    def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
         """Of variants through their ranges; those that are asked for again and again are kept."""
         assert self.marches is not None
         key = columns.tobytes()
         if self._last is None or self._last[0] != key:
             low = ranges.low + np.zeros((len(columns), 1))
             turns = float(np.max(ranges.span)) / (2 * np.pi) if self.linkage.driver.kind == "turn" else 1.0
-            count = int(np.ceil(EACH_TURN * max(turns, LEAST_TURN)))
+            count = int(np.ceil(STEPS_PER_TURN * max(turns, LEAST_TURNS)))
             self._last = key, self.marches(columns, low, low + ranges.span, count, closed=ranges.closed)
         return self._last[1]
 
 
-def _straight(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...]:
+def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...]:
     """The groups as a tape of variants can hold them. Raises NoTapeError."""
-    lines = straight(linkage, kernels)
+    lines = traceable_groups(linkage, kernels)
     if lines is None:
         raise NoTapeError
     for kernel in lines:
@@ -139,7 +162,7 @@ def _straight(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[Group
     return lines
 
 
-def _ends(variant: Variant) -> tuple[Any, ...]:
+def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
     """Numbers of a variant beside its linkage."""
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
@@ -150,17 +173,17 @@ def _ends(variant: Variant) -> tuple[Any, ...]:
 # hundred or a thousand times as long as by a tape.
 
 
-KEPT = 30  # variants
+MOST_KEPT = 30  # variants
 
 
-class OneByOne:
+class SequentialVariants:
     """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
 
     All come round again after as many turns of the crank as the first one. A variant that cannot be assembled as it is
     sketched, or not be moved, has nothing but nan. Raises what assembly raises, for the first linkage.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool = False) -> None:
+    def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
         self.make, self.wanted, self.forces = make, wanted, forces
         self.variant = make(first)
         self.linkage = self.variant.linkage
@@ -169,22 +192,22 @@ class OneByOne:
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         self.by_strokes = forces and self.linkage.by_strokes
         self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
-        self.names = tuple(self._one(tuple(first), Places(np.zeros(1), np.zeros(0))))
+        self.names = tuple(self._one(tuple(first), DriverSamples(np.zeros(1), np.zeros(0))))
 
     def driver_range(self, columns: Real) -> DriverRanges:
         """That of the first linkage, for each."""
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
-    def without(self, part: str) -> OneByOne:
+    def without(self, part: str) -> SequentialVariants:
         """The same: what is not wanted costs little here."""
         return self
 
     def sketch(self, numbers: Real) -> Sketch:
         """How one variant looks at the place of the sketch. Raises what assembly raises."""
         linkage = self.make([float(number) for number in numbers]).linkage
-        return sketch_of(linkage, assemble(linkage, self.structure.rebind(linkage)))
+        return compute_sketch(linkage, assemble(linkage, self.structure.rebind(linkage)))
 
-    def __call__(self, columns: Real, places: Places) -> dict[str, Real]:
+    def __call__(self, columns: Real, places: DriverSamples) -> dict[str, Real]:
         rows = []
         for row in columns:
             try:
@@ -197,7 +220,7 @@ class OneByOne:
     def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
         """A variant, which is moved once though it is looked at at several places in turn."""
         if numbers not in self.known:
-            if len(self.known) > KEPT:
+            if len(self.known) > MOST_KEPT:
                 self.known.clear()
             variant = self.make(list(numbers))
             structure = self.structure.rebind(variant.linkage)
@@ -214,7 +237,7 @@ class OneByOne:
         apart = np.sum(np.abs(known - here) / (np.abs(known) + np.abs(here) + 1e-300), axis=1)
         return list(self.known.values())[int(np.argmin(apart))][1].kernels
 
-    def _one(self, numbers: tuple[float, ...], places: Places) -> dict[str, Real]:
+    def _one(self, numbers: tuple[float, ...], places: DriverSamples) -> dict[str, Real]:
         variant, mechanism = self._moved(numbers)
         linkage = variant.linkage
         strokes = mechanism.strokes if self.by_strokes and mechanism.driver_range.full else None
@@ -225,7 +248,7 @@ class OneByOne:
         ranges = DriverRanges.of(variant, 1, self.turns, start)
         q = ranges.at(places)[0]
         with np.errstate(all="ignore"):
-            found = solved(
+            found = solve_stages(
                 linkage,
                 mechanism.structure,
                 mechanism.kernels,
@@ -241,9 +264,9 @@ class OneByOne:
         return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}
 
 
-def variants_of(
-    make: Make, first: Sequence[float], wanted: Wanted, *, forces: bool, one_sense: bool
-) -> Taped | OneByOne:
+def make_variants(
+    make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool, one_sense: bool
+) -> TracedVariants | SequentialVariants:
     """By the tape, else one after another.
 
     one_sense: all drivers go the same way round, which a tape cannot tell. Raises what assembly raises, for the first
@@ -251,7 +274,7 @@ def variants_of(
     """
     if one_sense:
         try:
-            return Taped(make, first, wanted, forces=forces)
+            return TracedVariants(make, first, wanted, forces=forces)
         except (NoTapeError, DependsOnData):
             pass
-    return OneByOne(make, first, wanted, forces=forces)
+    return SequentialVariants(make, first, wanted, forces=forces)

@@ -14,7 +14,7 @@ from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import Linkage, Request, Sketch
 from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, map_record, record_leaves
 
-LEFT = ("sketch",)  # what says how a linkage is assembled, not what it is
+NOT_COMPARED = ("sketch",)  # what says how a linkage is assembled, not what it is
 
 
 class NotAlikeError(ValueError):
@@ -25,32 +25,32 @@ class NotAlikeError(ValueError):
         self.path = path
 
 
-def numbers(record: Any) -> Iterator[tuple[str, Any]]:
+def numeric_leaves(record: Any) -> Iterator[tuple[str, Any]]:
     """All numbers of a record with their paths, and all else that must be equal in linkages of one kind."""
-    return record_leaves(record, LEFT)
+    return record_leaves(record, NOT_COMPARED)
 
 
-def changed(record: Any, new: Mapping[str, Any]) -> Any:
+def with_numbers(record: Any, new: Mapping[str, Any]) -> Any:
     """A record with the numbers at some paths exchanged."""
-    return map_record(lambda path, value: new.get(path, value), record, skip=LEFT)
+    return map_record(lambda path, value: new.get(path, value), record, skip=NOT_COMPARED)
 
 
-def stands(record: Any) -> Any:
+def resolve_traced(record: Any) -> Any:
     """A record built of traced numbers with the arrays that they stand for."""
-    return changed(record, {path: x.stand for path, x in numbers(record) if isinstance(x, TracedNumber)})
+    return with_numbers(record, {path: x.stand for path, x in numeric_leaves(record) if isinstance(x, TracedNumber)})
 
 
-def each(columns: Real) -> list[Real]:
+def split_columns(columns: Real) -> list[Real]:
     """The columns (variants, n) one by one, (variants, 1)."""
     return [columns[:, k : k + 1] for k in range(columns.shape[1])]
 
 
-def varying(linkages: Sequence[Linkage]) -> dict[str, Real]:
+def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
     """Numbers that are not the same in all linkages, (variants, 1), by path. Raises NotAlikeError."""
-    first = dict(numbers(linkages[0]))
+    first = dict(numeric_leaves(linkages[0]))
     rows = [list(first.values())]
     for linkage in linkages[1:]:
-        here = dict(numbers(linkage))
+        here = dict(numeric_leaves(linkage))
         if here.keys() != first.keys():
             raise NotAlikeError(next(iter(here.keys() ^ first.keys())))
         rows.append([here[path] for path in first])
@@ -63,7 +63,7 @@ def varying(linkages: Sequence[Linkage]) -> dict[str, Real]:
     return found
 
 
-def parts(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
+def split_real_columns(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
     """Real columns of varying numbers, and what puts numbers together from (stand-ins for) such columns again."""
     columns: list[Real] = []
     places: dict[str, tuple[int | complex, ...]] = {}
@@ -136,15 +136,15 @@ class Variant:
 Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be TracedNumbers
 
 
-def stood_for(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
+def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
     """The linkage with stand-ins (of a tape, or columns) for its numbers; first, sketch: those of the first variant."""
     varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
-    linkage: Linkage = replace(stands(varied.linkage), sketch=sketch)
+    linkage: Linkage = replace(resolve_traced(varied.linkage), sketch=sketch)
     return linkage
 
 
 @dataclass(frozen=True)
-class Places:
+class DriverSamples:
     """Where variants are wanted: at shares of their driver ranges, then at the places that each is asked about, then at
     places of the driver (rad or m), for all.
     """
@@ -182,18 +182,18 @@ class DriverRanges:
         low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
         return cls(low, high - low, False, asked, wanted)
 
-    def at(self, places: Places) -> Real:
+    def at(self, places: DriverSamples) -> Real:
         """Places of the driver, (variants, places)."""
         fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
         asked = self.asked if places.asked else self.asked[:, :0]
         return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
 
-    def wanted_at(self, places: Places) -> Real:
+    def wanted_at(self, places: DriverSamples) -> Real:
         """What is wanted at the places asked about, in their columns of `at`; other columns tell nothing."""
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
 
 
-def sketch_of(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
+def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
     """All points and angles of the moving links where the sketch is, for groups whose assembly is known."""
     at = linkage.sketch.at
     poses = compute_motion(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
@@ -207,7 +207,7 @@ def sketch_of(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
     return Sketch(at, points, angles)
 
 
-def alike(one: Sketch, other: Sketch) -> bool:
+def same_assembly(one: Sketch, other: Sketch) -> bool:
     """Whether both show the same assembly."""
     size = max((abs(place) for place in one.points.values()), default=1.0)
     return all(abs(place - other.points[name]) <= SAME_SKETCH * size for name, place in one.points.items())

@@ -19,11 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import tmm_cli
-from tmm_cli.language import Course, _, course, speaking
+from tmm_cli.language import CourseNotation, _, course, speaking
 from tmm_cli.problem import ProblemError, quote
 
 RETRIES = 3  # of what a cluster failed at
-ANSWERS = 10  # s within which a scheduler answers, and has a worker
+ANSWER_TIMEOUT = 10  # s within which a scheduler answers, and has a worker
 POLL = 0.02  # s
 SCHEDULER = re.compile(
     r"(?:tcp://)?(?:\[[\da-fA-F:.%]+\]|[\w.-]+):\d{1,5}"
@@ -31,10 +31,12 @@ SCHEDULER = re.compile(
 
 Job = Callable[[], Any]  # may be pickled
 Stopped = Callable[[], bool]
-Way = Callable[[Sequence[Job], Stopped], Iterator[tuple[int, Any]]]  # numbers of jobs and what they gave, as it comes
+JobRunner = Callable[
+    [Sequence[Job], Stopped], Iterator[tuple[int, Any]]
+]  # numbers of jobs and what they gave, as it comes
 
 
-def here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
+def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
     """One after the other."""
     for number, job in enumerate(jobs):
         if stopped():
@@ -42,7 +44,7 @@ def here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
         yield number, job()
 
 
-def processes(count: int) -> Way:
+def in_processes(count: int) -> JobRunner:
     """In so many processes; when stopped, what they have begun comes to its end."""
     return partial(_processes, count)
 
@@ -50,9 +52,9 @@ def processes(count: int) -> Way:
 def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
     count = min(count, len(jobs))
     if count < 2:
-        yield from here(jobs, stopped)
+        yield from run_here(jobs, stopped)
         return
-    with ProcessPoolExecutor(count, get_context("spawn"), begin) as pool:
+    with ProcessPoolExecutor(count, get_context("spawn"), initialize_worker) as pool:
         futures = {pool.submit(speaking, course(), job): number for number, job in enumerate(jobs)}
         for future in as_completed(futures):
             if not future.cancelled():
@@ -64,13 +66,13 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                 pool.shutdown(wait=False, cancel_futures=True)
 
 
-def begin() -> None:
+def initialize_worker() -> None:
     """Ctrl-C reaches all processes: the first one tells the others. What has no value is told in words."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RuntimeWarning)
 
 
-def cluster(address: str) -> Way:
+def on_cluster(address: str) -> JobRunner:
     """On the workers of a Dask scheduler, which gives the work of a lost one to the others."""
     return partial(_cluster, address)
 
@@ -86,40 +88,42 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
     try:
         _wait_for_greeting(address)
-        client = distributed.Client(address, timeout=ANSWERS, set_as_default=False)
+        client = distributed.Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError, OverflowError):
         raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
     with client:
         _refuse_other_programs(client, address)
         futures = {
-            client.submit(_of_program, program_digest(), course(), job, retries=RETRIES, pure=False): number
+            client.submit(_run_with_same_program, program_digest(), course(), job, retries=RETRIES, pure=False): number
             for number, job in enumerate(jobs)
         }
-        for future in _finished(client, distributed.as_completed(futures, loop=client.loop), len(futures), address):
-            yield futures[future], _result(client, future, address)
+        for future in _iterate_finished(
+            client, distributed.as_completed(futures, loop=client.loop), len(futures), address
+        ):
+            yield futures[future], _fetch_result(client, future, address)
             if stopped():
                 return
 
 
-def _result(client: Any, future: Any, address: str) -> Any:
+def _fetch_result(client: Any, future: Any, address: str) -> Any:
     """What a finished job gave; its worker may be lost before it is fetched. Raises ProblemError if none is left."""
     while True:
         try:
-            return future.result(timeout=ANSWERS)
+            return future.result(timeout=ANSWER_TIMEOUT)
         except TimeoutError:
             if not client.nthreads():
-                raise _no_workers(address) from None
+                raise _no_workers_error(address) from None
 
 
 def _wait_for_greeting(address: str) -> None:
     """Wait until a scheduler introduces itself; a client would wait for ever where none does. Raises OSError."""
     host, __, port = address.removeprefix("tcp://").rpartition(":")
-    with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERS) as connection:
+    with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWER_TIMEOUT) as connection:
         if not connection.recv(1):
             raise ConnectionError
 
 
-def _finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
+def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
     """Futures as they finish. Raises ProblemError when no worker is left for so long that none will come."""
     worked = asked = time.monotonic()
     while count:
@@ -130,11 +134,11 @@ def _finished(client: Any, completed: Any, count: int, address: str) -> Iterator
         if batch:
             worked = now
             continue
-        if now - asked > ANSWERS / 10:
+        if now - asked > ANSWER_TIMEOUT / 10:
             asked = now
             worked = now if client.nthreads() else worked
-            if now - worked > ANSWERS:
-                raise _no_workers(address)
+            if now - worked > ANSWER_TIMEOUT:
+                raise _no_workers_error(address)
         time.sleep(POLL)
 
 
@@ -149,10 +153,10 @@ def _refuse_other_programs(client: Any, address: str) -> None:
             return "", ""
 
     try:
-        client.wait_for_workers(1, timeout=ANSWERS)
+        client.wait_for_workers(1, timeout=ANSWER_TIMEOUT)
         versions = client.run(version_there)
     except TimeoutError:
-        raise _no_workers(address) from None
+        raise _no_workers_error(address) from None
     here = (tmm_cli.__version__, program_digest())
     other = next(((worker, there) for worker, there in versions.items() if there != here), None)
     if other is not None:
@@ -165,11 +169,11 @@ def _refuse_other_programs(client: Any, address: str) -> None:
         )
 
 
-def _no_workers(address: str) -> ProblemError:
+def _no_workers_error(address: str) -> ProblemError:
     return ProblemError(_("the scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
 
 
-def _of_program(program: str, spoken: Course, job: Job) -> Any:
+def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> Any:
     """What a job gives on a worker that has the same program; workers may join later. Raises ProblemError."""
     if program_digest() != program:
         raise ProblemError(_("a worker has another version of tmm than this one"))

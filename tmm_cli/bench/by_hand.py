@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Batch, everything, prepare_batch
+from tmm_cli.batch import Batch, prepare_batch, read_all
 from tmm_cli.bench.references import reference
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
@@ -295,7 +295,7 @@ class Mechanism:
         """The product, asked for what the code by hand gives."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-            found = everything(motion, reactions)
+            found = read_all(motion, reactions)
             return {name: found[name] for name in self.names}
 
         return prepare_batch(linkages, asked)

@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 
 import tmm_cli
-from tmm_cli.batch import Family, Task, families, read_task
+from tmm_cli.batch import Task, VariantFamily, read_task, split_families
 from tmm_cli.bench.measured import CLOCK, Measured, slack, words
 from tmm_cli.grading import (
     CHUNK,
@@ -58,7 +58,7 @@ class Group:
 
     task: Task
     table: VariantTable
-    family: Family
+    family: VariantFamily
     right: Right
     random: np.random.Generator
 
@@ -130,11 +130,11 @@ def group(count: int, seed: int = 1) -> Group:
     return Group(task, table, family, right(family, task.asked), random)
 
 
-def family_of(task: Task, table: VariantTable) -> Family:
+def family_of(task: Task, table: VariantTable) -> VariantFamily:
     """All variants of a table, solved together."""
     dimensions, numbers = numbers_of(task, table, list(table.rows))
-    ((rows, family),) = families(lambda own: task.make(table.names, dimensions, own), numbers)
-    if not isinstance(family, Family) or len(rows) < len(table.rows):
+    ((rows, family),) = split_families(lambda own: task.make(table.names, dimensions, own), numbers)
+    if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):
         raise AssertionError("a variant of the measurement cannot be assembled")
     return family
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from tmm_cli.bench.measured import Measured
 from tmm_cli.drawing.run import sheet_files
-from tmm_cli.mechanics.analysis import Results, at_positions, mechanism, pipeline, with_forces
+from tmm_cli.mechanics.analysis import Results, mechanism, motion_at_positions, pipeline, with_forces
 from tmm_cli.mechanics.assembly import assemble, assembling, sketch_matching
-from tmm_cli.mechanics.forces import applied
+from tmm_cli.mechanics.forces import collect_loads
 from tmm_cli.mechanics.groups import DYAD_SOLVERS, DriverMotion, GroupSolver, NewtonSolver, sequence, solvers_towards
 from tmm_cli.mechanics.kinematics import compute_motion, driver_range, motion, pressure_angles, strokes
 from tmm_cli.mechanics.linkage import Linkage
@@ -267,7 +267,7 @@ def _structure_results(problem: Problem) -> object:
 
 def _analyse_at(results: Results, q: Real) -> object:
     """Kinematics and forces at some places."""
-    return with_forces(replace(results, motion=at_positions(results, q)), cycle=False)
+    return with_forces(replace(results, motion=motion_at_positions(results, q)), cycle=False)
 
 
 def _quality_results(problem: Problem) -> object:
@@ -291,7 +291,7 @@ def _count_loads(results: Results, linkage: Linkage) -> int:
     motion = replace(results.motion, linkage=linkage, finer=None, where=None)
     inputs = replace(results.inputs, linkage=linkage)
     with_forces(replace(results, inputs=inputs, motion=motion), cycle=False)
-    return sum(load.kind in ("weight", "inertia") for load in applied(motion, results.strokes))
+    return sum(load.kind in ("weight", "inertia") for load in collect_loads(motion, results.strokes))
 
 
 def _count_pictures(results: Results) -> int:

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tmm_cli.batch import Taped
+from tmm_cli.batch import TracedVariants
 from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import read_text
@@ -408,7 +408,7 @@ def _rated(name: str, search: Candidates, generations: Real, reduced: bool) -> S
     _, size, parameters = generations.shape
     target = PER_SECOND.get(name) if size == search.population else None
     turn = cycle(generations)
-    operations = search.coarse.program.operations if isinstance(search.coarse, Taped) else 0
+    operations = search.coarse.program.operations if isinstance(search.coarse, TracedVariants) else 0
     constraints = len(search.constraints) - 1  # without that the crank turns fully
 
     def found(least: dict[str, float]) -> SearchRate:

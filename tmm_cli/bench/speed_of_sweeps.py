@@ -11,7 +11,7 @@ from tmm_cli.batch import Task
 from tmm_cli.bench.measured import timed, words
 from tmm_cli.bench.references import tree_of
 from tmm_cli.reports import Table
-from tmm_cli.sweep import Mechanisms, grid_points, read_axes
+from tmm_cli.sweep import SweptMechanisms, grid_points, read_axes
 
 SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
 SWEPT_QUANTITIES = ("H,k,pressure,M_b,R_34",)
@@ -49,7 +49,7 @@ def sweeping(name: str, reduced: bool) -> Sweeping:
     count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
     start = perf_counter()
     tree = tree_of(name)
-    mechanisms = Mechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
+    mechanisms = SweptMechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
     assert mechanisms.turning is not None
     preparing = 1e3 * (perf_counter() - start)
     points = grid_points(mechanisms.axes)

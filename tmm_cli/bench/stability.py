@@ -20,7 +20,7 @@ from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Meth
 from tmm_cli.bench.methods.registry import METHODS
 from tmm_cli.bench.references import Known, known_scenes
 from tmm_cli.bench.scenes import BY_NAME
-from tmm_cli.mechanics.accuracy import bare, bounds
+from tmm_cli.mechanics.accuracy import bound_values, solve_bare_linkage
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.numerics import ROUNDOFF, Real
 from tmm_cli.reports import Table
@@ -250,8 +250,8 @@ def _watched(found: Answers, quantity: Compared, at: Known) -> Any:
 def ours(case: Case, at: Known) -> Shot:
     """What the product prints, and its bounds: a value outside its own is a lie; without a bound none is printed."""
     q = np.array([at.scene.q])
-    results = bare(case.linkage, q, case.structure, case.kernels)
-    values, digits = bounds(results)
+    results = solve_bare_linkage(case.linkage, q, case.structure, case.kernels)
+    values, digits = bound_values(results)
     assert results.reactions is not None
     reaction = results.reactions.of(at.scene.pair)
     sense = 1 if reaction.on == reaction.pair.j else -1

@@ -2,9 +2,9 @@
 
 from .app import COMMANDS as COMMANDS, application as application, main as main
 from .bench import MEASUREMENTS as MEASUREMENTS
-from .common import each as each
-from .drawing import FEW as FEW, by_all_cores as by_all_cores
-from .opening import opened as opened
-from .reporting import bounds_of as bounds_of
-from .schemes import named_types as named_types, skeleton as skeleton
-from .talk import speaking as speaking, tell_fault as tell_fault
+from .common import for_each_file as for_each_file
+from .drawing import LEAST_JOBS as LEAST_JOBS, run_on_all_cores as run_on_all_cores
+from .opening import open_problem as open_problem
+from .reporting import accuracy_of as accuracy_of
+from .schemes import read_group_types as read_group_types, write_scheme as write_scheme
+from .talk import report_fault as report_fault, with_language_option as with_language_option

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, speaking, tell_fault
+from tmm_cli.cli.talk import BAD_INPUT, OK, printable, report_fault, say, with_language_option
 from tmm_cli.language import _
 
 
@@ -31,18 +31,18 @@ def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str
     asked = [word for word in words if not word.startswith("-")]
     if not asked or asked[0] not in lines:
         for name, line in lines.items():
-            app.command(name, help=line)(_listed)
+            app.command(name, help=line)(_list_only)
         return
     name, *further = asked
     module = import_module(f"tmm_cli.cli.{home(name)}")
     function = f"{name}_" if iskeyword(name) else name
     if hasattr(module, function):
-        app.command(name)(speaking(getattr(module, function)))
+        app.command(name)(with_language_option(getattr(module, function)))
     else:
         app.add_typer(module.group(further))
 
 
-def _listed() -> None:
+def _list_only() -> None:
     """What is listed only is not called."""
 
 
@@ -121,12 +121,12 @@ def main() -> None:
         application(sys.argv[1:])()
     except SystemExit as ended:
         left = isinstance(ended.__context__, BrokenPipeError)  # `tmm ... | head` is not an error
-        sys.exit(_flushed(OK if left else ended.code))
+        sys.exit(_flush_output(OK if left else ended.code))
     except OSError as error:
-        say(_told(error))
-        sys.exit(_flushed(BAD_INPUT))
+        say(_os_error_text(error))
+        sys.exit(_flush_output(BAD_INPUT))
     except Exception as error:
-        sys.exit(_flushed(tell_fault(error, sys.argv[1:])))
+        sys.exit(_flush_output(report_fault(error, sys.argv[1:])))
 
 
 def _open_streams() -> None:
@@ -139,17 +139,17 @@ def _open_streams() -> None:
             stream.reconfigure(encoding=None if os.environ.get("PYTHONIOENCODING") else "utf-8", errors="replace")
 
 
-def _flushed(code: Any) -> Any:
+def _flush_output(code: Any) -> Any:
     """The exit code when all that was printed has gone out: a full disk is an error, a reader that left is none."""
     try:
         sys.stdout.flush()
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries once more, and complains
         if not isinstance(error, BrokenPipeError) and code in (OK, None):
-            say(_told(error))
+            say(_os_error_text(error))
             return BAD_INPUT
     return code
 
 
-def _told(error: OSError) -> str:
+def _os_error_text(error: OSError) -> str:
     return _("error: {error}").format(error=f"{printable(error.filename or _('output'))}: {error.strerror}")

@@ -52,12 +52,12 @@ def group(words: Sequence[str]) -> typer.Typer:
         no_args_is_help=True,
         rich_markup_mode=None,
     )
-    app.callback()(_together)
+    app.callback()(_keep_group)
     add_commands(app, MEASUREMENTS, words, lambda name: "bench")
     return app
 
 
-def _together() -> None:
+def _keep_group() -> None:
     """One measurement alone is a command of its group too."""
 
 
@@ -71,7 +71,7 @@ Out = Annotated[
 ]
 
 
-def chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
+def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
     """Those asked for, or all; an unknown one ends the command with the words for that (of {name} and {names})."""
     known = list(names)
     found = list(dict.fromkeys(asked or known))
@@ -82,7 +82,7 @@ def chosen(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> l
     return found
 
 
-def finish(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
+def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
     """Show tables or JSON, write the files; then the verdict."""
     if as_json:
         emit_json(measured.to_dict())
@@ -130,8 +130,8 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
     Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
     """
-    names = chosen(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
-    finish("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)
+    names = requested_names(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
+    show_and_write("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)
 
 
 def grading(
@@ -144,12 +144,12 @@ def grading(
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
+    show_and_write("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
 
 
 def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
     """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
-    finish("savings", measure_savings(reduced=reduced, progress=say), savings_charts, out, as_json)
+    show_and_write("savings", measure_savings(reduced=reduced, progress=say), savings_charts, out, as_json)
 
 
 def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
@@ -157,7 +157,7 @@ def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> N
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)
+    show_and_write("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)
 
 
 Families = Annotated[
@@ -172,8 +172,8 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
     are within 100 times the true error.
     """
-    names = chosen(family, BY_NAME, "there is no family {name}; there are {names}")
-    finish("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
+    names = requested_names(family, BY_NAME, "there is no family {name}; there are {names}")
+    show_and_write("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
 
 
 def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
@@ -181,4 +181,4 @@ def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) 
 
     Exit code 1 when a target is missed, of a reduced run by more than twice.
     """
-    finish("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)
+    show_and_write("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)

@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 import typer
 
 from tmm_cli import __version__
-from tmm_cli.cli.common import console, problems_in, progress, refusing
-from tmm_cli.cli.reporting import computed
+from tmm_cli.cli.common import console, problems_in, reporting_errors, with_progress
+from tmm_cli.cli.reporting import compute_file
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
 from tmm_cli.grading import grades
 from tmm_cli.language import _
@@ -32,7 +32,7 @@ from tmm_cli.reports import (
 TOLERANCE = 1e-9
 
 
-class Outcome(NamedTuple):
+class CheckOutcome(NamedTuple):
     """A problem, what is wrong with it as a whole, what differs, and the exit code of that."""
 
     name: str
@@ -41,23 +41,27 @@ class Outcome(NamedTuple):
     code: int = OK
 
 
-def compared(file: Path, update: bool) -> Outcome:
+def check_problem(file: Path, update: bool) -> CheckOutcome:
     """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
-    return _compared(file.stem, expected_file, lambda: to_json(computed(str(file), "forces", silent=True)), update)
+    return _check_expected(
+        file.stem, expected_file, lambda: to_json(compute_file(str(file), "forces", silent=True)), update
+    )
 
 
-def compared_grades(task: Path, update: bool) -> Outcome:
+def check_grades(task: Path, update: bool) -> CheckOutcome:
     """A graded example likewise, with expected.json beside its task."""
-    return _compared(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
+    return _check_expected(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
 
 
-def _compared(name: str, expected_file: Path, compute: Callable[[], dict[str, Any]], update: bool) -> Outcome:
+def _check_expected(
+    name: str, expected_file: Path, compute: Callable[[], dict[str, Any]], update: bool
+) -> CheckOutcome:
     try:
         found = compute()
     except ProblemError as error:
-        return Outcome(name, wrong=str(error), code=BAD_INPUT)
-    expected = _read(expected_file)
+        return CheckOutcome(name, wrong=str(error), code=BAD_INPUT)
+    expected = _read_expected(expected_file)
     known = isinstance(expected, dict)
     if update:
         if not known or expected["result"] != recorded(found):
@@ -70,15 +74,15 @@ def _compared(name: str, expected_file: Path, compute: Callable[[], dict[str, An
                 write_whole(expected_file, json_bytes(golden))
             except OSError as error:
                 wrong = f"{error.filename}: {error.strerror}"
-                return Outcome(name, wrong=wrong, code=BAD_INPUT)
-        return Outcome(name)
+                return CheckOutcome(name, wrong=wrong, code=BAD_INPUT)
+        return CheckOutcome(name)
     if not known:
-        return Outcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
+        return CheckOutcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
     different = differences(expected["result"], found, float(expected["tolerance"]))
-    return Outcome(name, different=different, code=CHECK_FAILED if different else OK)
+    return CheckOutcome(name, different=different, code=CHECK_FAILED if different else OK)
 
 
-def _read(file: Path) -> Any:
+def _read_expected(file: Path) -> Any:
     """The expected values, or what is wrong with them."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
@@ -93,7 +97,7 @@ def _read(file: Path) -> Any:
     return content
 
 
-def show_outcomes(outcomes: Sequence[Outcome]) -> None:
+def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
     """What differs as a table, and what is wrong with whole problems."""
     table = difference_table({outcome.name: outcome.different for outcome in outcomes})
     if table.rows:
@@ -103,7 +107,7 @@ def show_outcomes(outcomes: Sequence[Outcome]) -> None:
             say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
 
 
-def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
+def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
     """The outcomes as a JUnit report."""
     failures = sum(bool(outcome.different) for outcome in outcomes)
     errors = sum(bool(outcome.wrong) for outcome in outcomes)
@@ -125,7 +129,7 @@ def write_junit(path: Path, outcomes: Sequence[Outcome]) -> None:
 # `tmm check`.
 
 
-EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
+GRADED_EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  # beside the task of a graded example
 
 
 def check(
@@ -141,16 +145,18 @@ def check(
     quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the expected
     file. Exit code 1 when something differs.
     """
-    tables = [table for path in paths if path.is_dir() for depth in EXAMPLES for table in sorted(path.glob(depth))]
+    tables = [
+        table for path in paths if path.is_dir() for depth in GRADED_EXAMPLES for table in sorted(path.glob(depth))
+    ]
     tasks = [table.with_name("task.yaml") for table in tables if table.with_name("task.yaml").is_file()]
     files = [*(f for f in problems_in(paths, tasks) if f not in tasks), *tasks]
     outcomes = [
-        compared_grades(Path(name), update) if Path(name) in tasks else compared(Path(name), update)
-        for name in progress([str(f) for f in files])
+        check_grades(Path(name), update) if Path(name) in tasks else check_problem(Path(name), update)
+        for name in with_progress([str(f) for f in files])
     ]
     show_outcomes(outcomes)
     if junit is not None:
-        with refusing():
+        with reporting_errors():
             write_junit(junit, outcomes)
     differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
     say(_("{count} problems, {differing} differ").format(count=len(outcomes), differing=differing))

@@ -15,7 +15,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import Progress, track
 from rich.segment import Segment
 
-from tmm_cli.cli.talk import BAD_INPUT, OK, printable, say, tell_fault
+from tmm_cli.cli.talk import BAD_INPUT, OK, printable, report_fault, say
 from tmm_cli.language import _, language, spoken
 from tmm_cli.problem import ProblemError, escape_controls
 from tmm_cli.reports import Kind, folder_name, refuse_place
@@ -60,7 +60,7 @@ Tables = Annotated[
 Pictures = Iterable[tuple[str, bytes]]
 
 
-def drawn(
+def draw_pictures(
     what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis", "group-table"], *of: Any, **how: Any
 ) -> Pictures:
     """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
@@ -82,7 +82,7 @@ def console() -> Console:
     return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 
-def each(
+def for_each_file(
     files: Sequence[str],
     work: Callable[[str], int],
     *,
@@ -97,27 +97,27 @@ def each(
     """
     worst = OK
     if out is not None:
-        _refuse_one_name(files)
-        with refusing():
+        _refuse_same_folder(files)
+        with reporting_errors():
             refuse_place(out, folder=True)
-    for file in progress(files):
+    for file in with_progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {printable(file)} ==", style="bold")
         try:
-            with spoken(language()), refusing(as_json):
+            with spoken(language()), reporting_errors(as_json):
                 code = work(file)
         except typer.Exit as refused:
             code = refused.exit_code
         except OSError:
             raise
         except Exception as error:  # of this file: the others are worked on
-            code = tell_fault(error, sys.argv[1:])
+            code = report_fault(error, sys.argv[1:])
         worst = max(worst, code)
     raise typer.Exit(worst)
 
 
 @contextmanager
-def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
+def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
     """Bad input inside is one message, with --json as JSON too. Raises typer.Exit.
 
     name: of what is read or written, where the system does not say it.
@@ -136,7 +136,7 @@ def refusing(as_json: bool = False, name: str = "") -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
-def _refuse_one_name(files: Sequence[str]) -> None:
+def _refuse_same_folder(files: Sequence[str]) -> None:
     """Files whose results would take the place of one another's end the command before its work."""
     first: dict[str, str] = {}
     for file in files:
@@ -150,7 +150,7 @@ def _refuse_one_name(files: Sequence[str]) -> None:
             raise typer.Exit(BAD_INPUT)
 
 
-def new_file(file: Path, text: str) -> bool:
+def write_new_file(file: Path, text: str) -> bool:
     """Whether a file that was not there is written; `-` prints the text instead. Raises ProblemError."""
     if str(file) == "-":
         typer.echo(text, nl=False)
@@ -175,14 +175,14 @@ def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Pat
     return list(dict.fromkeys([*files, *further]))
 
 
-def progress(files: Sequence[Any]) -> Iterable[Any]:
+def with_progress(files: Sequence[Any]) -> Iterable[Any]:
     """The same, counted by a bar when there are several."""
     if len(files) < 2:
         return files
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
-def bars(quiet: bool = False) -> Progress:
+def progress_bars(quiet: bool = False) -> Progress:
     """Progress on a terminal; elsewhere, or when quiet, nothing."""
     return Progress(console=Console(stderr=True), transient=True, disable=quiet or not sys.stderr.isatty())
 

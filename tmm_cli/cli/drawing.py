@@ -10,41 +10,41 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import TypeVar
 
-from tmm_cli.batch import begin
-from tmm_cli.cli.common import bars
+from tmm_cli.batch import initialize_worker
+from tmm_cli.cli.common import progress_bars
 from tmm_cli.drawing.formats import run_in_process
 from tmm_cli.language import _, course, speaking
 
 FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
-FEW = 2 if FORKS else 4  # jobs that are done before other processes have started
+LEAST_JOBS = 2 if FORKS else 4  # jobs that are done before other processes have started
 
-Found = TypeVar("Found")
+JobResult = TypeVar("JobResult")
 
 
-def by_all_cores(jobs: Sequence[Callable[[], Found]], *, quiet: bool = False) -> Iterable[Found]:
+def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = False) -> Iterable[JobResult]:
     """What the jobs give, in their order; a few are done in this process. quiet: without a bar.
 
     Other processes begin at the end; this one does from the beginning what they have not come to.
     """
     others = min(os.cpu_count() or 1, len(jobs)) - 1
-    if others < 1 or len(jobs) < FEW:
+    if others < 1 or len(jobs) < LEAST_JOBS:
         yield from run_in_process(jobs)
         return
-    with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), begin) as pool:
+    with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), initialize_worker) as pool:
         futures = [
             pool.submit(speaking, course(), job) for job in reversed(jobs)
         ]  # before the bar has its thread: threads are not copied
         try:
-            with bars(quiet) as shown:
+            with progress_bars(quiet) as shown:
                 task = shown.add_task(_("drawn"), total=len(jobs))
                 for job, future in zip(jobs, reversed(futures), strict=True):
-                    yield job() if future.cancel() else _result(future, job)
+                    yield job() if future.cancel() else _fetch_result(future, job)
                     shown.advance(task)
         finally:  # stopped: what is in work comes to its end
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _result(future: Future[Found], job: Callable[[], Found]) -> Found:
+def _fetch_result(future: Future[JobResult], job: Callable[[], JobResult]) -> JobResult:
     """What another process found; if that was ended, perhaps for want of memory, it is found here."""
     try:
         return future.result()

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Settings, console, each
-from tmm_cli.cli.opening import opened
+from tmm_cli.cli.common import Files, Settings, console, for_each_file
+from tmm_cli.cli.opening import open_problem
 from tmm_cli.cli.talk import OK
 from tmm_cli.language import typeset
 from tmm_cli.reports import explain_tables as tables, in_words, show
@@ -23,7 +23,7 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
     """
 
     def work(file: str) -> int:
-        results = solve(opened(file, settings), "structure")
+        results = solve(open_problem(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
         for sentence in map(typeset, in_words(results)):
@@ -32,4 +32,4 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
             show(table, results.problem.units, screen, most=None)  # there is no other place that has them all
         return OK
 
-    each(files, work)
+    for_each_file(files, work)

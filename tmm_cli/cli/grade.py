@@ -12,9 +12,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch import Task, cluster, processes, read_task
-from tmm_cli.cli.common import Jobs, Scheduler, bars, console, refusing
-from tmm_cli.cli.opening import introduce, read_in_its_language
+from tmm_cli.batch import Task, in_processes, on_cluster, read_task
+from tmm_cli.cli.common import Jobs, Scheduler, console, progress_bars, reporting_errors
+from tmm_cli.cli.opening import print_file_summary, read_in_file_language
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.grading import (
     EXPORTS,
@@ -33,7 +33,7 @@ from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_names
 from tmm_cli.reports import refuse_place, show
 
-KEPT = ".graded"  # in the output folder: marks of earlier runs
+CACHE_FOLDER = ".graded"  # in the output folder: marks of earlier runs
 
 File = Annotated[str, typer.Argument(metavar="TASK", help="Problem file with a block `grading`.", show_default=False)]
 Variants = Annotated[
@@ -68,8 +68,8 @@ def grade(
 
     Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
     """
-    with refusing():
-        task = read_task(read_in_its_language(file))
+    with reporting_errors():
+        task = read_task(read_in_file_language(file))
         if template is not None:
             write_template(task, template)
             say(_("written: {files}").format(files=printable(template)))
@@ -78,10 +78,10 @@ def grade(
             say(_("error: --variants and --submissions are wanted, or --template"))
             raise typer.Exit(BAD_INPUT)
         refuse_place(out, folder=True)
-        raise typer.Exit(_graded(task, variants, submissions, out, reveal, formats, jobs, scheduler))
+        raise typer.Exit(_grade_group(task, variants, submissions, out, reveal, formats, jobs, scheduler))
 
 
-def _graded(
+def _grade_group(
     task: Task,
     variants: str,
     submissions: str,
@@ -94,14 +94,14 @@ def _graded(
     """Grade, write, show; the exit code. Raises ProblemError, OSError."""
     reason = _("there is no such format of the gradebook")
     names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
-    introduce(task.problem)
+    print_file_summary(task.problem)
     table = read_table(variants, task)
     with suppress(ProblemError):  # a value that cannot be read is told to its student
         for slip in tables_apart(task, table):
             warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1
-    way = cluster(scheduler) if scheduler else processes(jobs)
-    with bars() as shown, _stoppable() as stopped:
+    way = on_cluster(scheduler) if scheduler else in_processes(jobs)
+    with progress_bars() as shown, _stop_on_interrupt() as stopped:
         reading = shown.add_task(_("read"), total=len(table.rows))
         handed = []
         for one in read_submissions(submissions, task, table.rows):
@@ -110,7 +110,9 @@ def _graded(
         place = {student: n for n, student in enumerate(table.rows)}
         handed.sort(key=lambda one: place.get(one.student, len(place)))
         grading = shown.add_task(_("graded"), total=len(handed))
-        marks = graded(task, table, handed, way, out / KEPT, lambda count: shown.advance(grading, count), stopped)
+        marks = graded(
+            task, table, handed, way, out / CACHE_FOLDER, lambda count: shown.advance(grading, count), stopped
+        )
     if len(marks) < len(handed):
         told = _("stopped: {done} of {count} are graded; the next run takes them over, and grades the others")
         say(told.format(done=len(marks), count=len(handed)))
@@ -118,11 +120,11 @@ def _graded(
     written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
     for found in statistics_tables(task, marks):
         show(found, task.units, console())
-    return _verdict(handed, marks, out)
+    return _print_summary(handed, marks, out)
 
 
 @contextmanager
-def _stoppable() -> Iterator[Callable[[], bool]]:
+def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
     """Whether Ctrl-C was pressed: what is in work comes to its end; pressed again, it ends the command at once."""
     pressed = []
 
@@ -138,7 +140,7 @@ def _stoppable() -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-def _verdict(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
+def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
     """Say how many were graded; the exit code."""
     both = list(zip(handed, marks, strict=True))
     left = sum(one.unread or own.problems != one.problems for one, own in both)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import new_file, refusing
+from tmm_cli.cli.common import reporting_errors, write_new_file
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _, language
 from tmm_cli.problem import ProblemError, list_templates, nearest_name, template_text
@@ -25,7 +25,7 @@ def new(
         for name, title in known.items():
             typer.echo(f"{name:15} {title}")
         return
-    with refusing():
+    with reporting_errors():
         if template not in known:
             raise ProblemError(
                 _("there is no template '{template}'").format(template=template),
@@ -34,5 +34,5 @@ def new(
             )
         file = out or Path(f"{template}.yaml")
         named = None if str(file) == "-" else printable(file)
-        if new_file(file, template_text(template, language(), named)):
+        if write_new_file(file, template_text(template, language(), named)):
             say(_("written: {file}; next: tmm run {file}").format(file=printable(file)))

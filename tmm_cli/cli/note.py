@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
-from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
+from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, for_each_file
+from tmm_cli.cli.opening import count_detailed_positions, open_problem, refuse_excess_work, variant_settings
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.run import position_remarks
 from tmm_cli.language import _
@@ -29,8 +29,8 @@ def note(
 
     def work(file: str) -> int:
         wanted = formats_of(formats)
-        problem = opened(file, variant_settings(file, variants, variant, settings))
-        afford(problem.whole, None, detail=count_detail(problem.whole))
+        problem = open_problem(file, variant_settings(file, variants, variant, settings))
+        refuse_excess_work(problem.whole, None, detail=count_detailed_positions(problem.whole))
         results = solve(problem)
         for remark in position_remarks(results):
             say(remark)
@@ -43,4 +43,4 @@ def note(
             say(_("written: {folder}").format(folder=printable(target)))
         return OK
 
-    each(files, work, out=out, headed=False)
+    for_each_file(files, work, out=out, headed=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tmm_cli.cli.talk import say, speak_as, warn, write_as
+from tmm_cli.cli.talk import say, use_file_language, use_file_notation, warn
 from tmm_cli.language import ENGLISH, _
 from tmm_cli.problem import (
     Problem,
@@ -22,35 +22,35 @@ from tmm_cli.problem import (
 from tmm_cli.reports import bare_units, doubts, summarise_file
 
 
-def tree_of(file: str, settings: Sequence[str] | None = None) -> Tree:
+def read_tree(file: str, settings: Sequence[str] | None = None) -> Tree:
     """The file as it is read, with other parameters; its language is spoken from here on. Raises ProblemError."""
-    return apply_settings(read_in_its_language(file), settings or ())
+    return apply_settings(read_in_file_language(file), settings or ())
 
 
-def read_in_its_language(file: str) -> Tree:
+def read_in_file_language(file: str) -> Tree:
     """The file as it is read; its language is spoken from here on, also by what refuses to read it.
 
     Raises ProblemError.
     """
     data = read_bytes(file)
-    speak_as(find_language(data))
+    use_file_language(find_language(data))
     tree = read_text(decode_text(data, file), file)
-    speak_as(tree.data.get("lang", ENGLISH))
-    write_as(tree.data)
+    use_file_language(tree.data.get("lang", ENGLISH))
+    use_file_notation(tree.data)
     return tree
 
 
-def opened(
+def open_problem(
     file: str, settings: Sequence[str] | None = None, positions: Sequence[int] | None = None, digits: bool = False
 ) -> Problem | TaskProblem:
     """The problem of a file with other parameters; says what was understood.
 
     positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
     """
-    problem = build_any_problem(tree_of(file, settings))
-    introduce(problem)
+    problem = build_any_problem(read_tree(file, settings))
+    print_file_summary(problem)
     if digits:
-        afford(problem.whole, positions, digits=True)
+        refuse_excess_work(problem.whole, positions, digits=True)
     return problem
 
 
@@ -65,13 +65,13 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
     from tmm_cli.grading import read_table, variant_in  # few runs have a table
 
     try:
-        values = variant_in(read_table(variants, read_task(tree_of(file))), variant)
+        values = variant_in(read_table(variants, read_task(read_tree(file))), variant)
     except ProblemError as error:
         raise (error if error.file else error.located(variants)) from None
     return [*(f"{name}={text}" for name, text in values.items()), *given]
 
 
-def afford(
+def refuse_excess_work(
     problem: Problem,
     positions: Sequence[int] | None,
     *,
@@ -90,12 +90,12 @@ def afford(
         raise error.located(problem.file) from None
 
 
-def count_detail(problem: Problem) -> int:
+def count_detailed_positions(problem: Problem) -> int:
     """How many positions are drawn in detail; where the file names none, that of the largest balancing moment."""
     return len(problem.request.detail) or 1
 
 
-def introduce(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
+def print_file_summary(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
     """Say what was understood, and what is probably a slip; drafted: without what a task would find."""
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {bare_units(problem.units)}")

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import new_file, refusing
-from tmm_cli.cli.opening import opened
+from tmm_cli.cli.common import reporting_errors, write_new_file
+from tmm_cli.cli.opening import open_problem
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.problem import (
@@ -34,7 +34,7 @@ def import_(
     ] = None,
 ) -> None:
     """Write a problem file from another program's file."""
-    with refusing():
+    with reporting_errors():
         foreign = read_mechanism(read_file_text(file), file)
         target = out or Path(f"{Path(file).stem}.yaml")
         text = problem_file_text(foreign, Path(file).name)
@@ -46,7 +46,7 @@ def import_(
             raise ProblemError(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None
-        if new_file(target, text):
+        if write_new_file(target, text):
             say(_("written: {file}; next: tmm run {file}").format(file=printable(target)))
         for line in foreign.left:
             say(_("not taken over: {line}").format(line=clean(line, 300)))
@@ -61,11 +61,11 @@ def export(
     ] = None,
 ) -> None:
     """Write the linkage for another program."""
-    with refusing():
+    with reporting_errors():
         name, *__ = parse_names(to, EXPORTS, "--to", _("there is no such program to export to"))
-        text, left = EXPORTS[name](solve(opened(file), "kinematics"))
+        text, left = EXPORTS[name](solve(open_problem(file), "kinematics"))
         target = out or Path(f"{Path(file).stem}.json")
-        if new_file(target, text):
+        if write_new_file(target, text):
             say(_("written: {file}").format(file=printable(target)))
         for line in left:
             say(_("not taken over: {line}").format(line=line))

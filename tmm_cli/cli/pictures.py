@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from tmm_cli.cli.common import Pictures
-from tmm_cli.cli.drawing import by_all_cores
+from tmm_cli.cli.drawing import run_on_all_cores
 from tmm_cli.cli.talk import say
 from tmm_cli.drawing import run as draw
 from tmm_cli.drawing.formats import NamedDrawings, drawing_files
@@ -15,19 +15,19 @@ from tmm_cli.drawing.sheets import assemblies, centres, group_table, hodographs,
 from tmm_cli.mechanics.analysis import Results
 
 
-def _whole(results: Results, *, quiet: bool = False) -> Pictures:
-    return draw.sheet_files(results, say, partial(by_all_cores, quiet=quiet))
+def _draw_run(results: Results, *, quiet: bool = False) -> Pictures:
+    return draw.sheet_files(results, say, partial(run_on_all_cores, quiet=quiet))
 
 
-def _sheets(made: Callable[..., NamedDrawings], *given: Any) -> Pictures:
+def _draw_sheets(made: Callable[..., NamedDrawings], *given: Any) -> Pictures:
     return drawing_files(made(*given), say)
 
 
 PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names
-    "whole": _whole,
-    "hodographs": partial(_sheets, hodographs.draw_reaction_hodographs),
-    "centres": partial(_sheets, centres.draw_centres),
-    "assemblies": partial(_sheets, assemblies.draw_assemblies),
-    "synthesis": partial(_sheets, synthesis.draw_synthesis),
-    "group-table": partial(_sheets, group_table.draw_group_table),
+    "whole": _draw_run,
+    "hodographs": partial(_draw_sheets, hodographs.draw_reaction_hodographs),
+    "centres": partial(_draw_sheets, centres.draw_centres),
+    "assemblies": partial(_draw_sheets, assemblies.draw_assemblies),
+    "synthesis": partial(_draw_sheets, synthesis.draw_synthesis),
+    "group-table": partial(_draw_sheets, group_table.draw_group_table),
 }

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from tmm_cli.cli.common import console
-from tmm_cli.cli.opening import afford, count_detail, introduce, tree_of
+from tmm_cli.cli.opening import count_detailed_positions, print_file_summary, read_tree, refuse_excess_work
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results, Stage
@@ -34,7 +34,7 @@ from tmm_cli.reports import (
 from tmm_cli.synthesis import count, measure_problem, redrive, solve, structure_of
 
 
-def computed(
+def compute_file(
     file: str,
     stage: Stage,
     positions: Sequence[int] | None = None,
@@ -51,23 +51,23 @@ def computed(
     drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
     settings: other values of parameters; digits, drawings: what will be asked of the results.
     """
-    tree = tree_of(file, settings)
+    tree = read_tree(file, settings)
     if is_chain(tree):
         return count(build_chain(tree))
     problem = build_any_problem(tree)
     if driver is not None:
         problem = redrive(problem, driver)
     if not silent:
-        introduce(problem, drafted=drafted)
+        print_file_summary(problem, drafted=drafted)
     if digits or drawings:
         whole = problem.whole
         single = positions is not None and len(positions) == 1
-        shown = 0 if stage == "structure" else 1 if single else count_detail(whole)
-        afford(whole, positions, digits=digits, detail=shown if drawings else None)
+        shown = 0 if stage == "structure" else 1 if single else count_detailed_positions(whole)
+        refuse_excess_work(whole, positions, digits=digits, detail=shown if drawings else None)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
-def bounds_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
+def accuracy_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
     """How far each number is to be trusted, with `digits` in full; None where nothing moves.
 
     shown: tables that alone are shown.
@@ -89,30 +89,30 @@ def report(
 
     digits: show bounds and sensitivities beside the values; people: write tables for spreadsheets too.
     """
-    if not as_expected(results):
+    if not properties_met(results):
         names = {*names, "properties"}  # they end the command with an exit code
-    found = bounds_of(results, digits, () if as_json or out is not None else names)
+    found = accuracy_of(results, digits, () if as_json or out is not None else names)
     if as_json:
         emit_results(results, found)
     else:
-        show(results, names, found)
+        show_tables(results, names, found)
     if out is not None:
-        say_written(write_results(results, out, digits=found, people=people))
+        print_written(write_results(results, out, digits=found, people=people))
     for warning in collect_warnings(results):
         warn(warning)
-    return checked(results)
+    return find_exit_code(results)
 
 
-def checked(results: Results | ChainResults) -> int:
+def find_exit_code(results: Results | ChainResults) -> int:
     """The exit code: whether properties are as expected, the lever holds, and a synthesis gave what it was asked."""
-    if not as_expected(results):
+    if not properties_met(results):
         return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
         return OK
     return OK if results.lever_holds and all(m.met for m in measure_problem(results)) else CHECK_FAILED
 
 
-def as_expected(results: Results | ChainResults) -> bool:
+def properties_met(results: Results | ChainResults) -> bool:
     """Whether the properties that the file shows are what it expects."""
     return all(one.met for one in properties_shown(results))
 
@@ -129,14 +129,14 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
     part: what they are, where the results do not say it.
     """
     if out is not None:
-        say_written(write_results(results, out, pictures.items(), part=part))
+        print_written(write_results(results, out, pictures.items(), part=part))
     elif pictures:
         usual, own = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
         taken = not listed(usual).isdisjoint(pictures)
         with Staged(own if taken else usual) as staged:
             for name, content in pictures.items():
                 staged.write(name, (content,))
-        say_written(WrittenFolder(own if taken else usual, staged.removed, usual if taken else None))
+        print_written(WrittenFolder(own if taken else usual, staged.removed, usual if taken else None))
 
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
@@ -148,10 +148,10 @@ def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, byte
     old = [path.name for path in staged.folder.glob("sheet-*") if path.suffix in formats]
     for name in set(old) - staged.names:
         (staged.folder / name).unlink()
-    say_written(WrittenFolder(staged.folder, sorted(set(old) - staged.names), None))
+    print_written(WrittenFolder(staged.folder, sorted(set(old) - staged.names), None))
 
 
-def say_written(written: WrittenFolder) -> None:
+def print_written(written: WrittenFolder) -> None:
     """Where the results are, what went of earlier ones, and what stays."""
     folder, removed, kept = written
     if kept is None:
@@ -167,7 +167,7 @@ def say_written(written: WrittenFolder) -> None:
         say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 
-def show(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:
+def show_tables(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:
     """Tables of these names, of a chain all; of long ones the positions in detail."""
     screen = console()
     shown = walk(results, () if isinstance(results, ChainResults) else set(names))

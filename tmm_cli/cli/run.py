@@ -17,11 +17,11 @@ from tmm_cli.cli.common import (
     Variant,
     Variants,
     WithDigits,
-    drawn,
-    each,
+    draw_pictures,
+    for_each_file,
 )
 from tmm_cli.cli.opening import variant_settings
-from tmm_cli.cli.reporting import bounds_of, checked, computed, emit_results, say_written, show
+from tmm_cli.cli.reporting import accuracy_of, compute_file, emit_results, find_exit_code, print_written, show_tables
 from tmm_cli.cli.talk import warn
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports import collect_warnings, write_results
@@ -58,18 +58,18 @@ def run(
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)
-        results = computed(file, "forces", position, settings=own, digits=digits, drawings=drawings)
+        results = compute_file(file, "forces", position, settings=own, digits=digits, drawings=drawings)
         moves = drawings and not isinstance(results, ChainResults)
-        pictures = drawn("whole", results, quiet=len(files) > 1) if moves else None
-        found = bounds_of(results, digits)
+        pictures = draw_pictures("whole", results, quiet=len(files) > 1) if moves else None
+        found = accuracy_of(results, digits)
         written = write_results(results, out, pictures, found, tables)
         if as_json:
             emit_results(results, found)
         elif len(files) == 1:
-            show(results, SHOWN, found)
+            show_tables(results, SHOWN, found)
         for warning in collect_warnings(results):
             warn(f"{results.problem.name}: {warning}")
-        say_written(written)
-        return checked(results)
+        print_written(written)
+        return find_exit_code(results)
 
-    each(files, work, as_json=as_json, out=out, headed=False)
+    for_each_file(files, work, as_json=as_json, out=out, headed=False)

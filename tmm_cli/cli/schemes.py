@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Json, console, drawn, emit_json, progress, refusing
+from tmm_cli.cli.common import Json, console, draw_pictures, emit_json, reporting_errors, with_progress
 from tmm_cli.cli.talk import printable, say
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, UnitSystem, build_problem, read_text, unknown_name_error
@@ -43,12 +43,12 @@ from tmm_cli.synthesis import (
 )
 
 CANDIDATES = 24  # poses that are solved before the best of them is taken
-FEW = 6  # the same, of schemes with groups that are not solved in closed form
+FEW_CANDIDATES = 6  # the same, of schemes with groups that are not solved in closed form
 MOST_FILES = 300  # each takes some tenths of a second
 
 
 @dataclass(frozen=True)
-class Skeleton:
+class SchemeFile:
     """A problem file of a scheme. solved: whether it was computed with its forces; else its structure was."""
 
     text: str
@@ -60,12 +60,12 @@ class Skeleton:
         return not self.solved, self.warnings
 
 
-def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
+def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
     """The first good pose, or that with the fewest warnings; None when no pose can be assembled."""
     closed = all(group.type.grade == 2 for group in scheme.groups)
-    best: Skeleton | None = None
-    for layout in find_layouts(scheme)[: CANDIDATES if closed else FEW]:
-        found = _tried(problem_text(scheme, layout, title), scheme, closed)
+    best: SchemeFile | None = None
+    for layout in find_layouts(scheme)[: CANDIDATES if closed else FEW_CANDIDATES]:
+        found = _try_layout(problem_text(scheme, layout, title), scheme, closed)
         if found is not None and (best is None or found.badness < best.badness):
             best = found
         if best is not None and best.badness == (False, 0):
@@ -73,7 +73,7 @@ def skeleton(scheme: Scheme, title: str) -> Skeleton | None:
     return best
 
 
-def _tried(text: str, scheme: Scheme, closed: bool) -> Skeleton | None:
+def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
     """The problem with its forces; of groups that are not closed, whose assembly may not be found, its structure."""
     problem = build_problem(read_text(text, scheme.name))
     try:
@@ -82,11 +82,11 @@ def _tried(text: str, scheme: Scheme, closed: bool) -> Skeleton | None:
         if closed:
             return None
         solve(problem, "structure")
-        return Skeleton(text, False, 0)
-    return Skeleton(text, True, sum(1 for __ in collect_warnings(results))) if results.lever_holds else None
+        return SchemeFile(text, False, 0)
+    return SchemeFile(text, True, sum(1 for __ in collect_warnings(results))) if results.lever_holds else None
 
 
-def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
+def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
     """A problem file a scheme in the folder.
 
     each: the schemes once more, as a progress bar counts them. Nothing is written before all files are made, and no
@@ -103,7 +103,7 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     texts: dict[Path, str] = {}
     written: list[tuple[Path, bool] | None] = []
     for number, scheme in enumerate(each, 1):
-        one = skeleton(scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula))
+        one = write_scheme(scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula))
         path = folder / f"scheme-{number:0{digits}d}-{scheme.name}.yaml"
         written.append(None if one is None else (path, one.solved))
         if one is not None:
@@ -121,7 +121,7 @@ def write_skeletons(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme
     return written
 
 
-def named_types(text: str) -> tuple[str, ...]:
+def read_group_types(text: str) -> tuple[str, ...]:
     """Types of groups from a list of types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
     found: list[str] = []
     for word in text.split(","):
@@ -133,7 +133,7 @@ def named_types(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
+def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
     """The schemes, or a ProblemError that says what can be asked for."""
     _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS_OF_SCHEME + 1, 2))
     try:
@@ -147,7 +147,7 @@ def wanted_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[S
         ) from None
 
 
-def wanted_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
+def find_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
     """The chains, or a ProblemError that says what can be asked for."""
     _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
     return enumerate_chains(links, mobility)
@@ -199,16 +199,16 @@ def schemes(
 ) -> None:
     """Structural synthesis: all schemes built of Assur groups, or the number of kinematic chains."""
     written = None
-    with refusing(as_json, str(out or "")):
+    with reporting_errors(as_json, str(out or "")):
         if table and (links, chains) == (None, None):
             with Staged(out or Path("outputs") / "assur-groups") as staged:
-                for name, picture in drawn("group-table"):
+                for name, picture in draw_pictures("group-table"):
                     staged.write(name, (picture,))
             say(_("written: {folder}").format(folder=printable(staged.folder)))
         elif links is not None and chains is None:
-            types = named_types(groups)
-            found = wanted_schemes(links, mobility, types)
-            written = None if out is None else write_skeletons(found, out, progress(found))
+            types = read_group_types(groups)
+            found = find_schemes(links, mobility, types)
+            written = None if out is None else write_scheme_files(found, out, with_progress(found))
             if as_json:
                 emit_json(schemes_json(found, links, mobility, written, types))
             else:
@@ -217,7 +217,7 @@ def schemes(
         elif chains is not None and links is None:
             if out is not None:
                 raise ProblemError(_("kinematic chains have no files"), path=("--out",), allowed="--links N, --json")
-            all_chains = wanted_chains(chains, mobility)
+            all_chains = find_chains(chains, mobility)
             if as_json:
                 emit_json(chains_json(all_chains, chains, mobility))
             else:

@@ -9,9 +9,9 @@ from typing import Annotated, Literal
 import typer
 
 from tmm_cli import solve
-from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, each
-from tmm_cli.cli.drawing import by_all_cores
-from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
+from tmm_cli.cli.common import Files, Folder, Settings, Variant, Variants, for_each_file
+from tmm_cli.cli.drawing import run_on_all_cores
+from tmm_cli.cli.opening import count_detailed_positions, open_problem, refuse_excess_work, variant_settings
 from tmm_cli.cli.reporting import write_sheets
 from tmm_cli.cli.talk import OK, say, warn
 from tmm_cli.drawing.formats import FORMATS
@@ -36,18 +36,21 @@ def sheets(
 
     def work(file: str) -> int:
         wanted = parse_formats(formats)
-        problem = opened(file, variant_settings(file, variants, variant, settings))
+        problem = open_problem(file, variant_settings(file, variants, variant, settings))
         request = problem.whole.request
-        detail, plans = count_detail(problem.whole), (len(request.places) or request.count) * (positions == "all")
+        detail, plans = (
+            count_detailed_positions(problem.whole),
+            (len(request.places) or request.count) * (positions == "all"),
+        )
         refuse_plans(max(detail, plans))
-        afford(problem.whole, None, detail=detail, large=True, plans=plans)
+        refuse_excess_work(problem.whole, None, detail=detail, large=True, plans=plans)
         results = solve(problem, "forces")
         for remark in position_remarks(results):
             say(remark)
         for warning in collect_warnings(results):
             warn(warning)
-        way = partial(by_all_cores, quiet=len(files) > 1)
+        way = partial(run_on_all_cores, quiet=len(files) > 1)
         write_sheets(results, out, large_sheet_files(results, paper, wanted, say, way, every=positions == "all"))
         return OK
 
-    each(files, work, out=out, headed=False)
+    for_each_file(files, work, out=out, headed=False)

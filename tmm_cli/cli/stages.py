@@ -8,9 +8,21 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.cli.common import Files, Json, Out, Position, Settings, Tables, Variant, Variants, WithDigits, drawn, each
-from tmm_cli.cli.opening import afford, count_detail, opened, variant_settings
-from tmm_cli.cli.reporting import computed, report, write_pictures
+from tmm_cli.cli.common import (
+    Files,
+    Json,
+    Out,
+    Position,
+    Settings,
+    Tables,
+    Variant,
+    Variants,
+    WithDigits,
+    draw_pictures,
+    for_each_file,
+)
+from tmm_cli.cli.opening import count_detailed_positions, open_problem, refuse_excess_work, variant_settings
+from tmm_cli.cli.reporting import compute_file, report, write_pictures
 from tmm_cli.cli.talk import say
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, with_assemblies, with_centres, with_extremes
@@ -44,18 +56,18 @@ def structure(
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)
-        results = computed(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
+        results = compute_file(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out, people=tables)
         code = report(results, names, as_json, None)
-        pictures = dict(drawn("whole", results))
+        pictures = dict(draw_pictures("whole", results))
         if not pictures:
             text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
             say(text.format(problem=results.problem.name))
         write_pictures(results, out, pictures)
         return code
 
-    each(files, work, as_json=as_json, out=out)
+    for_each_file(files, work, as_json=as_json, out=out)
 
 
 INTERMITTENT = ("intermittent", "intermittent-cycle")
@@ -97,10 +109,10 @@ def kinematics(
 
         if assemblies:
             return _list_assemblies(file, as_json, out, position, own)
-        problem = opened(file, own, position, digits)
+        problem = open_problem(file, own, position, digits)
         if centres or problem.whole.request.centres:
-            number = len(position) if position else count_detail(problem.whole)
-            afford(problem.whole, position, digits=digits, centres=number)
+            number = len(position) if position else count_detailed_positions(problem.whole)
+            refuse_excess_work(problem.whole, position, digits=digits, centres=number)
         results = solve(problem, "kinematics", position, asked)
         if extremes:
             results = with_extremes(results)
@@ -108,13 +120,13 @@ def kinematics(
             return _draw_centres(with_centres(results), as_json, out)
         return report(results, ("extremes",) if extremes else names, as_json, out, digits, tables)
 
-    each(files, work, as_json=as_json, out=out)
+    for_each_file(files, work, as_json=as_json, out=out)
 
 
 def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
     """Instantaneous centres, listed and drawn; the exit code."""
     code = report(results, ("extremes", "centres", "advantage"), as_json, None)
-    write_pictures(results, out, dict(drawn("centres", results)))
+    write_pictures(results, out, dict(draw_pictures("centres", results)))
     return code
 
 
@@ -122,7 +134,7 @@ def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
     """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
-    problem = opened(file, settings).whole
+    problem = open_problem(file, settings).whole
     with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)
     code = report(results, [stem for stem, *__ in name_assembly_files(results.assemblies or ())], as_json, None)
@@ -134,7 +146,7 @@ def _list_assemblies(
                 say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
         for group in here.lost:
             say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
-    write_pictures(results, out, dict(drawn("assemblies", results)))
+    write_pictures(results, out, dict(draw_pictures("assemblies", results)))
     return code
 
 
@@ -172,17 +184,17 @@ def forces(
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)
-        results = solve(opened(file, own, position, digits), "forces", position)
+        results = solve(open_problem(file, own, position, digits), "forces", position)
         if extremes:
             results = with_extremes(results)
         code = report(
             results, ("extremes",) if extremes else names, as_json, None if hodographs else out, digits, tables
         )
         if hodographs:
-            write_pictures(results, out, dict(drawn("hodographs", results)), "hodographs")
+            write_pictures(results, out, dict(draw_pictures("hodographs", results)), "hodographs")
         return code
 
-    each(files, work, as_json=as_json, out=out)
+    for_each_file(files, work, as_json=as_json, out=out)
 
 
 DYNAMICS_TABLES = ("dynamics", "law-of-motion", "balancing", "shaking")
@@ -201,7 +213,7 @@ def dynamics(
     """Law of motion: what drives the machine, its flywheel, speeds of the driver; and balancing."""
 
     def work(file: str) -> int:
-        problem = opened(file, variant_settings(file, variants, variant, settings), position, digits).whole
+        problem = open_problem(file, variant_settings(file, variants, variant, settings), position, digits).whole
         if problem.dynamics is None and problem.balancing is None:
             missing = ProblemError(
                 _("nothing is asked of the law of motion or of balancing"),
@@ -211,4 +223,4 @@ def dynamics(
             raise missing.located(problem.file, problem.source)
         return report(solve(problem, "forces", position), DYNAMICS_TABLES, as_json, out, digits)
 
-    each(files, work, as_json=as_json, out=out)
+    for_each_file(files, work, as_json=as_json, out=out)

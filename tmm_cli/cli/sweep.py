@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from tmm_cli.batch import Task, cluster, processes
-from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, bars, console, emit_json, refusing
-from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.batch import Task, in_processes, on_cluster
+from tmm_cli.cli.common import Jobs, Json, Scheduler, Settings, console, emit_json, progress_bars, reporting_errors
+from tmm_cli.cli.opening import print_file_summary, read_tree
 from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.formats import drawing_files as drawings
 from tmm_cli.language import _, words_of_files
@@ -28,15 +28,15 @@ from tmm_cli.reports import (
     without_effect,
 )
 from tmm_cli.sweep import (
-    Mechanisms,
-    Swept,
+    SweepResults,
+    SweptMechanisms,
     borders_table,
     points_table,
     read_axes,
     refuse_points,
+    run_sweep,
     sections,
-    sheets,
-    swept,
+    sweep_sheets,
 )
 
 File = Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML) with parameters.", show_default=False)]
@@ -68,14 +68,14 @@ def sweep(
 
     Each point is a variant with the assembly of the file's own one.
     """
-    with refusing(as_json):
+    with reporting_errors(as_json):
         if out is not None:
             refuse_place(out, folder=True)
-        tree = tree_of(file, settings)
+        tree = read_tree(file, settings)
         task = Task(tree)
-        introduce(task.problem)
+        print_file_summary(task.problem)
         problem = task.problem.whole
-        mechanisms = Mechanisms(tree, read_axes(task, over), show or ())
+        mechanisms = SweptMechanisms(tree, read_axes(task, over), show or ())
         taped, cores = mechanisms.turning is not None, jobs or os.cpu_count() or 1
         points = 1
         for axis in mechanisms.axes:
@@ -85,10 +85,10 @@ def sweep(
         _announce(points, taped)
         for doubt in without_effect(tree, mechanisms.names):
             say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
-        way = cluster(scheduler) if scheduler else processes(cores)
-        with bars() as shown:
+        way = on_cluster(scheduler) if scheduler else in_processes(cores)
+        with progress_bars() as shown:
             work = shown.add_task(_("solved"), total=points)
-            found = swept(mechanisms, way, lambda count: shown.advance(work, count))
+            found = run_sweep(mechanisms, way, lambda count: shown.advance(work, count))
         for slip in tables_of_many(problem.linkage, problem.units, found.reach):
             warn(f"{problem.name}: {slip}")
         if as_json:
@@ -108,14 +108,14 @@ def _announce(points: int, taped: bool) -> None:
     say(text.format(points=points))
 
 
-def _write(found: Swept, problem: Problem, out: Path) -> None:
+def _write(found: SweepResults, problem: Problem, out: Path) -> None:
     """All files at once, or none. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
     with Staged(folder) as staged:
         with words_of_files():
             staged.write("sweep.csv", csv_text(points_table(found), problem.units))
             staged.write("borders.csv", csv_text(borders_table(found), problem.units))
-        for name, picture in drawings(sheets(problem.title, found, problem.units), say):
+        for name, picture in drawings(sweep_sheets(problem.title, found, problem.units), say):
             staged.write(name, (picture,))
         names = sorted(staged.names)
         with words_of_files():

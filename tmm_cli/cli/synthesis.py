@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tmm_cli.cli.common import Files, Json, Out, Settings, console, drawn, each, emit_json
-from tmm_cli.cli.opening import introduce, tree_of
+from tmm_cli.cli.common import Files, Json, Out, Settings, console, draw_pictures, emit_json, for_each_file
+from tmm_cli.cli.opening import print_file_summary, read_tree
 from tmm_cli.cli.talk import CHECK_FAILED, OK, printable, say, warn
 from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
@@ -35,14 +35,14 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
     """
 
     def work(file: str) -> int:
-        return _report(file, as_json, out, settings)
+        return _solve_and_report(file, as_json, out, settings)
 
-    each(files, work, as_json=as_json, out=out)
+    for_each_file(files, work, as_json=as_json, out=out)
 
 
-def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
+def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
-    name, title, found, units, results = _solved(file, settings)
+    name, title, found, units, results = _solve_task(file, settings)
     measured = None if results is None else measure_problem(results)
     with words_of_files():
         whole = {"problem": name, **synthesis_json(found, measured)}
@@ -61,7 +61,7 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
             with words_of_files():
                 for table in tables_of_synthesis(found, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
-            for drawing, picture in drawn("synthesis", title, found.outcome, results, units, found.names):
+            for drawing, picture in draw_pictures("synthesis", title, found.outcome, results, units, found.names):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=printable(folder)))
@@ -70,9 +70,9 @@ def _report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] 
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
 
-def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
+def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
     """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
-    tree = tree_of(file, settings)
+    tree = read_tree(file, settings)
     if "synthesis" not in tree.data:
         build_synthesised(tree)  # refuses a misspelt key
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
@@ -83,6 +83,6 @@ def _solved(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthe
             warn(f"{found[0]}: {doubt}")
         return (*found, None)
     problem = build_synthesised(tree)
-    introduce(problem)
+    print_file_summary(problem)
     assert problem.synthesis is not None
     return problem.name, problem.title, problem.synthesis, problem.units, solve(problem, "kinematics")

@@ -46,7 +46,7 @@ def printable(path: object) -> str:
     return clean(str(path), 300)
 
 
-def tell_fault(error: Exception, words: Sequence[str]) -> int:
+def report_fault(error: Exception, words: Sequence[str]) -> int:
     """Say in one line what to report of an internal fault, or that the memory is exhausted; the exit code.
 
     words: of the command line. The traceback is printed where the environment variable TMM_TRACEBACK asks for it.
@@ -56,7 +56,7 @@ def tell_fault(error: Exception, words: Sequence[str]) -> int:
     if isinstance(error, MemoryError):
         say(_("error: there is not enough memory; fewer positions, variants or drawings take less"))
         return FAULT
-    place = _place_of(error)
+    place = _program_line(error)
     command = next((word for word in words if not word.startswith("-")), "")
     told = _(
         "internal fault: {name} at {place} (tmm {version}, command {command}): please report this line and the file; "
@@ -67,7 +67,7 @@ def tell_fault(error: Exception, words: Sequence[str]) -> int:
     return FAULT
 
 
-def _place_of(error: Exception) -> str:
+def _program_line(error: Exception) -> str:
     """The innermost line of the program that an exception passed, in the process where it was raised."""
     remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
@@ -92,7 +92,7 @@ def refuse_addresses(named: Mapping[str, Any]) -> None:
             raise typer.Exit(BAD_INPUT)
 
 
-def speaking(command: Callable[..., None]) -> Callable[..., None]:
+def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
     """The command with an option for the language; it goes before what a file says."""
 
     @wraps(command)
@@ -113,13 +113,13 @@ def speaking(command: Callable[..., None]) -> Callable[..., None]:
     return spoken_command
 
 
-def speak_as(language: object) -> None:
+def use_file_language(language: object) -> None:
     """Speak the language of a file from here on, unless the command was asked for another."""
     if _asked_for.get() is None and language in get_args(Language):
         speak(str(language))
 
 
-def write_as(file: Mapping[str, object]) -> None:
+def use_file_notation(file: Mapping[str, object]) -> None:
     """Print from here on the number of the frame and the letter of inertia forces that a file wants, unchecked."""
     note = file.get("note")
     letter = note.get("inertia") if isinstance(note, dict) else ""

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from tmm_cli.batch import Task, read_task, with_vary
-from tmm_cli.cli.common import console, progress, refusing
-from tmm_cli.cli.opening import read_in_its_language
+from tmm_cli.cli.common import console, reporting_errors, with_progress
+from tmm_cli.cli.opening import read_in_file_language
 from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.grading import (
     HEADER,
@@ -55,9 +55,9 @@ def variants(
     vary: Vary = None,
 ) -> None:
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
-    with refusing():
+    with reporting_errors():
         refuse_place(out, folder=True)
-        task = read_task(with_vary(read_in_its_language(file), vary or ()))
+        task = read_task(with_vary(read_in_file_language(file), vary or ()))
         variety = Variety(task)
         if students is None:
             table = draw(variety, seed, count)
@@ -67,7 +67,7 @@ def variants(
             first = [name for name in before if name in listed]
             table = draw_for(variety, seed, [*first, *sorted(set(listed) - set(first))])
             count = len(listed)
-        _tell(variety, table)
+        _print_drawn(variety, table)
         for slip in tables_apart(task, table):
             warn(f"{task.problem.name}: {slip}")
         if len(table.rows) < count:
@@ -82,7 +82,7 @@ def variants(
         _write(task, Path(file).read_text(encoding="utf-8-sig"), table, out)
 
 
-def _tell(variety: Variety, table: VariantTable) -> None:
+def _print_drawn(variety: Variety, table: VariantTable) -> None:
     """What was drawn and thrown away."""
     rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
     told = _("{count} variants of {free}, drawn from {tried} candidates")
@@ -110,7 +110,7 @@ def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
             for sentence in idle_questions(key):
                 say(sentence)
         sheets = TaskSheets(task, text, table)
-        for student in progress(list(table.rows)):
+        for student in with_progress(list(table.rows)):
             for name, content in sheets.of(student):
                 folder.write(name, [content])
     say(_("written: {files}").format(files=printable(out)))

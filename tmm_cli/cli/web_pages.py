@@ -9,10 +9,10 @@ from typing import Annotated
 import typer
 
 from tmm_cli import solve
-from tmm_cli.animation import Card, animation_page, card, gallery_page
-from tmm_cli.cli.common import Settings, Variant, Variants, problems_in, refusing
-from tmm_cli.cli.drawing import by_all_cores
-from tmm_cli.cli.opening import opened, variant_settings
+from tmm_cli.animation import Card, animation_page, gallery_page, make_card
+from tmm_cli.cli.common import Settings, Variant, Variants, problems_in, reporting_errors
+from tmm_cli.cli.drawing import run_on_all_cores
+from tmm_cli.cli.opening import open_problem, variant_settings
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say, warn
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError
@@ -32,10 +32,10 @@ def animate(
     variant: Variant = None,
 ) -> None:
     """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
-    with refusing():
+    with reporting_errors():
         if out is not None:
             refuse_place(out, folder=False)
-        problem = opened(file, variant_settings(file, variants, variant, settings))
+        problem = open_problem(file, variant_settings(file, variants, variant, settings))
         results = solve(problem)
         target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
         write_whole(target, animation_page(results).encode())
@@ -54,16 +54,16 @@ def gallery(
 
     A file that cannot be computed is said and left out: exit code 1.
     """
-    with refusing():
+    with reporting_errors():
         refuse_place(out / "index.html", folder=False)
-    made = list(by_all_cores([partial(_made, str(file)) for file in problems_in(paths)]))
+    made = list(run_on_all_cores([partial(_try_card, str(file)) for file in problems_in(paths)]))
     cards = [one for one in made if isinstance(one, Card)]
     for one in made:
         if isinstance(one, str):
             say(_("error: {error}").format(error=one))
     if not cards:
         raise typer.Exit(BAD_INPUT)
-    with refusing():
+    with reporting_errors():
         target = out / "index.html"
         write_whole(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
@@ -72,9 +72,9 @@ def gallery(
         raise typer.Exit(CHECK_FAILED)
 
 
-def _made(file: str) -> Card | str:
+def _try_card(file: str) -> Card | str:
     """A card, or why there is none."""
     try:
-        return card(file)
+        return make_card(file)
     except ProblemError as error:
         return str(error)

@@ -28,7 +28,7 @@ from tmm_cli.drawing.sheets import (
     sketch_scene,
 )
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis import Results, balancing, chosen_here, detailed_positions
+from tmm_cli.mechanics.analysis import Results, balancing_magnitude, detail_chosen_by_program, detailed_positions
 from tmm_cli.mechanics.quantities import FORCE, MOMENT
 
 POSITION_DRAWINGS = (draw_position, draw_motion_plans, draw_group_loads, draw_force_plans, draw_lever)
@@ -90,12 +90,12 @@ def sheet_files(
 
 def position_remarks(results: Results) -> Iterable[str]:
     """Which position is drawn in full where the file names none, and why."""
-    if results.motion is not None and chosen_here(results):
+    if results.motion is not None and detail_chosen_by_program(results):
         yield from (_default_position_note(results, k) for k in detailed_positions(results))
 
 
 def _default_position_note(results: Results, k: int) -> str:
-    number, size = results.numbers[k], float(balancing(results)[k])
+    number, size = results.numbers[k], float(balancing_magnitude(results)[k])
     if size == 0:
         return _("note: no positions.detail in the file, drawn in full is position {number}").format(number=number)
     turns = results.linkage.driver.kind == "turn"

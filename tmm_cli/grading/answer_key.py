@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tmm_cli.batch import Asked, Task, families
+from tmm_cli.batch import Question, Task, split_families
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.run import numbers_of
 from tmm_cli.grading.sheet import right
@@ -26,7 +26,7 @@ class KeyLine:
     """An answer of a student. value: SI; allowed: by how much it may be off, SI; share: of the largest value."""
 
     student: str
-    asked: Asked
+    asked: Question
     value: complex
     allowed: float
     share: float
@@ -61,7 +61,7 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
     students = list(table.rows)
     dimensions, columns = numbers_of(task, table, students)
     found: dict[int, list[KeyLine]] = {}
-    for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+    for rows, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         if isinstance(family, LinkageError):
             continue
         own = right(family, task.asked)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes import cases
 from tmm_cli.grading.mistakes.base import Mistake, solve
 from tmm_cli.grading.mistakes.data import ScaleInverted
@@ -53,7 +53,7 @@ class Claim:
         return " / ".join(sorted({case.called for case in self.alternatives}))
 
 
-def diagnose_students(family: Family, right: Right, written: Written) -> dict[int, list[Claim]]:
+def diagnose_students(family: VariantFamily, right: Right, written: Written) -> dict[int, list[Claim]]:
     """Claims by student, for those who have wrong answers."""
     wrong = right.error(written) > right.allowed
     rows = np.flatnonzero(np.any(wrong, axis=1))
@@ -67,7 +67,7 @@ def diagnose_students(family: Family, right: Right, written: Written) -> dict[in
 class _Sheets:
     """Students with wrong answers, and what every mistake would have made of their variants."""
 
-    def __init__(self, family: Family, right: Right, written: Written) -> None:
+    def __init__(self, family: VariantFamily, right: Right, written: Written) -> None:
         self.family, self.right, self.written, self.cases = family, right, written, cases(family)
         plain = solve(family)
         asked = right.asked

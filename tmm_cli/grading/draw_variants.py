@@ -12,13 +12,22 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Asked, Family, Task, Variant, choice_values, families, read_choices, together
+from tmm_cli.batch import (
+    Question,
+    Task,
+    Variant,
+    VariantFamily,
+    build_family,
+    parameter_values,
+    read_free_parameters,
+    split_families,
+)
 from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.run import numbers_of
 from tmm_cli.grading.sheet import Right, right
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.errors import LinkageError
-from tmm_cli.mechanics.forces import reach_of_tables
+from tmm_cli.mechanics.forces import table_lengths
 from tmm_cli.mechanics.groups import LinkStates, link_states
 from tmm_cli.mechanics.kinematics import Strokes, driven_links, driving_pair_names, pressure_angle
 from tmm_cli.mechanics.numerics import END_OF_SLOT, SAME_ASSEMBLY, Real, Vector
@@ -43,7 +52,7 @@ class Faults:
     strokes: int
     limits: Mapping[Held, float]
 
-    def of(self, family: Family) -> Real:
+    def of(self, family: VariantFamily) -> Real:
         """A sentence for every variant, "" where nothing is wrong."""
         linkage = family.linkage
         low = np.min(family.q, axis=1, keepdims=True)
@@ -82,9 +91,9 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
         return
     dimensions, columns = numbers_of(task, table, list(table.rows))
     reach: dict[str, list[tuple[float, float]]] = {}
-    for __, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
-        if isinstance(family, Family):
-            for load, last, stroke in reach_of_tables(family.linkage, family.strokes):
+    for __, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+        if isinstance(family, VariantFamily):
+            for load, last, stroke in table_lengths(family.linkage, family.strokes):
                 rows = np.broadcast_arrays(np.ravel(last), np.ravel(stroke), np.zeros(len(family)))
                 reach.setdefault(load.name, []).extend(zip(rows[0].tolist(), rows[1].tolist(), strict=True))
     yield from tables_of_many(linkage, task.units, reach)
@@ -172,17 +181,17 @@ class Variety:
 
     def __init__(self, task: Task) -> None:
         self.task, self.faults = task, faults_of(task)
-        self.free = read_choices(task)
+        self.free = read_free_parameters(task)
         self.names = tuple(choice.name for choice in self.free)
         self.dimensions = tuple(choice.dimension for choice in self.free)
-        self.numbers = [choice_values(task, choice) for choice in self.free]
-        self.asked: tuple[Asked, ...] = task.asked if task.blocks.grading else ()
+        self.numbers = [parameter_values(task, choice) for choice in self.free]
+        self.asked: tuple[Question, ...] = task.asked if task.blocks.grading else ()
         own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
         self.own = np.array([own])
         self.size = math.prod(len(choice.texts) for choice in self.free)
         self.thrown: Counter[str] = Counter()
         self.tried = 0
-        base = together(self._make, np.concatenate([self.own, self.own]))
+        base = build_family(self._make, np.concatenate([self.own, self.own]))
         self.alone = base is None or not bool(np.all(base.sound))
 
     def _make(self, values: Sequence[Any]) -> Variant:
@@ -216,15 +225,15 @@ class Variety:
         values, allowed = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return Judged(why, np.concatenate(rows), values.astype(complex), allowed)
 
-    def _families(self, columns: Real) -> Iterator[tuple[Real, Family | LinkageError]]:
+    def _families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
         """All with the file's own variant before them, whose assembly is that of the sketch; or each alone."""
         if not self.alone:
-            family = together(self._make, np.concatenate([self.own, columns]))
+            family = build_family(self._make, np.concatenate([self.own, columns]))
             if family is not None:
                 yield np.arange(len(columns)), family.take(np.arange(1, len(family)))
                 return
         for row, own in enumerate(columns):
-            yield from ((np.array([row]), family) for _rows, family in families(self._make, own[None]))
+            yield from ((np.array([row]), family) for _rows, family in split_families(self._make, own[None]))
 
     def pools(self, seed: int) -> Iterator[Iterator[Real]]:
         """Sound candidates of each pool, one after another in the order of spreading."""
@@ -263,13 +272,13 @@ class Variety:
 
     def _assembled_alike(self, picks: Real) -> bool:
         row = np.array([[values[k] for values, k in zip(self.numbers, picks, strict=True)]])
-        alone = next(families(self._make, row))[1]
+        alone = next(split_families(self._make, row))[1]
         if isinstance(alone, LinkageError):
             return False
         if self.alone:
             return True
         _rows, family = next(self._families(row))
-        assert isinstance(family, Family)
+        assert isinstance(family, VariantFamily)
         one, other = (link_states(f.linkage, f.kernels, alone.q[:, :1], 0).poses for f in (alone, family))
         return all(bool(np.allclose(one[link].z, other[link].z, atol=SAME_ASSEMBLY)) for link in one)
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.diagnose import Claim
 from tmm_cli.grading.mistakes.base import Mistake, solve
 from tmm_cli.grading.mistakes.motion import Coriolis
 from tmm_cli.grading.sheet import Right, Written, written_down
-from tmm_cli.mechanics.analysis import Quantity
-from tmm_cli.mechanics.forces import Applied
+from tmm_cli.mechanics.analysis import NamedQuantity
+from tmm_cli.mechanics.forces import AppliedLoad
 from tmm_cli.mechanics.groups import (
     Accel,
     Accels,
@@ -47,7 +47,7 @@ class OwnMotion(Mistake):
     rate: Real
     gain: Real
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         links = family.linkage.links
         if any(name == self.link or self.point in links[name].points for name in kernel.group.links):
             return OwnGroup.around(kernel, self, family.linkage)
@@ -132,7 +132,7 @@ class OwnSpeed(Mistake):
 
     given: Vector
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         rate: Any = np.abs(np.real(self.given))
         return family.changed(replace(family.linkage, driver=replace(driver, rate=rate)))
@@ -146,7 +146,7 @@ class OwnInertia(Mistake):
     part: str
     given: Vector
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or load.link != self.link:
             return load
         value = self.given if self.part == "force" else np.real(self.given)
@@ -161,7 +161,7 @@ class OwnReaction(Mistake):
     on: str
     given: Vector
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         pairs = (*kernel.group.outer, *kernel.group.inner)
         return OwnReactions.around(kernel, self) if any(pair.name == self.pair for pair in pairs) else kernel
 
@@ -183,7 +183,7 @@ class OwnReactions(WrappedSolver):
         return replace(found, outer=tuple(outer), inner=tuple(inner))
 
 
-def own_answer(quantity: Quantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
+def own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
     """A quantity with the students' values, (students, 1), in its place; None where nothing later hangs on it.
 
     right: what is right for them; motion: theirs.
@@ -219,7 +219,7 @@ Cell = tuple[int, int]  # a student and an answer
 
 
 def following(
-    family: Family, right: Right, written: Written, claims: dict[int, list[Claim]]
+    family: VariantFamily, right: Right, written: Written, claims: dict[int, list[Claim]]
 ) -> dict[Cell, tuple[int, ...]]:
     """Wrong answers that follow from earlier ones of the same student: from which."""
     wrong = right.error(written) > right.allowed
@@ -271,7 +271,7 @@ def _by_mistake(right: Right, wrong: Real, claims: dict[int, list[Claim]]) -> di
 
 
 def _fitting(
-    family: Family,
+    family: VariantFamily,
     right: Right,
     written: Written,
     whole: Real,

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_cli.grading.sheet import Right, Written
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, FORCE, LENGTH, MOMENT, SPEED, Dimension
 from tmm_cli.problem import ProblemError, UnitError, UnitSystem, parse_unit, quote
@@ -165,7 +165,7 @@ def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str,
     return found
 
 
-def _factors(quantity: Quantity, unit: str, units: UnitSystem) -> dict[str, float]:
+def _factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str, float]:
     """In SI: the unit as it is written, else each that it may be, the file's own first. Raises UnitError."""
     names = (unit,) if unit else (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
     return {name: factor(name, quantity.dimension) for name in names}

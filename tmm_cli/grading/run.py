@@ -16,7 +16,17 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Asked, Family, Task, Way, families, here, processes, program_digest, read_task
+from tmm_cli.batch import (
+    JobRunner,
+    Question,
+    Task,
+    VariantFamily,
+    in_processes,
+    program_digest,
+    read_task,
+    run_here,
+    split_families,
+)
 from tmm_cli.grading.diagnose import diagnose_students, with_copies
 from tmm_cli.grading.exports import write
 from tmm_cli.grading.exports.book import Gradebook
@@ -113,7 +123,7 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
     found: dict[int, StudentMarks] = {}
     known = [n for n, s in enumerate(submissions) if s.student in table.rows]
     dimensions, columns = numbers_of(task, table, [submissions[n].student for n in known])
-    for rows, family in families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
+    for rows, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         own = [known[row] for row in rows]
         if isinstance(family, LinkageError):
             found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
@@ -146,7 +156,9 @@ def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
 
-def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Iterator[tuple[Real, Family]]:
+def _begun(
+    task: Task, family: VariantFamily, submissions: Sequence[Submission]
+) -> Iterator[tuple[Real, VariantFamily]]:
     """The students who count the positions from where the task does, and those who do from the other extreme position.
 
     The latter only where the task allows it; each by what makes more of the answers right.
@@ -166,7 +178,7 @@ def _begun(task: Task, family: Family, submissions: Sequence[Submission]) -> Ite
             yield part, one.take(part)
 
 
-def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> list[StudentMarks]:
+def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Of the students of one family."""
     submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     found: dict[int, StudentMarks] = {}
@@ -178,8 +190,8 @@ def _marks(task: Task, family: Family, submissions: Sequence[Submission]) -> lis
 
 
 def _by_attachment(
-    task: Task, family: Family, submissions: Sequence[Submission]
-) -> Iterator[tuple[Real, tuple[Asked, ...]]]:
+    task: Task, family: VariantFamily, submissions: Sequence[Submission]
+) -> Iterator[tuple[Real, tuple[Question, ...]]]:
     """Students with what is asked of them, reactions in compound hinges as each has attached the links there.
 
     The other attachment counts for an answer that it makes right and the usual one does not.
@@ -199,7 +211,7 @@ def _by_attachment(
 
 
 def _marks_of(
-    task: Task, asked_all: tuple[Asked, ...], family: Family, submissions: Sequence[Submission]
+    task: Task, asked_all: tuple[Question, ...], family: VariantFamily, submissions: Sequence[Submission]
 ) -> list[StudentMarks]:
     """Of students of one family of whom the same is asked."""
     wanted = right(family, asked_all)
@@ -276,7 +288,7 @@ def graded(
     task: Task,
     table: VariantTable,
     submissions: Sequence[Submission],
-    way: Way = here,
+    way: JobRunner = run_here,
     kept: Path | None = None,
     seen: Callable[[int], None] = lambda count: None,
     stopped: Callable[[], bool] = lambda: False,
@@ -309,7 +321,7 @@ def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) 
     if len(book.marks) <= CHUNK or len(parts) < 2:
         write(folder, book, formats)
         return
-    for _done in processes(jobs)([partial(write, folder, book, part) for part in parts], lambda: False):
+    for _done in in_processes(jobs)([partial(write, folder, book, part) for part in parts], lambda: False):
         pass
 
 

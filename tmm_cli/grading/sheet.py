@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from tmm_cli.batch import Asked, Family, changed, numbers
+from tmm_cli.batch import Question, VariantFamily, numeric_leaves, with_numbers
 from tmm_cli.grading.mistakes.base import Mistake, Solution, solve
-from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.groups import ClosedFormSolver
 from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.mechanics.quantities import (
@@ -52,7 +52,7 @@ class Written:
 class Right:
     """What is right: value; scale, what errors are shares of; allowed, how large such a share may be."""
 
-    asked: tuple[Asked, ...]
+    asked: tuple[Question, ...]
     value: Vector
     scale: Real
     allowed: Real
@@ -79,30 +79,30 @@ class Right:
         return Right(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
 
 
-def predicted(family: Family, asked: Sequence[Asked], mistakes: Sequence[Mistake] = ()) -> Vector:
+def predicted(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
     """What would have been written down with these mistakes in, (students, asked)."""
     return written_down(solve(family, mistakes), asked, mistakes)
 
 
-def written_down(solution: Solution, asked: Sequence[Asked], mistakes: Sequence[Mistake] = ()) -> Vector:
+def written_down(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
     """What is written down of a solution, (students, asked), with mistakes in the writing."""
     return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
 
 
-def _value(asked: Asked, solution: Solution, mistakes: Sequence[Mistake]) -> Vector:
+def _value(asked: Question, solution: Solution, mistakes: Sequence[Mistake]) -> Vector:
     values = values_of(asked.quantity, solution)
     for mistake in mistakes:
         values = mistake.value(asked.quantity, values, solution)
     return values[:, asked.position or 0].astype(complex)
 
 
-def values_of(quantity: Quantity, solution: Solution) -> Real:
+def values_of(quantity: NamedQuantity, solution: Solution) -> Real:
     """A quantity of all variants at all positions; (variants, 1) of the mechanism as a whole."""
     found = np.asarray(quantity.read(solution))
     return np.broadcast_to(found, (len(solution.family), found.shape[-1]))
 
 
-def right(family: Family, asked: Sequence[Asked]) -> Right:
+def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
     """What is right for all variants of a family."""
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
@@ -122,7 +122,7 @@ def right(family: Family, asked: Sequence[Asked]) -> Right:
     return Right(tuple(asked), value, scale, np.where(exact, SAME, allowed))
 
 
-def _scales(asked: Sequence[Asked], solution: Solution) -> Real:
+def _scales(asked: Sequence[Question], solution: Solution) -> Real:
     """Of all that is asked; what is zero all the cycle is measured against what is usual in such a mechanism."""
     found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
     usual = _usual(solution)
@@ -154,7 +154,7 @@ def _usual(solution: Solution) -> dict[Dimension, Real]:
     }
 
 
-def _scale(quantity: Quantity, solution: Solution) -> Real:
+def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
     """What errors of a quantity are shares of, (variants,)."""
     values = values_of(quantity, solution)
     if quantity.against in ("angle", "exact"):
@@ -164,7 +164,7 @@ def _scale(quantity: Quantity, solution: Solution) -> Real:
     return np.asarray(np.nanmax(np.abs(values), axis=1))
 
 
-def _nearby(family: Family) -> Iterator[Family]:
+def _nearby(family: VariantFamily) -> Iterator[VariantFamily]:
     """The family with the lengths of one link after the other a little longer, and with the driver a little on.
 
     All of them as one family, the variants again and again; each alone where a group is not plain.
@@ -172,7 +172,7 @@ def _nearby(family: Family) -> Iterator[Family]:
     of = {
         link: [
             path
-            for path, value in numbers(family.linkage)
+            for path, value in numeric_leaves(family.linkage)
             if path.startswith(f"links.{link}.points.") and np.any(value != 0)
         ]
         for link in family.linkage.links
@@ -184,9 +184,9 @@ def _nearby(family: Family) -> Iterator[Family]:
     else:
         parts = [(np.array(k), family) for k in range(len(links) + 1)]
     for which, part in parts:
-        found = dict(numbers(part.linkage))
+        found = dict(numeric_leaves(part.linkage))
         lengths = {
             path: found[path] * np.where(which == k, 1 + STEP, 1.0) for k, link in enumerate(links) for path in of[link]
         }
         q = part.q + np.where(which == len(links), STEP, 0.0)
-        yield part.changed(changed(part.linkage, lengths), q)
+        yield part.changed(with_numbers(part.linkage, lengths), q)

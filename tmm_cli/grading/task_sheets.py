@@ -11,7 +11,7 @@ from itertools import groupby
 
 import yaml
 
-from tmm_cli.batch import Asked, Task
+from tmm_cli.batch import Question, Task
 from tmm_cli.drawing.formats import write_png
 from tmm_cli.drawing.sheets import task_picture
 from tmm_cli.grading.record import VariantTable
@@ -211,7 +211,7 @@ def meaning(name: str) -> str:
     return _(MEANINGS.get(kind, MEANINGS.get(kind.partition("_")[0], "")))
 
 
-def _unit(task: Task, asked: Asked) -> str:
+def _unit(task: Task, asked: Question) -> str:
     dimension = asked.quantity.dimension
     return "" if dimension == NUMBER else task.units.spelt(dimension)
 

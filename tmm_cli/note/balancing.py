@@ -13,7 +13,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics import Balanced, Balancing, BalancingTask, Counterweight, Place, Rotor, steadily
+from tmm_cli.mechanics.dynamics import (
+    BalancedCycle,
+    BalancingResults,
+    BalancingTask,
+    CounterweightPlace,
+    CounterweightSolution,
+    UnbalancedShaft,
+    constant_speed_motion,
+)
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import NO_VECTOR, Vector, cross, dot
@@ -38,7 +46,7 @@ def write_balancing(subject: Subject) -> Iterable[Block]:
             yield from write_rotor_balancing(subject, found.task.rotor, found.corrections)
 
 
-def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
+def _of_links(subject: Subject, found: BalancingResults) -> Iterable[Block]:
     yield Heading(_("Shaking force and moment"), 2)
     yield from _explained(found)
     for k in subject.detail:
@@ -53,7 +61,7 @@ def _of_links(subject: Subject, found: Balancing) -> Iterable[Block]:
     yield from (rows_of(subject, table) for table in walk(subject.results, ("shaking",)))
 
 
-def _explained(found: Balancing) -> Iterable[Block]:
+def _explained(found: BalancingResults) -> Iterable[Block]:
     """What is summed up."""
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
     yield said(
@@ -76,10 +84,10 @@ def _explained(found: Balancing) -> Iterable[Block]:
     )
 
 
-def _position(subject: Subject, found: Balancing, k: int) -> Iterable[Block]:
+def _position(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
     """Parts of the force, its size, and the moment."""
     results = subject.results
-    motion = steadily(results.mechanism, subject.motion.q[k : k + 1])
+    motion = constant_speed_motion(results.mechanism, subject.motion.q[k : k + 1])
     about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
     largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
     for name in motion.linkage.moving:
@@ -113,7 +121,7 @@ SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what wa
 MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
-def write_counterweights(subject: Subject, found: Balanced, task: BalancingTask) -> Iterable[Block]:
+def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
     """Each with its mass times radius, and its mass where the radius is told; what they leave of the force."""
     replaced = _Replaced(subject.results.linkage, found, task)
     if replaced.solved():
@@ -161,7 +169,7 @@ class _Replaced:
     """Masses that are moved to the hinges of links, and from there to counterweights."""
 
     linkage: Linkage
-    found: Balanced
+    found: BalancedCycle
     task: BalancingTask
     told: list[Block] = field(default_factory=list)
     lumps: dict[str, list[Leaf]] = field(default_factory=dict)
@@ -176,7 +184,7 @@ class _Replaced:
         moved = [link for link in weights if self._fixed(weights[link].place) is None]
         return all(self._balance(weights[link]) for link in [*moved, *(n for n in weights if n not in moved)])
 
-    def _fixed(self, place: Place) -> str | None:
+    def _fixed(self, place: CounterweightPlace) -> str | None:
         """The hinge on the frame about which a counterweight turns."""
         points = self.linkage.links[place.link].points
         return next((p for p in self._hinges(place.link, FRAME) if points[p] == place.about), None)
@@ -216,7 +224,7 @@ class _Replaced:
             self.lumps.setdefault(point, []).append(Leaf(symbol, value))
         return True
 
-    def _balance(self, weight: Counterweight) -> bool:
+    def _balance(self, weight: CounterweightSolution) -> bool:
         """Those of its link and of its points."""
         place, link = weight.place, self.linkage.links[weight.place.link]
         name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
@@ -250,7 +258,7 @@ class _Replaced:
             self._carry(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
         return True
 
-    def _carry(self, weight: Counterweight, pivot: str, masses: list[Leaf]) -> None:
+    def _carry(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
         """The pivot moves, and carries the link with all its masses and the counterweight."""
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
@@ -292,7 +300,7 @@ class _Replaced:
 PLANES = ("I", "II")
 
 
-def write_rotor_balancing(subject: Subject, rotor: Rotor, corrections: Vector) -> Iterable[Block]:
+def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
     """In the second plane what leaves no couple about the first one, then in the first what leaves no force."""
     two = len(rotor.planes) > 1
     static = _("A shaft is balanced statically when the vectors {D} = m·r of all its masses add up to nothing.")
@@ -307,7 +315,7 @@ def write_rotor_balancing(subject: Subject, rotor: Rotor, corrections: Vector) -
     yield from _mass(subject, rotor, corrections, 0)
 
 
-def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterable[Block]:
+def _mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int) -> Iterable[Block]:
     found, name = complex(corrections[k]), PLANES[k]
     own = Symbol("D", name)
     yield said(_("In plane {plane}:"), plane=name)
@@ -330,7 +338,7 @@ def _mass(subject: Subject, rotor: Rotor, corrections: Vector, k: int) -> Iterab
         yield Found(Symbol("m", name), mass, abs(found) / radius, _("kg"))
 
 
-def _share(rotor: Rotor, number: int, function: str, *, moment: bool) -> Expression:
+def _share(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
     """Of a mass, along an axis; moment: about the first plane."""
     size, index = complex(rotor.sizes[number]), str(number + 1)
     angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
@@ -338,6 +346,6 @@ def _share(rotor: Rotor, number: int, function: str, *, moment: bool) -> Express
     return share * _gap(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
 
 
-def _gap(symbol: Symbol, at: float, rotor: Rotor) -> Expression:
+def _gap(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
     """How far beyond the first plane, m."""
     return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

@@ -32,7 +32,7 @@ from tmm_cli.drawing.sheets import (
 )
 from tmm_cli.language import _, language, numeral, signed, spelt, typeset
 from tmm_cli.mechanics.analysis import Results, detailed_positions
-from tmm_cli.mechanics.forces import Lever, Reactions, subscript
+from tmm_cli.mechanics.forces import Reactions, ZhukovskyLever, subscript
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.plans import extent, round_scale
 from tmm_cli.mechanics.quantities import Dimension
@@ -94,7 +94,7 @@ class Subject:
         return self.results.reactions
 
     @property
-    def lever(self) -> Lever:
+    def lever(self) -> ZhukovskyLever:
         """Of what has forces."""
         assert self.results.lever is not None
         return self.results.lever

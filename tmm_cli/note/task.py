@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces import Symbol, named
+from tmm_cli.mechanics.forces import Symbol, symbol_of_name
 from tmm_cli.mechanics.linkage import FRAME, Link, Load
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
@@ -183,7 +183,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
     if load.window is not None:
         first, last = (subject.value(angle, ANGLE) for angle in load.window)
         when = _("crank from {first} to {last}").format(first=first, last=last)
-    name = named(load.name, "P" if load.force else "M")
+    name = symbol_of_name(load.name, "P" if load.force else "M")
     return cells(name, link_name(load.link), place if load.force else NONE, size, when)
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.language import N_, Phrase, _
-from tmm_cli.mechanics.analysis import Results, links as chosen_links, moving_centres, moving_points
-from tmm_cli.mechanics.forces import power
+from tmm_cli.mechanics.analysis import Results, moving_centres, moving_points, select_links as chosen_links
+from tmm_cli.mechanics.forces import reduced_driving_moment
 from tmm_cli.mechanics.kinematics import InstantCentre, LinkMotion, Motion, output_run
 from tmm_cli.mechanics.linkage import Driver, Linkage
 from tmm_cli.mechanics.numerics import Real, pi
@@ -120,7 +120,9 @@ def _balance(results: Results) -> Iterable[Column]:
         yield Column(name.format(link=link), balance.generalized, MOMENT if turns else FORCE)
     first = results.linkage.driver
     size = MOMENT if first.kind == "turn" else FORCE
-    yield Column(Phrase("reduced to {link}, force plan", link=first.link), power(motion, reactions), size)
+    yield Column(
+        Phrase("reduced to {link}, force plan", link=first.link), reduced_driving_moment(motion, reactions), size
+    )
     yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
     yield difference
 

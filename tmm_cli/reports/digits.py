@@ -11,19 +11,19 @@ import numpy as np
 
 from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.mechanics.accuracy import (
-    FEWEST,
-    PAPER,
+    PAPER_CHANGE,
+    SIX_FIGURES,
     Digits,
-    Wide,
-    blur,
-    coarsely,
+    PreciseLinkage,
+    choose_precision,
     is_angle,
-    judged,
-    relative,
-    searched,
-    sizes,
+    judge_searched,
+    judge_values,
+    largest_values,
+    relative_bound,
+    start_uncertainty,
 )
-from tmm_cli.mechanics.analysis import Results, at_positions, near_dead
+from tmm_cli.mechanics.analysis import Results, is_near_dead, motion_at_positions
 from tmm_cli.mechanics.kinematics import FIELDS_WITHOUT_POSITIONS
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import ROUNDOFF, Real, Record, map_record
@@ -302,26 +302,26 @@ def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) 
     assert motion is not None
     with np.errstate(all="ignore"):
         mu = _mu(results) if full else float("nan")
-        wide = Wide(results) if full else coarsely(results)
-        found = cache(lambda: searched(results, reader(results, full and not shown), wide, mu))
-        start = blur(results, wide)
-        share = relative(results, start)
-        asked = share > FEWEST
+        wide = PreciseLinkage(results) if full else choose_precision(results)
+        found = cache(lambda: judge_searched(results, reader(results, full and not shown), wide, mu))
+        start = start_uncertainty(results, wide)
+        share = relative_bound(results, start)
+        asked = share > SIX_FIGURES
         if full:
             asked[:: -(-count // LONG)] = True
             asked[-1:] = True
         if np.any(asked):
-            asked |= near_dead(motion) if motion.where is None else motion.where | near_dead(motion)
+            asked |= is_near_dead(motion) if motion.where is None else motion.where | is_near_dead(motion)
         chosen, there, digits = np.flatnonzero(asked), results, Digits(mu=mu)
         if 0 < len(chosen) < count:
             there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
         if len(chosen):
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
-            digits = judged(there, partial(cells_with_digits, shown=shown), mu=mu, blur=away)
+            digits = judge_values(there, partial(cells_with_digits, shown=shown), mu=mu, blur=away)
     for key, bound in digits.bound.items():
         if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
             digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)
-    return AccuracyReport(results, share, sizes(results), found, chosen, there, digits, full)
+    return AccuracyReport(results, share, largest_values(results), found, chosen, there, digits, full)
 
 
 def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
@@ -373,12 +373,12 @@ def _scale(mu: float) -> str:
         "± lengths: when every length is 0.1 % off; ± paper: when every coordinate is {mm} mm "
         "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first "
         "order."
-    ).format(mm=PAPER, mu=numeral(mu, ".10g"))
+    ).format(mm=PAPER_CHANGE, mu=numeral(mu, ".10g"))
 
 
 def _mu(results: Results) -> float:
     """Scale (m a mm) at which the mechanism fits on a sheet with all its trajectories."""
-    motion, linkage = at_positions(results, results.closely(DENSE), 0), results.linkage
+    motion, linkage = motion_at_positions(results, results.closely(DENSE), 0), results.linkage
     places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
     for name in linkage.moving:
         for point in linkage.links[name].points:

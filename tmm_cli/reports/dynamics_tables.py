@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.language import N_, _, numeral
-from tmm_cli.mechanics.analysis import MOST_CYCLES, Intermittent, Part, Results
-from tmm_cli.mechanics.dynamics import Balancing, Running, Steady
+from tmm_cli.mechanics.analysis import MOST_CYCLES, IntermittentMotion, Results, WheelMotion
+from tmm_cli.mechanics.dynamics import BalancingResults, SteadyRunning, SteadySolution
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
@@ -42,7 +42,7 @@ def dynamics_tables(results: Results) -> Iterable[Table]:
     """What was found, then the law of motion."""
     running = results.running
     assert running is not None
-    if not isinstance(running, Running):
+    if not isinstance(running, SteadyRunning):
         yield from _single(results, running)
         return
     steady = running.steady
@@ -51,7 +51,7 @@ def dynamics_tables(results: Results) -> Iterable[Table]:
         yield _law(results)
 
 
-def _driving(steady: Steady) -> Iterable[Row]:
+def _driving(steady: SteadySolution) -> Iterable[Row]:
     low, high = steady.speeds
     yield _("work of the loads in a cycle, J"), steady.machine.work_of_cycle, NUMBER
     if steady.moment < 0 and steady.task.motor is None:
@@ -67,7 +67,7 @@ def _driving(steady: Steady) -> Iterable[Row]:
     yield _("fluctuation delta"), steady.delta, NUMBER
 
 
-def _flywheel(steady: Steady) -> Iterable[Row]:
+def _flywheel(steady: SteadySolution) -> Iterable[Row]:
     if steady.law.flywheel == 0:
         return
     yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
@@ -88,7 +88,7 @@ def _flywheel(steady: Steady) -> Iterable[Row]:
 
 def _law(results: Results) -> Table:
     motion, running = results.motion, results.running
-    assert motion is not None and isinstance(running, Running)
+    assert motion is not None and isinstance(running, SteadyRunning)
     driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
     resists = running.steady.moment < 0 and running.task.motor is None
     notes = (_("The loads do work; the driving moment is that of the resistance which takes it."),) if resists else ()
@@ -158,7 +158,7 @@ def balancing_tables(results: Results) -> Iterable[Table]:
         yield _positions(results, found)
 
 
-def _counterweights(found: Balancing) -> Iterable[Row]:
+def _counterweights(found: BalancingResults) -> Iterable[Row]:
     for weight in found.cycle.counterweights:
         link = weight.place.link
         yield _("counterweight on link {link}: mass times radius, kg*m").format(link=link), weight.size, NUMBER
@@ -167,7 +167,7 @@ def _counterweights(found: Balancing) -> Iterable[Row]:
             yield _("its mass at the radius of the file"), weight.mass, MASS
 
 
-def _largest(found: Balancing) -> Iterable[Row]:
+def _largest(found: BalancingResults) -> Iterable[Row]:
     if not found.cycle.shakes:
         return
     before, after = found.cycle.before, found.cycle.after
@@ -180,7 +180,7 @@ def _largest(found: Balancing) -> Iterable[Row]:
         yield _("largest shaking moment, balanced"), np.nanmax(np.abs(after.moment)), MOMENT
 
 
-def _rotor(results: Results, found: Balancing) -> Iterable[Row]:
+def _rotor(results: Results, found: BalancingResults) -> Iterable[Row]:
     rotor = found.task.rotor
     if rotor is None:
         return
@@ -196,7 +196,7 @@ def _rotor(results: Results, found: Balancing) -> Iterable[Row]:
             yield _("its mass at the radius of the file"), abs(size) / plane.radius, MASS
 
 
-def _notes(found: Balancing) -> Iterable[str]:
+def _notes(found: BalancingResults) -> Iterable[str]:
     if found.cycle.shakes:
         yield _("Shaking: forces of inertia of all links on the frame, over the cycle at constant speed of the driver.")
     if found.cycle.alike:
@@ -205,7 +205,7 @@ def _notes(found: Balancing) -> Iterable[str]:
         yield _("Where no radius is told, the counterweight's own moment of inertia is left out of the shaking moment.")
 
 
-def _positions(results: Results, found: Balancing) -> Table:
+def _positions(results: Results, found: BalancingResults) -> Table:
     columns = driver_columns(results)
     told = [(found.before, "F x", "F y", "F", "M")]
     if found.cycle.counterweights:
@@ -236,7 +236,7 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
     yield _course(wheels, place)
 
 
-def _strokes(wheels: Iterable[Intermittent], place: Dimension, *, back: bool) -> Table:
+def _strokes(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bool) -> Table:
     """A row a part of the cycle; back: the driver goes there and back."""
     rows = [(wheel, part, wheel.jumps[k]) for wheel in wheels for k, part in enumerate(wheel.parts)]
     parts = [part for __, part, ___ in rows]
@@ -262,14 +262,14 @@ def _strokes(wheels: Iterable[Intermittent], place: Dimension, *, back: bool) ->
     return Table("intermittent", _("Intermittent motion"), tuple(columns), notes=(note,))
 
 
-def _setting(wheel: Intermittent, part: Part) -> str:
+def _setting(wheel: IntermittentMotion, part: WheelMotion) -> str:
     """The parameters of the file are told by their number alone."""
     values = wheel.task.settings[part.setting].values
     told = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"{part.setting + 1}: {told}" if told else str(part.setting + 1)
 
 
-def _cycle(wheel: Intermittent, place: Dimension) -> Iterable[Row]:
+def _cycle(wheel: IntermittentMotion, place: Dimension) -> Iterable[Row]:
     name = wheel.task.name
     yield _("wheel {name} turns in a cycle by").format(name=name), wheel.turn, ANGLE
     if wheel.cycles is not None:
@@ -284,7 +284,7 @@ def _cycle(wheel: Intermittent, place: Dimension) -> Iterable[Row]:
     yield _("largest jump of omega where it is taken up and let go"), wheel.shock, ANGULAR_SPEED
 
 
-def _notes_of_wheels(wheel: Intermittent) -> Iterable[str]:
+def _notes_of_wheels(wheel: IntermittentMotion) -> Iterable[str]:
     name = wheel.task.name
     if wheel.shock == 0:
         yield _("Wheel {name} is taken up and let go without shock: its angular speed does not jump.").format(name=name)
@@ -295,7 +295,7 @@ def _notes_of_wheels(wheel: Intermittent) -> Iterable[str]:
         yield text.format(name=name, most=MOST_CYCLES)
 
 
-def _course(wheels: Iterable[Intermittent], place: Dimension) -> Table:
+def _course(wheels: Iterable[IntermittentMotion], place: Dimension) -> Table:
     every = [(wheel.task.name, part) for wheel in wheels for part in wheel.parts]
     columns = [Column(N_("wheel"), [name for name, part in every for __ in part.ways])]
     told = (

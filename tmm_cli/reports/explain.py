@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _, printed
-from tmm_cli.mechanics.analysis import CYCLE, Results
+from tmm_cli.mechanics.analysis import CYCLE_SAMPLES, Results
 from tmm_cli.mechanics.groups import ClosedFormSolver, GroupSolver, solvers_towards
 from tmm_cli.mechanics.kinematics import SCAN
 from tmm_cli.mechanics.linkage import FRAME, Linkage
@@ -241,13 +241,13 @@ def describe_stages(results: Results) -> Iterable[Row]:
         yield _("law of motion"), every, str(PANELS * driver_range.turns), accelerations, note
     if results.inputs.balancing is not None:
         note = _("what shakes the frame, at constant speed of the driver")
-        yield _("balancing"), every, str(CYCLE * driver_range.turns), accelerations, note
+        yield _("balancing"), every, str(CYCLE_SAMPLES * driver_range.turns), accelerations, note
     note = _("--position: these only; --of: groups on the way only")
     yield _("kinematics"), every, asked, accelerations, note
     yield _("forces"), every, asked, _("reactions"), f"{_inertia(linkage)}; {_acting(linkage)}"
     yield _("lever"), "-", asked, velocities, _("of the same loads; solves nothing anew")
     if linkage.friction:
-        yield _("losses by friction"), every, str(CYCLE + 1), accelerations, _("over the whole cycle")
+        yield _("losses by friction"), every, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
     drawn = _("only where drawings are asked for")
     yield _("trajectories"), every, str(POSITIONS_PER_TURN), places, drawn
     diagrams = min((POSITIONS_PER_TURN - 1) * driver_range.turns, SCAN) + 1

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.analysis import Results, results_at
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.problem import ProblemError
 
@@ -19,7 +19,7 @@ def pylinkage(results: Results) -> tuple[str, list[str]]:
     """The text, and what it does not hold. Raises ProblemError where pylinkage has no such mechanism."""
     linkage = results.linkage
     _refuse(linkage)
-    motion = at_places(results, np.array([linkage.sketch.at])).motion
+    motion = results_at(results, np.array([linkage.sketch.at])).motion
     assert motion is not None
 
     def place(point: str) -> list[float]:

@@ -9,10 +9,10 @@ import numpy as np
 
 from tmm_cli.language import N_, Phrase, _, numeral, printed, symbol
 from tmm_cli.mechanics.analysis import Results, detailed_positions
-from tmm_cli.mechanics.forces import Item, find_transmitted_forces, load_names
+from tmm_cli.mechanics.forces import LeverItem, find_transmitted_forces, load_names
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE, SAME_DRIVER_POSITION, SAME_RATIO
-from tmm_cli.mechanics.plans import drawn_check, sheets
+from tmm_cli.mechanics.plans import balance_drawings, drawn_check
 from tmm_cli.mechanics.quantities import (
     ANGLE,
     ENERGY,
@@ -140,7 +140,7 @@ def lever_tables(results: Results) -> Iterable[Table]:
     yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
 
 
-def _columns(item: Item, slider: bool) -> list[NamedValues]:
+def _columns(item: LeverItem, slider: bool) -> list[NamedValues]:
     force, couple = (item, None) if item.end is not None else (None, item)
     return [
         *quantity_columns(LEVER_FORCE, force, slider),
@@ -156,7 +156,7 @@ def drawn_tables(results: Results) -> Iterable[Table]:
     """A row for each position in detail: what both ways give on paper, and how far apart they are."""
     motion, reactions, lever = results.motion, results.reactions, results.lever
     assert motion is not None and reactions is not None and lever is not None
-    positions = [(k, sheets(motion, reactions, lever, k)) for k in detailed_positions(results) if lever.items]
+    positions = [(k, balance_drawings(motion, reactions, lever, k)) for k in detailed_positions(results) if lever.items]
     checked = [
         (k, drawn_check(motion, reactions, drawn, drawn.scales())) for k, drawn in positions if drawn is not None
     ]

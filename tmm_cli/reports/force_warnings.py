@@ -7,16 +7,16 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.forces import (
-    Applied,
-    acts,
-    acts_always,
+    AppliedLoad,
+    always_acts,
     ends_with_stroke,
-    given_loads,
-    reach_of_tables,
+    is_acting,
+    problem_loads,
     table_argument,
-    twisted,
+    table_lengths,
+    twist_angle,
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
@@ -51,10 +51,10 @@ def wound_springs(results: Results) -> Iterable[str]:
     if not springs or results.reactions is None:
         return
     turns = results.driver_range.turns if results.driver_range else 1
-    motion = at_positions(results, results.closely(CLOSELY * turns + 1), 0)
+    motion = motion_at_positions(results, results.closely(CLOSELY * turns + 1), 0)
     for spring in springs:
         with np.errstate(invalid="ignore"):
-            jumps = np.flatnonzero(np.abs(np.diff(twisted(spring, motion))) > np.pi)
+            jumps = np.flatnonzero(np.abs(np.diff(twist_angle(spring, motion))) > np.pi)
         if jumps.size:
             yield _(
                 "torsion spring {spring} is turned by more than half a turn from its free angle at "
@@ -68,7 +68,7 @@ def springs_of_no_length(results: Results) -> Iterable[str]:
     if not springs or results.reactions is None:
         return
     turns = results.driver_range.turns if results.driver_range else 1
-    motion = at_positions(results, results.closely(CLOSELY * turns + 1))
+    motion = motion_at_positions(results, results.closely(CLOSELY * turns + 1))
     for spring in springs:
         apart = motion.point(spring.j, spring.at_j).x - motion.point(spring.i, spring.at_i).x
         step = np.diff(apart)
@@ -98,8 +98,8 @@ def driving_loads(results: Results) -> Iterable[str]:
     if not loads or results.reactions is None:
         return
     turns = results.driver_range.turns if results.driver_range else 1
-    motion = at_positions(results, results.closely(WORK_POSITIONS * turns + 1))
-    acting = list(given_loads(motion, results.strokes))
+    motion = motion_at_positions(results, results.closely(WORK_POSITIONS * turns + 1))
+    acting = list(problem_loads(motion, results.strokes))
     for load in loads:
         its = [applied for applied in acting if applied.name in (load.name, f"{load.name}'")]
         power, largest = _power(motion, its)
@@ -110,7 +110,7 @@ def driving_loads(results: Results) -> Iterable[str]:
             yield _idle(results, load, motion, its[0])
 
 
-def _power(motion: Motion, acting: Iterable[Applied]) -> tuple[Real, Real]:
+def _power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
     """Power of a load and of its opposite, and the largest that they could have at this speed; zero at rest (W)."""
     crank = motion.linkage.driver.kind == "turn"
     reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
@@ -145,7 +145,7 @@ def _driving(results: Results, load: Load) -> str:
     return _("{text}. In an engine, where the gas drives the piston: {window}").format(text=text, window=window)
 
 
-def _idle(results: Results, load: Load, motion: Motion, applied: Applied) -> str:
+def _idle(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
     """What to write instead is seen at the position in which the point of the load is fastest."""
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
@@ -187,7 +187,7 @@ def short_tables(results: Results) -> Iterable[str]:
 def long_tables(results: Results) -> Iterable[str]:
     """Tables of loads that go on beyond the stroke."""
     units = results.problem.units
-    for load, last, stroke in reach_of_tables(results.linkage, results.strokes) if results.loads else ():
+    for load, last, stroke in table_lengths(results.linkage, results.strokes) if results.loads else ():
         assert load.table is not None
         if last > stroke and not ends_with_stroke(last, stroke):
             measure = argument_dimension(results.linkage, load.table)
@@ -243,7 +243,7 @@ def open_tables(results: Results) -> Iterable[str]:
 def without_strokes(results: Results) -> Iterable[str]:
     """Loads of a working stroke that there is not."""
     for load in results.linkage.loads:
-        if load.working_stroke_only and acts_always(load, results.strokes):
+        if load.working_stroke_only and always_acts(load, results.strokes):
             yield _(
                 "load {load} is one of the working stroke, but there are no whole strokes on this way of "
                 "the driver: it acts always"
@@ -254,7 +254,7 @@ def _short(results: Results, load: Load, table: LoadTable) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
     motion = results.motion
     assert motion is not None
-    acting = motion.placed & acts(load, motion.q, results.linkage, results.strokes)
+    acting = motion.placed & is_acting(load, motion.q, results.linkage, results.strokes)
     if not np.any(acting):
         return False
     argument = table_argument(table, motion, results.strokes)[acting]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.language import _, numeral, spelt
-from tmm_cli.mechanics.dynamics import Kloss, Linear, Motor, Profile, RunTask, SteadyTask
+from tmm_cli.mechanics.dynamics import DriveProfile, KlossMotor, LinearMotor, MotorCharacteristic, RunTask, SteadyTask
 from tmm_cli.mechanics.linkage import FRAME, Driver, Mesh, SpeedTable, Spring
 from tmm_cli.mechanics.numerics import to_float
 from tmm_cli.mechanics.quantities import (
@@ -407,26 +407,26 @@ def _run(problem: Problem, task: RunTask) -> Iterable[Fact]:
         yield _("given flywheel"), show(problem, task.flywheel, INERTIA if turns else MASS)
 
 
-def _profile(task: RunTask) -> Profile | None:
-    return task.drive if isinstance(task.drive, Profile) else None
+def _profile(task: RunTask) -> DriveProfile | None:
+    return task.drive if isinstance(task.drive, DriveProfile) else None
 
 
-def _motor(problem: Problem, motor: Motor, *, turns: bool) -> Iterable[Fact]:
+def _motor(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
     """By its own numbers, as the note's formulas have them."""
     speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
-        case Kloss():
+        case KlossMotor():
             yield _("motor"), _("asynchronous, by the formula of Kloss")
             yield _("its synchronous speed"), show(problem, motor.synchronous, speed)
             yield _("its largest moment"), show(problem, motor.breakdown, size)
             yield _("its slip at the largest moment"), numeral(motor.slip, ".4g")
-        case Linear():
+        case LinearMotor():
             yield _("motor"), _("with a linear characteristic")
             yield _("its moment at rest"), show(problem, motor.stall, size)
             yield _("its speed without load"), show(problem, motor.free, speed)
 
 
-def _rows(problem: Problem, drive: Profile) -> Table:
+def _rows(problem: Problem, drive: DriveProfile) -> Table:
     """Moments, or forces, that a run is driven with."""
     turns = problem.linkage.driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis import Results, links, moving_centres, moving_points
+from tmm_cli.mechanics.analysis import Results, moving_centres, moving_points, select_links
 from tmm_cli.mechanics.kinematics import SlidingMotion
 from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import Vector
@@ -209,7 +209,7 @@ KINEMATICS = record(
         "links",
         map_of(record("a link", *fields_of(LINK))),
         "turning of every link",
-        lambda r: {name: r.motion.link(name) for name in links(r.linkage, r.of)},
+        lambda r: {name: r.motion.link(name) for name in select_links(r.linkage, r.of)},
     ),
     Field("slides", map_of(SLIDE_MOTION), "sliding pairs", _slides),
     Field("margins", map_of(SERIES), "distance of each group from its dead position: 1 at best, 0 there", _margins),

@@ -16,7 +16,7 @@ from tmm_cli.mechanics.quantities import ANGLE, LENGTH, SPEED, coordinate_dimens
 from tmm_cli.reports.table import with_unit
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics import Profile
+    from tmm_cli.mechanics.dynamics import DriveProfile
 
 
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
@@ -174,7 +174,7 @@ def short_drive(results: Results) -> Iterable[str]:
     single = results.single
     if single is None or len(single.task.edges or single.task.way_edges) < 2:
         return
-    drive = cast("Profile", single.task.drive)
+    drive = cast("DriveProfile", single.task.drive)
     by_time = drive.against == "time"
     reached = float(single.run.time[-1]) if by_time else float(single.run.way[-1])
     first, last = drive.arguments[0], drive.arguments[-1]

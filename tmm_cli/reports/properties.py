@@ -13,13 +13,13 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import (
     STAGES,
-    Quantity,
+    NamedQuantity,
     Results,
-    at_places,
-    of_wheels,
+    list_quantities,
     pipeline,
-    quantities,
     relative_angles,
+    results_at,
+    wheel_quantities,
 )
 from tmm_cli.mechanics.groups import link_extent
 from tmm_cli.mechanics.numerics import Real, find_roots, greatest_values
@@ -108,8 +108,8 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
         results = _broken(task.without, results)
     linkage = results.linkage
     known = {
-        **quantities(linkage, results.structure),
-        **of_wheels(results.inputs.wheels),
+        **list_quantities(linkage, results.structure),
+        **wheel_quantities(results.inputs.wheels),
         **relative_angles(linkage),
     }
     if task.of not in known:
@@ -160,7 +160,7 @@ def _of_own_numbers(task: ShownKeys, problem: Problem) -> bool:
     return names.isdisjoint(source.data.get("parameters", {}))
 
 
-def _ran(quantity: Quantity, results: Results) -> bool:
+def _ran(quantity: NamedQuantity, results: Results) -> bool:
     if quantity.stage == "structure":
         return True
     forces = quantity.order >= STAGES.index("forces")
@@ -198,7 +198,7 @@ def _broken(hinge: str, results: Results) -> Results:
     )
 
 
-def _one(quantity: Quantity, task: ShownKeys, results: Results, per: Quantity | None = None) -> float:
+def _one(quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None) -> float:
     """The number that a task asks of a quantity, or of its ratio to another one at every place."""
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
@@ -229,14 +229,14 @@ def _one(quantity: Quantity, task: ShownKeys, results: Results, per: Quantity | 
     return float(values[-1] - values[0])
 
 
-def _read(quantity: Quantity, results: Results, q: Real) -> Real:
+def _read(quantity: NamedQuantity, results: Results, q: Real) -> Real:
     """The values at places of the driver; sizes of vectors."""
-    there = at_places(results, q)
+    there = results_at(results, q)
     found = np.asarray(quantity.read(there))
     return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
 
 
-def _ratio(quantity: Quantity, per: Quantity, results: Results, q: Real) -> Real:
+def _ratio(quantity: NamedQuantity, per: NamedQuantity, results: Results, q: Real) -> Real:
     """The ratio of two quantities at places of the driver; nan where the second one is zero."""
     value, divisor = _read(quantity, results, q), _read(per, results, q)
     found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)

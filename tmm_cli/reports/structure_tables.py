@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tmm_cli.language import N_, _, printed
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import (
     Structure,
@@ -251,7 +251,7 @@ def _keeps_direction(results: Results, name: str) -> bool:
     reach = results.driver_range
     if reach is None:
         return False
-    motion = at_positions(results, np.linspace(reach.start, reach.end, PLACES), 0)
+    motion = motion_at_positions(results, np.linspace(reach.start, reach.end, PLACES), 0)
     turned = np.angle(motion.poses[name].z / motion.poses[name].z[motion.placed][:1])[motion.placed]
     return bool(turned.size) and bool(np.all(np.abs(turned) < SAME_DIRECTION))
 

@@ -1,7 +1,7 @@
 """A mechanism over its parameters: what comes of many variants, and where they cease to be mechanisms."""
 
-from .drawings import sheets as sheets
-from .mechanisms import Mechanisms as Mechanisms
+from .drawings import sweep_sheets as sweep_sheets
+from .mechanisms import SweptMechanisms as SweptMechanisms
 from .options import grid_points as grid_points, read_axes as read_axes, read_shown as read_shown
 from .results import (
     APART as APART,
@@ -9,9 +9,9 @@ from .results import (
     REFUSED as REFUSED,
     STOPS as STOPS,
     WORKS as WORKS,
-    Swept as Swept,
+    SweepResults as SweepResults,
     borders_table as borders_table,
     points_table as points_table,
     sections as sections,
 )
-from .run import refuse_points as refuse_points, swept as swept
+from .run import refuse_points as refuse_points, run_sweep as run_sweep

@@ -45,32 +45,32 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import UnitSystem, typeset_unit
-from tmm_cli.sweep.options import Axis, Shown
-from tmm_cli.sweep.results import LIMIT, STOPS, WORDS, WORKS, Mark, Swept
+from tmm_cli.sweep.options import ShownQuantity, SweepAxis
+from tmm_cli.sweep.results import LIMIT, STATE_WORDS, STOPS, WORKS, Border, SweepResults
 
 PANELS = 4  # of a sheet
 LEVELS = 12  # lines of equal value at most
-NODES = 150  # of a grid that are drawn in each direction; of more of them a part
+MOST_NODES = 150  # of a grid that are drawn in each direction; of more of them a part
 PITCH = {True: 1.8, False: 3.2}  # mm of hatching: where no mechanism goes, where a limit is exceeded
 COLOURS = {True: THIN_COLOUR, False: "#e3b27a"}
-NAMED = 5  # borders that have their values written
+LABELLED_BORDERS = 5  # borders that have their values written
 SAMPLE = 6.0  # mm of a field in the legend
 LEAST = 15.0  # mm of a line that gets its value
 
 
-def sheets(title: str, sweep: Swept, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:
+def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:
     """Every sheet with its file's stem."""
     if len(sweep.axes) == 1:
         parts = [range(first, min(first + PANELS, len(sweep.shown))) for first in range(0, len(sweep.shown), PANELS)]
         for number, part in enumerate(parts):
-            yield (f"sweep-{number + 1}" if len(parts) > 1 else "sweep"), curves(title, sweep, part, units)
+            yield (f"sweep-{number + 1}" if len(parts) > 1 else "sweep"), curve_sheet(title, sweep, part, units)
         return
     for k, one in enumerate(sweep.shown):
         if np.any(np.isfinite(sweep.values[:, k])):
-            yield f"sweep-{file_safe_name(one.name)}", contours(title, sweep, k, units)
+            yield f"sweep-{file_safe_name(one.name)}", contour_sheet(title, sweep, k, units)
 
 
-def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> Drawing:
+def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: UnitSystem) -> Drawing:
     """Some of the quantities over the one parameter, each in a panel."""
     (axis,) = sweep.axes
     caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
@@ -81,23 +81,25 @@ def curves(title: str, sweep: Swept, part: Sequence[int], units: UnitSystem) -> 
     for k in part:
         one = sweep.shown[k]
         values = sweep.values[:, k] / units.factor(one.dimension)
-        plots.append(PlotContent(_words(one, units), [ChartCurve(axis.values, values)], degrees=_degrees(one, units)))
+        plots.append(
+            PlotContent(_quantity_label(one, units), [ChartCurve(axis.values, values)], degrees=_in_degrees(one, units))
+        )
     ends = [float(axis.values[0]), *(mark.at[0] for mark in sweep.marks), float(axis.values[-1])]
     goes = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
-    spans = [(low, high, translated(WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
-    panels = draw_chart(sheet, plots, CommonAxis(over, _axis_words(axis), spans=spans if sweep.marks else ()))
+    spans = [(low, high, translated(STATE_WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
+    panels = draw_chart(sheet, plots, CommonAxis(over, _axis_label(axis), spans=spans if sweep.marks else ()))
     for panel, plot in zip(panels, plots, strict=True):
         for curve in plot.curves:
             sheet.ground.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
         for (low, high), n in zip(pairwise(ends), goes, strict=True):
             if n >= LIMIT:
-                _stretch(panel, low, high, fails=n >= STOPS)
-    for mark in sweep.marks[:NAMED]:
-        _value(panels[0], axis, mark)
+                _hatch_stretch(panel, low, high, fails=n >= STOPS)
+    for mark in sweep.marks[:LABELLED_BORDERS]:
+        _label_border(panels[0], axis, mark)
     return sheet.finish()
 
 
-def _stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
+def _hatch_stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
     """A hatched stretch of a panel."""
     left, right = (float(panel.x.on(value)) for value in (low, high))
     corners = [
@@ -110,17 +112,17 @@ def _stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
         panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, blocks=False)
 
 
-def _value(panel: Panel, axis: Axis, mark: Mark) -> None:
+def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
     """Of a border, beside it in the first panel."""
     place = float(panel.x.on(mark.at[0]))
     text = f"{numeral(mark.at[0], '.6g')} {spelt(axis.unit)}".strip()
     panel.sheet.label(text, complex(place, panel.y.end - TEXT_ROW), SMALL_TEXT, DARK_COLOUR)
 
 
-def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
+def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
     """A quantity over both parameters."""
     one = sweep.shown[k]
-    caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_words(one, units))
+    caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_quantity_label(one, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
     low, high = sheet.ground.low, sheet.ground.high
     across, up = sweep.axes
@@ -135,9 +137,9 @@ def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     panel = Panel(sheet, x, y)
     panel.grid()
     panel.numbers_across(0.2 * TEXT_ROW)
-    sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_words(across), PLAIN_TEXT, ha="center")
-    sheet.text(complex(low.real, high.imag - TEXT_ROW / 2), _axis_words(up), PLAIN_TEXT)
-    columns, rows = (_drawn(len(axis.values)) for axis in sweep.axes)
+    sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_label(across), PLAIN_TEXT, ha="center")
+    sheet.text(complex(low.real, high.imag - TEXT_ROW / 2), _axis_label(up), PLAIN_TEXT)
+    columns, rows = (_drawn_nodes(len(axis.values)) for axis in sweep.axes)
     values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
     state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
     lines = _Grid(panel, sweep, (columns, rows))
@@ -148,20 +150,20 @@ def contours(title: str, sweep: Swept, k: int, units: UnitSystem) -> Drawing:
     ]
     for fails, __ in drawn:
         lines.hatched(state, fails=fails)
-    _levels(lines, values, degrees=_degrees(one, units))
-    _legend(panel, drawn)
+    _draw_levels(lines, values, degrees=_in_degrees(one, units))
+    _draw_legend(panel, drawn)
     return sheet.finish()
 
 
-def _drawn(count: int) -> Real:
+def _drawn_nodes(count: int) -> Real:
     """Which of so many nodes are drawn, the ends among them."""
-    return np.unique(np.round(np.linspace(0, count - 1, min(count, NODES))).astype(int))
+    return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_NODES))).astype(int))
 
 
 class _Grid:
     """Nodes of a sweep on a panel. drawn: which of each parameter."""
 
-    def __init__(self, panel: Panel, sweep: Swept, drawn: Sequence[Real]) -> None:
+    def __init__(self, panel: Panel, sweep: SweepResults, drawn: Sequence[Real]) -> None:
         self.panel = panel
         axes = [axis.values[nodes] for axis, nodes in zip(sweep.axes, drawn, strict=True)]
         self.x, self.y = axes
@@ -199,7 +201,7 @@ class _Grid:
             self.panel.sheet.line(self.on(line).tolist(), colour, 1.1 if fails else 0.9, style, z, blocks=False)
 
 
-def _levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
+def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
     """Lines of equal value at round values, each with its value on its longest stretch."""
     low, high = finite_limits([values])
     if not high > low:
@@ -218,7 +220,7 @@ def _levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
             sheet.text(complex(line[k]), text, SMALL_TEXT, colour=INERTIA_COLOUR, ha="center")
 
 
-def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
+def _draw_legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
     """What the hatching means, above the panel on the right."""
     at = panel.x.end - sum(SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT) for __, text in drawn)
     height = panel.sheet.ground.high.imag - TEXT_ROW / 2
@@ -236,13 +238,13 @@ def _legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
         at += SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT)
 
 
-def _degrees(one: Shown, units: UnitSystem) -> bool:
+def _in_degrees(one: ShownQuantity, units: UnitSystem) -> bool:
     return one.dimension == ANGLE and units.symbol(ANGLE) == "deg"
 
 
-def _words(one: Shown, units: UnitSystem) -> str:
+def _quantity_label(one: ShownQuantity, units: UnitSystem) -> str:
     return with_unit(one.words, one.dimension, units)
 
 
-def _axis_words(axis: Axis) -> str:
+def _axis_label(axis: SweepAxis) -> str:
     return f"{axis.name}, {typeset_unit(spelt(axis.unit))}" if axis.unit else axis.name

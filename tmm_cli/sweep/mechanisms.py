@@ -9,26 +9,34 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import DependsOnData, NoTapeError, Task, sketch_of
+from tmm_cli.batch import DependsOnData, NoTapeError, Task, compute_sketch
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, pipeline
 from tmm_cli.mechanics.errors import AssemblyError, LinkageError
-from tmm_cli.mechanics.forces import Reactions, reach_of_tables
+from tmm_cli.mechanics.forces import Reactions, table_lengths
 from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import Problem, ProblemError, Tree, located_problem_error
-from tmm_cli.sweep.options import PRESSURE, Axis, Shown, read_shown
+from tmm_cli.sweep.options import PRESSURE, ShownQuantity, SweepAxis, read_shown
 from tmm_cli.sweep.results import APART, LIMIT, REFUSED, STOPS, WORKS
-from tmm_cli.sweep.scan import SCAN_APART, SCAN_STOPS, SCAN_WORKS, Looked, Wish, look, strokes_of
-from tmm_cli.sweep.traced_stages import CYCLE, Turning, beyond
+from tmm_cli.sweep.scan import (
+    SCAN_APART,
+    SCAN_STOPS,
+    SCAN_WORKS,
+    ScanRequest,
+    ScanResults,
+    scan_variants,
+    variant_strokes,
+)
+from tmm_cli.sweep.traced_stages import CYCLE, CrankVariants, curve_limit
 from tmm_cli.synthesis import inputs_of, measures
 
-DOUBTS = 200  # of a job by the tape that are looked at one by one
+MOST_DOUBTFUL = 200  # of a job by the tape that are looked at one by one
 BLOCK = 1_000  # variants at once: what all of them have at the places of a scan stays in the cache
 
 
-class FirstLinks(Motion):
+class FirstLinkMotion(Motion):
     """A motion on a tape: where links share a point the first tells its motion, as nothing is there to choose by."""
 
     def _sway(self, link: str, point: str) -> float:
@@ -36,7 +44,7 @@ class FirstLinks(Motion):
 
 
 @dataclass(frozen=True, eq=False)
-class Read:
+class SolvedVariants:
     """What quantities are read from, see analysis.quantities.base.Solved."""
 
     linkage: Any
@@ -46,7 +54,7 @@ class Read:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SweepPoints:
     """Of points (points,): how they go, why (a limit, or a refusal); what is shown of them, (points, quantities).
 
     reach: of each load tabulated against the stroke in lengths, its last row and the stroke (points, loads, 2), m or
@@ -59,10 +67,10 @@ class Found:
     reach: Real
 
 
-class Mechanisms:
+class SweptMechanisms:
     """Of a file over some of its parameters. Raises ProblemError where its own numbers give no mechanism."""
 
-    def __init__(self, tree: Tree, axes: Sequence[Axis], show: Sequence[str]) -> None:
+    def __init__(self, tree: Tree, axes: Sequence[SweepAxis], show: Sequence[str]) -> None:
         self.given = tree, tuple(axes), tuple(show)
         self.task, self.axes = Task(tree), tuple(axes)
         self.shown = read_shown(self.task, show)
@@ -77,12 +85,12 @@ class Mechanisms:
             if load.table is not None and load.table.against == "stroke" and not load.table.shares
         )
 
-    def __reduce__(self) -> tuple[type[Mechanisms], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[type[SweptMechanisms], tuple[Any, ...]]:
         """What it found is found again in another process."""
-        return Mechanisms, self.given
+        return SweptMechanisms, self.given
 
     @cached_property
-    def turning(self) -> Turning | None:
+    def turning(self) -> CrankVariants | None:
         """The tape, where there is one."""
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
@@ -91,18 +99,18 @@ class Mechanisms:
         at_positions = [one for one in self.shown if not one.whole]
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-            taped = FirstLinks(**{field.name: getattr(motion, field.name) for field in fields(motion)})
-            return {one.name: one.at_positions(Read(taped.linkage, taped, reactions)) for one in at_positions}
+            taped = FirstLinkMotion(**{field.name: getattr(motion, field.name) for field in fields(motion)})
+            return {one.name: one.at_positions(SolvedVariants(taped.linkage, taped, reactions)) for one in at_positions}
 
         try:
-            turning = Turning(
+            turning = CrankVariants(
                 lambda numbers: self.task.make(self.names, self.dimensions, numbers),
                 own,
                 read,
                 forces=any(one.forces for one in at_positions),
             )
             with np.errstate(all="ignore"):
-                looked = look(turning, np.array([own]), Wish())
+                looked = scan_variants(turning, np.array([own]), ScanRequest())
             return turning if looked.does[0] == SCAN_WORKS and looked.sure[0] else None
         except (NoTapeError, DependsOnData):
             return None
@@ -113,17 +121,17 @@ class Mechanisms:
     def limits(self) -> dict[str, float]:
         """Of what is limited, by the names of the tape."""
         assert self.turning is not None
-        return {one.name: beyond(one, self.allowed) for one in self.turning.limited}
+        return {one.name: curve_limit(one, self.allowed) for one in self.turning.limited}
 
     @cached_property
     def goes(self) -> bool:
         """Whether the driver of the file's own variant turns fully, or goes its whole stroke."""
         return measures.completes_range(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
 
-    def at(self, points: Real, *, values: bool = True) -> Found:
+    def at(self, points: Real, *, values: bool = True) -> SweepPoints:
         """Points as they are written (points, parameters). values: else it is only told how they go."""
         count = len(points)
-        found = Found(
+        found = SweepPoints(
             np.zeros(count, dtype=int),
             [""] * count,
             np.full((count, len(self.shown)), np.nan),
@@ -135,22 +143,22 @@ class Mechanisms:
         parts = np.array_split(np.arange(count), -(-count // BLOCK))
         left = [self._taped(points, part, found, values) for part in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
-        for row in unsure[DOUBTS:]:
+        for row in unsure[MOST_DOUBTFUL:]:
             found.why[row] = _("its output moves otherwise than that of the file")
-        for row in otherwise[DOUBTS:]:
+        for row in otherwise[MOST_DOUBTFUL:]:
             found.state[row] = REFUSED
             found.why[row] = _("one of very many that are built otherwise than the file's own")
-        self._one_by_one(points, otherwise[:DOUBTS], found)
-        for row in unsure[:DOUBTS]:
+        self._one_by_one(points, otherwise[:MOST_DOUBTFUL], found)
+        for row in unsure[:MOST_DOUBTFUL]:
             state, found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
             found.state[row] = found.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
         return found
 
-    def _one_by_one(self, points: Real, rows: Iterable[int], found: Found) -> None:
+    def _one_by_one(self, points: Real, rows: Iterable[int], found: SweepPoints) -> None:
         for row in rows:
             found.state[row], found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
 
-    def _taped(self, points: Real, part: Real, found: Found, values: bool) -> tuple[Real, Real]:
+    def _taped(self, points: Real, part: Real, found: SweepPoints, values: bool) -> tuple[Real, Real]:
         """Fill in what the tape tells; which rows other stages tell, and which are built otherwise."""
         turning, nothing = self.turning, np.zeros(0, dtype=int)
         assert turning is not None
@@ -160,7 +168,9 @@ class Mechanisms:
                 varied, otherwise = turning.varied(columns)
             except (ProblemError, DependsOnData):
                 return nothing, part
-            looked = look(turning, columns, Wish(self._pressures() if values else (), self.limits, values))
+            looked = scan_variants(
+                turning, columns, ScanRequest(self._pressures() if values else (), self.limits, values)
+            )
             works = looked.does == SCAN_WORKS
             found.state[part] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
             for one in turning.limited:
@@ -189,11 +199,11 @@ class Mechanisms:
         angles = [one for one in self.turning.limited if one.kind == "pressure"]
         return [one.name for one in angles if one.link == self.turning.output] or [one.name for one in angles]
 
-    def _values(self, columns: Real, looked: Looked, varied: Any) -> tuple[Real, Real]:
+    def _values(self, columns: Real, looked: ScanResults, varied: Any) -> tuple[Real, Real]:
         """What is shown of variants that work, and how far their tables of loads reach."""
         turning = self.turning
         assert turning is not None
-        strokes = strokes_of(turning, columns, looked, varied)
+        strokes = variant_strokes(turning, columns, looked, varied)
         q, at = turning.over_cycle(columns, strokes)
         at_positions = [one.name for one in self.shown if not one.whole]
         rows = np.arange(len(columns))
@@ -204,16 +214,16 @@ class Mechanisms:
                 peaks = [looked.peaks[name] for name in self._pressures()]
                 found[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
             elif one.quantity is not None and one.whole:
-                found[:, k] = np.ravel(one.quantity.read(Read(varied.linkage, strokes=strokes)))
+                found[:, k] = np.ravel(one.quantity.read(SolvedVariants(varied.linkage, strokes=strokes)))
             else:
                 values = np.broadcast_to(over[one.name], (len(columns), len(q)))
-                found[:, k] = one.over_cycle(_curves_of(at, one.name), q, values)
+                found[:, k] = one.over_cycle(_curve_reader(at, one.name), q, values)
         return found, self._reach(varied.linkage, strokes, len(columns))
 
     def _reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
         """Last rows of tables against the stroke, and strokes, (variants, loads, 2)."""
         found = np.full((count, len(self.tables), 2), np.nan)
-        for load, last, stroke in reach_of_tables(linkage, strokes):
+        for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
             found[:, k, 0], found[:, k, 1] = np.ravel(last), np.ravel(stroke)
         return found
@@ -247,7 +257,7 @@ class Mechanisms:
             return problem
         linkage = problem.linkage
         with np.errstate(all="ignore"):
-            shown = sketch_of(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
+            shown = compute_sketch(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
         if not all(np.isfinite(place) for place in (*shown.points.values(), *shown.angles.values())):
             return problem
         return replace(problem, linkage=replace(linkage, sketch=shown), extended=None)
@@ -262,7 +272,7 @@ class Mechanisms:
             PRESSURE: measures.largest_pressure_angle,
         }
         q = results.closely(CYCLE * max(results.turns, 1) + 1)
-        read = _AtPlaces(results)
+        read = _ResultsAtPlaces(results)
         found = []
         for one in self.shown:
             if one.name in searched:
@@ -275,22 +285,22 @@ class Mechanisms:
         return np.array(found)
 
 
-def _curves_of(
+def _curve_reader(
     at: Callable[[Real, Real, Sequence[str]], Mapping[str, Real]], name: str
 ) -> Callable[[Real, Real], Real]:
     return lambda rows, q: np.broadcast_to(at(rows, q, [name])[name], q.shape)
 
 
-class _AtPlaces:
+class _ResultsAtPlaces:
     """A solved mechanism at other places of its driver; the last ones are kept for the next quantity."""
 
     def __init__(self, results: Results) -> None:
         self.results, self.q, self.there = results, np.empty(0), results
 
-    def curves(self, one: Shown, rows: Real, q: Real) -> Real:
+    def curves(self, one: ShownQuantity, rows: Real, q: Real) -> Real:
         """Values of a quantity at places (k, n), the same mechanism in every row; nan where it cannot move."""
         if not np.array_equal(q.ravel(), self.q):
-            self.q, self.there = q.ravel(), pipeline.at_places(self.results, q.ravel())
+            self.q, self.there = q.ravel(), pipeline.results_at(self.results, q.ravel())
         assert self.there.motion is not None
         values = np.broadcast_to(one.at_positions(self.there), self.q.shape)
         found: Real = np.where(self.there.motion.moving & ~self.there.locked, values, np.nan).reshape(q.shape)

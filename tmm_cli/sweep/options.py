@@ -11,19 +11,19 @@ import numpy as np
 
 from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Quantity, Solved
+from tmm_cli.mechanics.analysis import NamedQuantity, SolvedState
 from tmm_cli.mechanics.numerics import Real, greatest_values
 from tmm_cli.mechanics.quantities import ANGLE, Dimension
 from tmm_cli.problem import ProblemError, quote, unknown_name_error
 
-OVER = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
-COUNT = (41, 21)  # values where none is given: of one parameter, of each of two
+OVER_OPTION = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
+DEFAULT_COUNTS = (41, 21)  # values where none is given: of one parameter, of each of two
 MOST_VALUES = 1_000_000  # values of a parameter
 EXAMPLE = "--over OA=80..120:41"
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class SweepAxis:
     """A parameter that is swept. values: as they are written, in `unit` (none: bare numbers); dimension: of these.
 
     factor: what a written value is multiplied by: to SI, by 1 where it is bare.
@@ -45,14 +45,14 @@ class Axis:
         return f"{value!r} {self.unit}".strip()
 
 
-def read_axes(task: Task, over: Sequence[str]) -> tuple[Axis, ...]:
+def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
     """What one or two options `--over` say. Raises ProblemError."""
     if not 1 <= len(over) <= 2:
         raise ProblemError(_("one or two parameters are swept"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
     for text in over:
         try:
-            axes.append(_axis(task, text, COUNT[len(over) - 1]))
+            axes.append(_read_axis(task, text, DEFAULT_COUNTS[len(over) - 1]))
         except ProblemError as error:
             raise error.located(f"--over {text}") from None
         if len({axis.name for axis in axes}) < len(axes):
@@ -60,14 +60,14 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[Axis, ...]:
     return tuple(axes)
 
 
-def _axis(task: Task, text: str, usual: int) -> Axis:
-    found = OVER.fullmatch(text)
+def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
+    found = OVER_OPTION.fullmatch(text)
     if found is None:
         raise ProblemError(_("a name, two bounds and perhaps a count are wanted"), found=quote(text), allowed=EXAMPLE)
     name, *ends, count = found.groups()
     (own,) = task.dimensions((name,))
     units = [part[2] for part in map(NUMBER_WITH_UNIT.fullmatch, ends[::-1]) if part]
-    unit = next(filter(None, units), "") or _own_unit(task, name)
+    unit = next(filter(None, units), "") or _unit_in_file(task, name)
     said: list[Any] = []
     for end in ends:
         part = NUMBER_WITH_UNIT.fullmatch(end)
@@ -90,10 +90,10 @@ def _axis(task: Task, text: str, usual: int) -> Axis:
     dimension = dimension or own
     values = np.linspace(low, high, steps)
     unit = unit or (task.units.symbol(dimension) if dimension else "")
-    return Axis(name, values, unit, dimension, task.number(task.value(f"1 {unit}"), dimension) if unit else 1.0)
+    return SweepAxis(name, values, unit, dimension, task.number(task.value(f"1 {unit}"), dimension) if unit else 1.0)
 
 
-def _own_unit(task: Task, name: str) -> str:
+def _unit_in_file(task: Task, name: str) -> str:
     """In which the file writes the parameter; none of arithmetic on others."""
     written = NUMBER_WITH_UNIT.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
     try:
@@ -103,23 +103,23 @@ def _own_unit(task: Task, name: str) -> str:
     return written[2] if written else ""
 
 
-def grid_points(axes: Sequence[Axis]) -> Real:
+def grid_points(axes: Sequence[SweepAxis]) -> Real:
     """All points as they are written, (points, axes): the last parameter changes first."""
     return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)
 
 
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
-USUAL = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
+DEFAULT_QUANTITIES = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
 MOST_QUANTITIES = 12  # quantities at once
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownQuantity:
     """A quantity that is shown. quantity: how it is read from a solution; none of what is searched for."""
 
     name: str
     dimension: Dimension
-    quantity: Quantity | None
+    quantity: NamedQuantity | None
 
     @property
     def whole(self) -> bool:
@@ -144,7 +144,7 @@ class Shown:
     def ranges(self) -> bool:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
-    def at_positions(self, solved: Solved) -> Any:
+    def at_positions(self, solved: SolvedState) -> Any:
         """What a tape is to give of it at positions, see `over_cycle`."""
         assert self.quantity is not None
         found = self.quantity.read(solved)
@@ -164,32 +164,32 @@ class Shown:
         return high + greatest_values(lambda rows, at: -curves(rows, at), q, -values, turns=turns)
 
 
-def known(task: Task) -> Mapping[str, Shown]:
+def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
     """All that can be shown of a file, by the names in its tables. Raises ProblemError."""
     named = {
-        name: Shown(name, quantity.dimension, quantity)
+        name: ShownQuantity(name, quantity.dimension, quantity)
         for name, quantity in task.quantities.items()
         if not name.startswith("arm of ")  # it is nothing where its force vanishes
     }
-    return {**named, PRESSURE: Shown(PRESSURE, ANGLE, None)}
+    return {**named, PRESSURE: ShownQuantity(PRESSURE, ANGLE, None)}
 
 
-def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
+def read_shown(task: Task, given: Sequence[str]) -> tuple[ShownQuantity, ...]:
     """What options `--show` ask for: names with commas between; `v_E` is v of E. Raises ProblemError."""
-    every = known(task)
+    every = showable_quantities(task)
     names = {
         **{name.replace(" of ", "_").replace(" on ", "_"): name for name in every},
         **{name: name for name in every},
     }
-    found: list[Shown] = []
+    found: list[ShownQuantity] = []
     for text in given:
-        for name in _split(text, names):
+        for name in _split_names(text, names):
             if name not in names:
-                some = _("e.g. {names}").format(names=", ".join(_examples(every)))
+                some = _("e.g. {names}").format(names=", ".join(_example_names(every)))
                 raise unknown_name_error(name, names, _("there is no such quantity"), some, file=f"--show {text}")
             found.append(every[names[name]])
     found = list(dict.fromkeys(found)) or [
-        every[name] for name in USUAL if name in every and not (name == "H" and "psi" in every)
+        every[name] for name in DEFAULT_QUANTITIES if name in every and not (name == "H" and "psi" in every)
     ]
     if len(found) > MOST_QUANTITIES:
         raise ProblemError(
@@ -201,7 +201,7 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[Shown, ...]:
     return tuple(found)
 
 
-def _split(text: str, names: Mapping[str, str]) -> list[str]:
+def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
     """Names between commas; a name may have a comma itself, R_10,11."""
     found: list[str] = []
     for part in re.split(r"\s*,\s*", text.strip()):
@@ -212,7 +212,7 @@ def _split(text: str, names: Mapping[str, str]) -> list[str]:
     return found
 
 
-def _examples(every: Mapping[str, Shown]) -> list[str]:
+def _example_names(every: Mapping[str, ShownQuantity]) -> list[str]:
     """One of each kind."""
     kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(every))}
     return list(kinds.values())[::-1]

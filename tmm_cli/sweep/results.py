@@ -13,11 +13,11 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import DIMENSIONS, NUMBER, product_text
 from tmm_cli.problem import Problem
 from tmm_cli.reports import Column, Table
-from tmm_cli.sweep.options import Axis, Shown
+from tmm_cli.sweep.options import ShownQuantity, SweepAxis
 
 WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # how a mechanism goes
 STATES = ("works", "limit", "stops", "apart", "refused")  # in files
-WORDS = (
+STATE_WORDS = (
     N_("works"),
     N_("beyond a limit"),
     N_("does not turn fully"),
@@ -27,7 +27,7 @@ WORDS = (
 
 
 @dataclass(frozen=True)
-class Mark:
+class Border:
     """Where how the mechanism goes changes: the point (as parameters are written), and how it goes before and after.
 
     along: the number of the parameter on whose line it was looked for. why: the limit, or what was refused.
@@ -41,20 +41,20 @@ class Mark:
 
 
 @dataclass(frozen=True, eq=False)
-class Swept:
+class SweepResults:
     """A sweep. state: how the mechanism goes, (points,); values: (points, quantities), SI, nan where it does not go.
 
     Points are in the order of sweep.grid. taped: whether a tape did it. reach: by the name of each load tabulated
     against the stroke in lengths, its last row and the stroke of each point that has one (m or rad).
     """
 
-    axes: tuple[Axis, ...]
-    shown: tuple[Shown, ...]
+    axes: tuple[SweepAxis, ...]
+    shown: tuple[ShownQuantity, ...]
     points: Real
     state: Real
     why: list[str]
     values: Real
-    marks: tuple[Mark, ...]
+    marks: tuple[Border, ...]
     taped: bool
     reach: Mapping[str, Sequence[tuple[float, float]]]
 
@@ -67,20 +67,20 @@ FORMAT = 1
 TITLE, BORDERS = N_("Sweep"), N_("Where that changes")
 
 
-def points_table(sweep: Swept, *, words: bool = False) -> Table:
+def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
     """A row a point. words: how it goes is said for people, else as in files."""
-    names = [translated(word) for word in WORDS] if words else list(STATES)
+    names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
     columns += [Column(one.name, sweep.values[:, k], one.dimension) for k, one in enumerate(sweep.shown)]
     columns.append(Column(N_("mechanism"), [names[n] for n in sweep.state.tolist()]))
-    why = [_why(*both) for both in zip(sweep.why, sweep.state.tolist(), strict=True)] if words else sweep.why
+    why = [_reason_text(*both) for both in zip(sweep.why, sweep.state.tolist(), strict=True)] if words else sweep.why
     columns.append(Column(N_("why"), why))
     return Table("sweep", translated(TITLE), tuple(columns))
 
 
-def borders_table(sweep: Swept, *, words: bool = False) -> Table:
+def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
     """A row a place where how the mechanism goes changes."""
-    names = [translated(word) for word in WORDS] if words else list(STATES)
+    names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [
         Column(axis.words, np.array([mark.at[k] for mark in sweep.marks]), NUMBER, digits=9)
         for k, axis in enumerate(sweep.axes)
@@ -88,12 +88,12 @@ def borders_table(sweep: Swept, *, words: bool = False) -> Table:
     columns += [
         Column(N_("before"), [names[mark.before] for mark in sweep.marks]),
         Column(N_("after"), [names[mark.after] for mark in sweep.marks]),
-        Column(N_("why"), [_why(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
+        Column(N_("why"), [_reason_text(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
     ]
     return Table("borders", translated(BORDERS), tuple(columns))
 
 
-def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
+def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]:
     """result.json of a sweep, part by part: values in SI and radians, parameters as they are written."""
     yield "format", FORMAT
     yield "problem", problem.name
@@ -112,8 +112,8 @@ def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
         [
             {
                 "name": one.name,
-                "unit": _unit(one.dimension),
-                "kind": _kind(one),
+                "unit": _si_unit(one.dimension),
+                "kind": _quantity_kind(one),
                 "values": sweep.values[:, k],
             }
             for k, one in enumerate(sweep.shown)
@@ -134,7 +134,7 @@ def sections(sweep: Swept, problem: Problem) -> Iterator[tuple[str, Any]]:
     )
 
 
-def _why(text: str, state: int) -> str:
+def _reason_text(text: str, state: int) -> str:
     """For people."""
     kind, _space, thing = text.partition(" ")
     if state == LIMIT and kind == "pressure":
@@ -144,11 +144,11 @@ def _why(text: str, state: int) -> str:
     return text
 
 
-def _kind(one: Any) -> str:
+def _quantity_kind(one: Any) -> str:
     return "of the mechanism" if one.whole else "range over the cycle" if one.ranges else "largest over the cycle"
 
 
-def _unit(dimension: Any) -> str:
+def _si_unit(dimension: Any) -> str:
     """The SI unit."""
     bases = {"m": dimension.length, "kg": dimension.mass, "s": dimension.time, "rad": dimension.angle}
     named = {DIMENSIONS["force"].dimension: "N", DIMENSIONS["moment of force"].dimension: "N*m"}

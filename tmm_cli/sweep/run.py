@@ -8,31 +8,34 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.batch import Way, here
+from tmm_cli.batch import JobRunner, run_here
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real, bisect
 from tmm_cli.problem import WORK_BUDGET, Problem, ProblemError, refuse_work, work_size
-from tmm_cli.sweep.mechanisms import Found, Mechanisms
-from tmm_cli.sweep.options import MOST_VALUES, Axis, grid_points
-from tmm_cli.sweep.results import STATES, Mark, Swept
+from tmm_cli.sweep.mechanisms import SweepPoints, SweptMechanisms
+from tmm_cli.sweep.options import MOST_VALUES, SweepAxis, grid_points
+from tmm_cli.sweep.results import STATES, Border, SweepResults
 from tmm_cli.sweep.scan import SCAN
 from tmm_cli.sweep.traced_stages import CYCLE
 
-CHUNK, FEW = 20_000, 20  # points of a job: by the tape, one by one
-TAPED, ALONE = 1 / 1_200, 1 / 4  # what a part at a position costs, against a run of one file (problem.budget)
-SEARCHED = 720  # positions more of a point that is solved alone: its range and strokes
+CHUNK, SINGLE_CHUNK = 20_000, 20  # points of a job: by the tape, one by one
+TRACED_COST, SINGLE_COST = (
+    1 / 1_200,
+    1 / 4,
+)  # what a part at a position costs, against a run of one file (problem.budget)
+SEARCH_POSITIONS = 720  # positions more of a point that is solved alone: its range and strokes
 HALVINGS = 46  # of a step, by the tape: to the last digits
-ROUGHLY = (20, 4)  # one by one: of one parameter, of two
+SINGLE_HALVINGS = (20, 4)  # one by one: of one parameter, of two
 
 
 @dataclass(frozen=True, eq=False)
-class Borders:
+class BorderSearch:
     """Pairs of points (pairs, parameters) between which how the mechanism goes changes from a state.
 
     Gives the last points with that state, the first ones beyond, how the mechanism goes there, and why.
     """
 
-    mechanisms: Mechanisms
+    mechanisms: SweptMechanisms
     inside: Real
     outside: Real
     state: Real
@@ -59,7 +62,11 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     """
     refuse_work(problem.linkage, problem.request)
     positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
-    each = work_size(problem.linkage) * (positions + (SCAN if taped else SEARCHED)) * (TAPED if taped else ALONE)
+    each = (
+        work_size(problem.linkage)
+        * (positions + (SCAN if taped else SEARCH_POSITIONS))
+        * (TRACED_COST if taped else SINGLE_COST)
+    )
     most = MOST_VALUES if cores is None else min(MOST_VALUES, int(WORK_BUDGET * cores / each))
     if points > most:
         raise ProblemError(
@@ -70,13 +77,15 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
         )
 
 
-def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] = lambda count: None) -> Swept:
+def run_sweep(
+    mechanisms: SweptMechanisms, way: JobRunner = run_here, seen: Callable[[int], None] = lambda count: None
+) -> SweepResults:
     """All points, and the borders between them. seen: is told of so many more points. Raises ProblemError."""
     axes, points = mechanisms.axes, grid_points(mechanisms.axes)
     taped = mechanisms.turning is not None
-    size = CHUNK if taped else FEW
+    size = CHUNK if taped else SINGLE_CHUNK
     chunks = [points[first : first + size] for first in range(0, len(points), size)]
-    found: dict[int, Found] = {}
+    found: dict[int, SweepPoints] = {}
     for number, part in way([partial(mechanisms.at, chunk) for chunk in chunks], lambda: False):
         found[number] = part
         seen(len(part.state))
@@ -84,16 +93,16 @@ def swept(mechanisms: Mechanisms, way: Way = here, seen: Callable[[int], None] =
     state = np.concatenate([part.state for part in whole])
     why = [text for part in whole for text in part.why]
     values = np.concatenate([part.values for part in whole])
-    marks = _marks(mechanisms, _edges(axes, points, state, why), way)
+    marks = _find_borders(mechanisms, _find_edges(axes, points, state, why), way)
     reach = np.concatenate([part.reach for part in whole])
     of_loads = {
         name: reach[np.all(np.isfinite(reach[:, k]), axis=1), k].tolist() for k, name in enumerate(mechanisms.tables)
     }
-    return Swept(axes, mechanisms.shown, points, state, why, values, marks, taped, of_loads)
+    return SweepResults(axes, mechanisms.shown, points, state, why, values, marks, taped, of_loads)
 
 
 @dataclass(frozen=True, eq=False)
-class Edge:
+class GridEdge:
     """Two points (parameters,) of a line of the grid, and how the mechanism goes at each, and why."""
 
     along: int
@@ -102,7 +111,7 @@ class Edge:
     why: tuple[str, str]
 
 
-def _edges(axes: Sequence[Axis], points: Real, state: Real, why: Sequence[str]) -> list[Edge]:
+def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Sequence[str]) -> list[GridEdge]:
     """Neighbours of the grid at which the mechanism goes differently."""
     number = np.arange(len(points)).reshape([len(axis.values) for axis in axes])
     found = []
@@ -111,31 +120,31 @@ def _edges(axes: Sequence[Axis], points: Real, state: Real, why: Sequence[str]) 
         before, after = lines[..., :-1].ravel(), lines[..., 1:].ravel()
         change = state[before] != state[after]
         for b, a in zip(before[change].tolist(), after[change].tolist(), strict=True):
-            found.append(Edge(along, (points[b], points[a]), (int(state[b]), int(state[a])), (why[b], why[a])))
+            found.append(GridEdge(along, (points[b], points[a]), (int(state[b]), int(state[a])), (why[b], why[a])))
     return found
 
 
-def _marks(mechanisms: Mechanisms, edges: Sequence[Edge], way: Way) -> tuple[Mark, ...]:
+def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], way: JobRunner) -> tuple[Border, ...]:
     """Borders between neighbours of the grid; between two of them there may be several."""
     taped = mechanisms.turning is not None
-    halvings = HALVINGS if taped else ROUGHLY[len(mechanisms.axes) - 1]
-    size = CHUNK if taped else max(1, FEW // halvings)
-    found: list[Mark] = []
+    halvings = HALVINGS if taped else SINGLE_HALVINGS[len(mechanisms.axes) - 1]
+    size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)
+    found: list[Border] = []
     for _round in STATES:
         work_size = [edges[first : first + size] for first in range(0, len(edges), size)]
         jobs = []
         for part in work_size:
             inside, outside = (np.array([edge.points[side] for edge in part]) for side in (0, 1))
             state = np.array([edge.states[0] for edge in part])
-            jobs.append(Borders(mechanisms, inside, outside, state, halvings))
-        left: list[Edge] = []
+            jobs.append(BorderSearch(mechanisms, inside, outside, state, halvings))
+        left: list[GridEdge] = []
         for k, (last, first, state, why) in way(jobs, lambda: False):
             for n, edge in enumerate(work_size[k]):
                 before, after = edge.states
                 goes = after if int(state[n]) == before else int(state[n])  # what only the ordinary stages tell
                 reason = (why[n] or edge.why[1]) if goes > before else edge.why[0]
-                found.append(Mark(tuple(((last[n] + first[n]) / 2).tolist()), edge.along, before, goes, reason))
+                found.append(Border(tuple(((last[n] + first[n]) / 2).tolist()), edge.along, before, goes, reason))
                 if goes != after:
-                    left.append(Edge(edge.along, (first[n], edge.points[1]), (goes, after), (why[n], edge.why[1])))
+                    left.append(GridEdge(edge.along, (first[n], edge.points[1]), (goes, after), (why[n], edge.why[1])))
         edges = left
     return tuple(sorted(found, key=lambda mark: (mark.along, *mark.at[:: -1 if mark.along == 0 else 1])))

@@ -11,10 +11,17 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tmm_cli.batch import Variant, each, named_strokes
+from tmm_cli.batch import Variant, split_columns, working_and_idle_strokes
 from tmm_cli.mechanics.kinematics import Strokes, resisted_direction
 from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
-from tmm_cli.sweep.traced_stages import FINELY, Closely, Turning, near_peaks, peaks_between, turned
+from tmm_cli.sweep.traced_stages import (
+    FINE_SCAN,
+    CrankVariants,
+    VariantCurves,
+    candidate_peaks,
+    refine_peaks,
+    sign_changes,
+)
 
 SCAN = 72  # places in a turn of the driver
 BLOCK = 50  # variants that are looked at finely at once
@@ -22,7 +29,7 @@ SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # what a variant does
 
 
 @dataclass(frozen=True)
-class Wish:
+class ScanRequest:
     """What is looked for. peaks: names of what is limited whose largest values are wanted to the last digit.
 
     limits: of what is limited, near which that is wanted of all. strokes: whether their ends are.
@@ -34,7 +41,7 @@ class Wish:
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
+class ScanResults:
     """How variants go (WORKS, ...), (variants,); of those that work the peaks of what is limited, by name, else nan.
 
     sure: whether all is told: the outputs have as many strokes as those of the first one, nothing nearly happens. A
@@ -47,55 +54,55 @@ class Looked:
     peaks: Mapping[str, Real]
     ends: Real
 
-    def take(self, rows: Real) -> Looked:
+    def take(self, rows: Real) -> ScanResults:
         """Some of the variants."""
         peaks = {name: peak[rows] for name, peak in self.peaks.items()}
-        return Looked(self.does[rows], self.sure[rows], peaks, self.ends[rows])
+        return ScanResults(self.does[rows], self.sure[rows], peaks, self.ends[rows])
 
 
-def look(turning: Turning, columns: Real, wish: Wish) -> Looked:
+def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
     """Variants whose numbers are the rows of columns (variants, n)."""
-    found = _View(turning, columns, wish, SCAN).looked
+    found = _VariantScan(turning, columns, wish, SCAN).looked
     again = np.flatnonzero(~found.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
-        fine = _View(turning, columns[rows], wish, FINELY).looked
+        fine = _VariantScan(turning, columns[rows], wish, FINE_SCAN).looked
         found.does[rows], found.sure[rows], found.ends[rows] = fine.does, fine.sure, fine.ends
         for name, peak in found.peaks.items():
             peak[rows] = fine.peaks[name]
     return found
 
 
-class _View:
+class _VariantScan:
     """Variants at so many places of a turn."""
 
-    def __init__(self, turning: Turning, columns: Real, wish: Wish, places: int) -> None:
+    def __init__(self, turning: CrankVariants, columns: Real, wish: ScanRequest, places: int) -> None:
         self.turning, self.columns, self.wish = turning, columns, wish
         self.places, self.step = places, 2 * np.pi / places
-        self.found = turning.scan(*each(columns), self.at(np.arange(places)))
+        self.found = turning.scan(*split_columns(columns), self.at(np.arange(places)))
 
     def at(self, numbers: Real) -> Real:
         """The driver at places."""
         return self.turning.linkage.sketch.at + self.step * numbers
 
     @property
-    def looked(self) -> Looked:
+    def looked(self) -> ScanResults:
         """All that is looked for."""
         does, sure = self._assembled()
         ends = np.full((len(self.columns), len(self.turning.stroke_links), 2), np.nan)
         if self.wish.strokes and np.any(does == SCAN_WORKS):
             for k in range(len(self.turning.stroke_links)):
                 slope = self.found[f"slope{k}"]
-                turns = turned(slope)
+                turns = sign_changes(slope)
                 sure &= np.sum(turns, axis=1) == self.turning.strokes[k]
-                sure &= ~_nearly(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
+                sure &= ~_nearly_reaches(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
                 rows = np.flatnonzero((does == SCAN_WORKS) & sure)
                 if self.turning.strokes[k] and rows.size:
                     low = np.nonzero(turns[rows])[1].reshape(-1, 2)
-                    slope_of = _curve(self.turning, f"slope{k}", self.columns[rows])
-                    ends[rows, k] = _ends(slope_of, self.at(low), self.at(low + 1))
+                    slope_of = _curve_of_variants(self.turning, f"slope{k}", self.columns[rows])
+                    ends[rows, k] = _stroke_ends(slope_of, self.at(low), self.at(low + 1))
         works = does == SCAN_WORKS
         peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
-        return Looked(does, sure | ~works, peaks, ends)
+        return ScanResults(does, sure | ~works, peaks, ends)
 
     def _assembled(self) -> tuple[Real, Real]:
         """Whether they are assembled where the sketch is, and all round, in no dead position; whether surely so."""
@@ -107,16 +114,16 @@ class _View:
             apart |= missing[:, 0]
             lost |= np.any(missing | (gap >= -2 * slack) | (np.sign(det) != np.sign(det[:, :1])), axis=1)
             if k in self.turning.single:
-                doubtful |= _nearly(-np.abs(det), np.ones(det.shape, dtype=bool))
+                doubtful |= _nearly_reaches(-np.abs(det), np.ones(det.shape, dtype=bool))
         does[lost], does[apart] = SCAN_STOPS, SCAN_APART
         for k in range(len(self.turning.kernels)):
             name = f"gap{k}"
             gap = self.found[name]
-            rows, at = near_peaks(gap, np.zeros(len(gap)), (does == SCAN_WORKS)[:, None])
+            rows, at = candidate_peaks(gap, np.zeros(len(gap)), (does == SCAN_WORKS)[:, None])
             if rows.size:
-                close = Closely(self.turning.part(name, f"slack{k}"), self.columns[rows])
+                close = VariantCurves(self.turning.part(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
-                place, value = find_minima(_negative(close, name), q - self.step, q + self.step)
+                place, value = find_minima(_negated_curve(close, name), q - self.step, q + self.step)
                 does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = SCAN_STOPS
         return does, ~doubtful
 
@@ -126,24 +133,24 @@ class _View:
         top: Real = np.max(curve, axis=1)
         limit = self.wish.limits.get(name)
         level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
-        rows, at = near_peaks(curve, level, works[:, None])
+        rows, at = candidate_peaks(curve, level, works[:, None])
         if rows.size:
-            close = Closely(self.turning.part(name), self.columns[rows])
+            close = VariantCurves(self.turning.part(name), self.columns[rows])
             before, here, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
-            peaks = peaks_between(lambda q: close(q)[name], self.at(at), self.step, (before, here, after))
+            peaks = refine_peaks(lambda q: close(q)[name], self.at(at), self.step, (before, here, after))
             np.maximum.at(top, rows, peaks)
         return top
 
 
-def _nearly(curve: Real, where: Real) -> Real:
+def _nearly_reaches(curve: Real, where: Real) -> Real:
     """Which variants' curves below zero may reach it between two places. where: places that count."""
-    rows, _at = near_peaks(curve, np.zeros(len(curve)), where)
+    rows, _at = candidate_peaks(curve, np.zeros(len(curve)), where)
     found = np.zeros(len(curve), dtype=bool)
     found[rows] = True
     return found
 
 
-def _ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
+def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """Roots between places; that at a place itself is there, though rounding has it on neither side."""
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
@@ -151,31 +158,33 @@ def _ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), found)
 
 
-def _curve(turning: Turning, name: str, columns: Real) -> Callable[[Real], Real]:
+def _curve_of_variants(turning: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
     """One of the curves of variants, over places of each."""
-    close = Closely(turning.part(name), columns)
+    close = VariantCurves(turning.part(name), columns)
     return lambda q: close(q)[name]
 
 
-def _negative(close: Closely, name: str) -> Callable[[Real], Real]:
+def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
     return lambda q: -close(q)[name]
 
 
-def strokes_of(turning: Turning, columns: Real, looked: Looked, varied: Variant) -> Strokes | None:
+def variant_strokes(turning: CrankVariants, columns: Real, looked: ScanResults, varied: Variant) -> Strokes | None:
     """Of variants that work, as arrays (variants, 1)."""
     every = []
     for k, link in enumerate(turning.stroke_links):
-        curve = _Output(link, turning.linkage.output_swings(link), _curve(turning, f"place{k}", columns))
+        curve = _TracedOutputCurve(
+            link, turning.linkage.output_swings(link), _curve_of_variants(turning, f"place{k}", columns)
+        )
         if turning.strokes[k]:
             resists = resisted_direction(varied.linkage, link)
-            every.append(named_strokes(turning.linkage, curve, looked.ends[:, k], resists))
+            every.append(working_and_idle_strokes(turning.linkage, curve, looked.ends[:, k], resists))
         else:
             every.append(Strokes(link, curve.kind, (), ""))
     return replace(every[0], others=tuple(every[1:])) if every else None
 
 
 @dataclass(frozen=True)
-class _Output:
+class _TracedOutputCurve:
     """The curve of one of the outputs, see kinematics.strokes.Curve."""
 
     link: str

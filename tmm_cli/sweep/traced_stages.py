@@ -11,17 +11,17 @@ import numpy as np
 
 from tmm_cli.batch import (
     CHECKS,
-    SURE,
+    CONVERGED,
     Make,
     NoTapeError,
-    Program,
     TracedNumber,
+    TraceProgram,
     Variant,
-    each,
-    record,
-    solved,
-    stands,
-    stood_for,
+    placeholder_linkage,
+    resolve_traced,
+    solve_stages,
+    split_columns,
+    trace_function,
 )
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.forces import Reactions
@@ -38,11 +38,11 @@ from tmm_cli.mechanics.kinematics import (
 from tmm_cli.mechanics.numerics import END_OF_SLOT, WINDOW_SIDE, Real, window_peak
 from tmm_cli.mechanics.structure import output_link, turns_of_cycle
 
-WINDOW, SHARE = 17, 30  # places about a peak, and how many steps of them are one of the scan
+WINDOW_PLACES, WINDOW_STEPS = 17, 30  # places about a peak, and how many steps of them are one of the scan
 SHIFTS = 12  # of a window whose largest value lies at its edge
 
 
-def near_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
+def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
     """Peaks of closed curves (variants, places) that may reach a level (variants,) between two places: row and place.
 
     Between places a curve rises by no more than twice what it rises from one to the next. where: places that count.
@@ -55,7 +55,7 @@ def near_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
     return row, place
 
 
-def peaks_between(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
+def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
     """The peak of each of many curves about a place q of its own (peaks,), with its values before, there and after.
 
     curve: values at places (peaks, n), for every curve its own.
@@ -65,11 +65,11 @@ def peaks_between(curve: Callable[[Real], Real], q: Real, step: float, values: t
     with np.errstate(invalid="ignore", divide="ignore"):
         off = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
     middle = q + step * np.clip(off, -1, 1)
-    window = step / SHARE * np.arange(-(WINDOW // 2), WINDOW // 2 + 1)
+    window = step / WINDOW_STEPS * np.arange(-(WINDOW_PLACES // 2), WINDOW_PLACES // 2 + 1)
     for _ in range(SHIFTS):
         there = curve(middle[:, None] + window)
         top = np.argmax(there, axis=1)
-        edge = (top < WINDOW_SIDE) | (top >= WINDOW - WINDOW_SIDE)
+        edge = (top < WINDOW_SIDE) | (top >= WINDOW_PLACES - WINDOW_SIDE)
         if not np.any(edge):
             break
         middle = np.where(edge, middle + window[top], middle)
@@ -82,11 +82,11 @@ def peaks_between(curve: Callable[[Real], Real], q: Real, step: float, values: t
 
 
 CYCLE = 180  # steps of a turn of the driver between which peaks of what has a value a position are searched for
-FINELY = 1440  # places in a turn of the driver, as the ordinary stages look at
+FINE_SCAN = 1440  # places in a turn of the driver, as the ordinary stages look at
 
 
 @dataclass(frozen=True)
-class Limited:
+class LimitedCurve:
     """A curve that has a limit: pressure angle of a link (rad), share of a slot by which a stone is beyond its end."""
 
     name: str
@@ -95,7 +95,7 @@ class Limited:
     sliding: bool = False
 
 
-class Turning:
+class CrankVariants:
     """Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
 
     read: what is wanted at the positions, by name; forces: whether that needs reactions.
@@ -123,8 +123,8 @@ class Turning:
         leads = [lead for kernel in self.kernels for lead in driven_links(kernel.group)]
         self.slots = [slide for slide in linkage.slides if slide.ends is not None]
         self.limited = (
-            *(Limited(f"angle{n}", "pressure", lead[0], lead[1].kind == "P") for n, lead in enumerate(leads)),
-            *(Limited(f"slot{n}.{end}", "slot", slide.name) for n, slide in enumerate(self.slots) for end in "01"),
+            *(LimitedCurve(f"angle{n}", "pressure", lead[0], lead[1].kind == "P") for n, lead in enumerate(leads)),
+            *(LimitedCurve(f"slot{n}.{end}", "slot", slide.name) for n, slide in enumerate(self.slots) for end in "01"),
         )
         link = output_link(linkage, tuple(kernel.group for kernel in self.kernels))
         whole = link is not None and (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link))
@@ -132,15 +132,15 @@ class Turning:
         if linkage.stroke_links and self.output is None:
             raise NoTapeError
         self.stroke_links = (*([self.output] if self.output else []), *linkage.stroke_links)
-        self.scan, self.close = (record(self._states, *[1] * len(first), axis) for axis in (2, 3))
-        self.forces = record(
+        self.scan, self.close = (trace_function(self._states, *[1] * len(first), axis) for axis in (2, 3))
+        self.forces = trace_function(
             lambda *data: self._positions(data, read, forces), *[1] * (len(first) + 4 * len(self.stroke_links) + 1), 3
         )
-        self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, SURE)))
-        self._parts: dict[tuple[str, ...], Program] = {}
-        self._some: dict[tuple[str, ...], Program] = {}
+        self.forces = self.forces.only(*(name for name in self.forces.outputs if name not in (*CHECKS, CONVERGED)))
+        self._parts: dict[tuple[str, ...], TraceProgram] = {}
+        self._some: dict[tuple[str, ...], TraceProgram] = {}
 
-    def part(self, *names: str) -> Program:
+    def part(self, *names: str) -> TraceProgram:
         """Some of the curves at places of each variant; made once."""
         if names not in self._parts:
             self._parts[names] = self.close.only(*names)
@@ -152,17 +152,17 @@ class Turning:
 
         Raises NoTapeError if the main output has more, or another link has not two.
         """
-        places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINELY) / FINELY
+        places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
         names = [f"slope{k}" for k in range(len(self.stroke_links))]
         slopes = self.scan.only(*names)(*(np.array([[x]]) for x in self.first), places)
-        counts = tuple(int(np.sum(turned(slopes[name]))) for name in names)
+        counts = tuple(int(np.sum(sign_changes(slopes[name]))) for name in names)
         if any(count > 2 for count in counts) or any(count != 2 for count in counts[1:]):
             raise NoTapeError
         return counts
 
     def _linkage(self, data: Sequence[Any]) -> Any:
         """Linkage and groups with stands in the places of their numbers."""
-        linkage = stood_for(self.make, self.first, data, self.linkage.sketch)
+        linkage = placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
         return linkage, tuple(kernel.rebind(linkage) for kernel in self.kernels)
 
     def _states(self, *data: Any) -> Mapping[str, Any]:
@@ -198,17 +198,17 @@ class Turning:
             every.append(Strokes(link, "swing" if linkage.output_swings(link) else "slide", pair, ""))
         strokes = replace(every[0], others=tuple(every[1:])) if every else None
         structure = self.structure.rebind(linkage)
-        return solved(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
+        return solve_stages(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
     def varied(self, columns: Real) -> tuple[Variant, Real]:
         """The variants as one with arrays for numbers; which of them would have been built otherwise, (variants,)."""
         otherwise: list[Any] = []
-        both = zip(self.first, each(columns), strict=True)
+        both = zip(self.first, split_columns(columns), strict=True)
         made = self.make([TracedNumber(x, column, otherwise) for x, column in both])
         apart = np.zeros(len(columns), dtype=bool)
         for truth in otherwise:
             apart |= np.broadcast_to(np.asarray(truth), (len(columns), 1))[:, 0]
-        return replace(made, linkage=stands(made.linkage), request=stands(made.request)), apart
+        return replace(made, linkage=resolve_traced(made.linkage), request=resolve_traced(made.request)), apart
 
     def over_cycle(
         self, columns: Real, strokes: Strokes | None
@@ -225,11 +225,11 @@ class Turning:
 
         def at(rows: Real, q: Real, names: Sequence[str]) -> Mapping[str, Real]:
             program = self._wanted(*names)
-            return program(*each(columns[rows]), *(x[rows] for x in numbers), q[:, :1], q)
+            return program(*split_columns(columns[rows]), *(x[rows] for x in numbers), q[:, :1], q)
 
         return start + sense * np.linspace(0, 2 * np.pi, CYCLE + 1), at
 
-    def _wanted(self, *names: str) -> Program:
+    def _wanted(self, *names: str) -> TraceProgram:
         """Some of what is wanted at positions; made once."""
         if names not in self._some:
             self._some[names] = self.forces.only(*names)
@@ -237,25 +237,25 @@ class Turning:
 
 
 @dataclass(frozen=True)
-class Closely:
+class VariantCurves:
     """A program at places of variants of its own: q is (variants, n), or (m variants,), which is m rounds of them."""
 
-    program: Program
+    program: TraceProgram
     columns: Real
 
     def __call__(self, q: Real) -> Mapping[str, Real]:
         shaped = q.reshape(len(self.columns), -1) if q.ndim > 1 else q.reshape(-1, len(self.columns)).T
-        found = self.program(*each(self.columns), shaped)
+        found = self.program(*split_columns(self.columns), shaped)
         return {name: value if q.ndim > 1 else value.T.reshape(-1) for name, value in found.items()}
 
 
-def turned(slope: Real) -> Real:
+def sign_changes(slope: Real) -> Real:
     """After which places of a turn a slope has another sign."""
     forward = slope >= 0
     found: Real = forward != np.roll(forward, -1, axis=1)
     return found
 
 
-def beyond(one: Limited, allowed: tuple[float, float]) -> float:
+def curve_limit(one: LimitedCurve, allowed: tuple[float, float]) -> float:
     """The limit of a curve; allowed: pressure angles of sliding and of turning links (rad)."""
     return END_OF_SLOT if one.kind == "slot" else allowed[0 if one.sliding else 1]

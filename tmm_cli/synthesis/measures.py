@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.kinematics import DriverRange, find_pressure, find_travel, output_slope
 from tmm_cli.mechanics.linkage import FRAME, Output
 from tmm_cli.mechanics.numerics import DEMAND_MET, NO_DEMAND, SURE_SIGN, Real, bisect
@@ -103,7 +103,7 @@ def time_ratio_uncertainty(results: Results) -> float:
     away = 2.0 ** np.arange(-52, -6)
     places = ends[:, None, None] + np.array([[1.0], [-1.0]]) * away
     around = ends[0] + strokes.cycle * np.arange(64) / 64
-    every = np.abs(output_slope(at_positions(results, np.append(places, around)), strokes.link))
+    every = np.abs(output_slope(motion_at_positions(results, np.append(places, around)), strokes.link))
     speed = every[:-64].reshape(places.shape)
     dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # which begin and end to the last digit
     sure = np.all(speed > SURE_SIGN * np.nanmax(every), axis=1) | dwells

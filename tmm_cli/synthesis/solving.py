@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from tmm_cli.mechanics.analysis import Inputs, Results, pipeline, redriven
+from tmm_cli.mechanics.analysis import Inputs, Results, pipeline, with_driver
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.structure import ChainResults, count_chain
 from tmm_cli.problem import (
@@ -107,7 +107,7 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     """
     whole = problem.whole
     with translate_errors(whole):
-        linkage = redriven(whole.linkage, link)
+        linkage = with_driver(whole.linkage, link)
     loads = tuple(
         own for own in linkage.loads if own.window is None and (own.table is None or own.table.against == "stroke")
     )

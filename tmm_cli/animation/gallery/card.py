@@ -10,9 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from tmm_cli.animation.gallery.moving_picture import Turning, scheme, turning
+from tmm_cli.animation.gallery.moving_picture import MovingPicture, draw_chain, draw_moving_picture
 from tmm_cli.language import N_, _, signed, typeset
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.kinematics import OutputTravel, Strokes, output_run
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, coordinate_dimension
@@ -21,8 +21,11 @@ from tmm_cli.problem import Tree, UnitSystem, build_any_problem, build_chain, is
 from tmm_cli.reports import MET, properties_shown, with_unit
 from tmm_cli.synthesis import count, solve
 
-QUICK = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
-STILL, DWELL = 0.01, 60  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
+LEAST_TIME_RATIO = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
+STILL_FRACTION, LEAST_DWELL = (
+    0.01,
+    60,
+)  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
 
 PURPOSES: Final = {
     "slides": N_("output slides to and fro"),
@@ -41,11 +44,11 @@ PURPOSES: Final = {
 
 def purposes(results: Results) -> tuple[str, ...]:
     """Keys of PURPOSES, in their order, of results that have a motion."""
-    found = set(_purposes(results))
+    found = set(_iterate_purposes(results))
     return tuple(key for key in PURPOSES if key in found)
 
 
-def _purposes(results: Results) -> Iterable[str]:
+def _iterate_purposes(results: Results) -> Iterable[str]:
     outputs, linkage = results.mechanism.outputs, results.linkage
     back = results.swinging
     for link in outputs:
@@ -59,11 +62,11 @@ def _purposes(results: Results) -> Iterable[str]:
             swings = any(one.link == link for one in back) or not results.turns
             yield "swings" if swings else "turns"
     for one in back:
-        if one.k >= QUICK or 0 < one.k <= 1 / QUICK:
+        if one.k >= LEAST_TIME_RATIO or 0 < one.k <= 1 / LEAST_TIME_RATIO:
             yield "quick"
         if len(one.strokes) > 2:
             yield "strokes"
-        if any(stroke.rest for stroke in one.strokes) or _dwells(results, one.link):
+        if any(stroke.rest for stroke in one.strokes) or _has_dwell(results, one.link):
             yield "dwell"
     if len(outputs) > 1:
         yield "outputs"
@@ -71,14 +74,14 @@ def _purposes(results: Results) -> Iterable[str]:
         yield "drivers"
 
 
-def _dwells(results: Results, link: str) -> bool:
+def _has_dwell(results: Results, link: str) -> bool:
     """Whether an output hardly moves at an end of its way, while the crank goes on."""
-    motion = at_positions(results, results.closely(360 * results.turns + 1)[:-1])
+    motion = motion_at_positions(results, results.closely(360 * results.turns + 1)[:-1])
     run = output_run(motion, link)[0]
     run = np.unwrap(run) if results.linkage.output_swings(link) else run
     for near in (run - np.min(run), np.max(run) - run):
-        still = np.flatnonzero(np.r_[near, near] > STILL * np.ptp(run))  # twice: it may go over the seam
-        if np.max(np.diff(still), initial=0) > DWELL:
+        still = np.flatnonzero(np.r_[near, near] > STILL_FRACTION * np.ptp(run))  # twice: it may go over the seam
+        if np.max(np.diff(still), initial=0) > LEAST_DWELL:
             return True
     return False
 
@@ -86,7 +89,7 @@ def _dwells(results: Results, link: str) -> bool:
 # What a card says of a problem file: class, groups, purposes, properties, the mechanism that turns.
 
 
-LONGEST = 1500  # letters of what a file says of itself
+LONGEST_TEXT = 1500  # letters of what a file says of itself
 DIGITS = 4
 
 Value = tuple[str, float, Dimension]
@@ -119,54 +122,54 @@ class Card:
     groups: tuple[str, ...]
     purposes: tuple[str, ...]
     facts: tuple[Fact, ...]
-    turning: Turning
+    turning: MovingPicture
 
 
-def card(file: str) -> Card:
+def make_card(file: str) -> Card:
     """The card of a problem file. Raises ProblemError."""
     tree = read_file(file)
     if is_chain(tree):
-        return _of_chain(file, tree, count(build_chain(tree)))
+        return _chain_card(file, tree, count(build_chain(tree)))
     problem = build_any_problem(tree).whole
     results = solve(problem, "forces" if problem.shows else "kinematics")
     structure = results.structure
     groups = dict.fromkeys(f"{group.roman} {group.type}" for group in structure.groups)
     return Card(
         file,
-        _language(tree),
+        _file_language(tree),
         problem.title,
         problem.reference,
-        problem.description or remark(file),
+        problem.description or leading_comment(file),
         structure.roman,
         structure.formula.replace("->", "→"),
         tuple(groups),
         purposes(results),
-        tuple(_told(_facts(results), problem.units)),
-        turning(results),
+        tuple(_format_facts(_facts(results), problem.units)),
+        draw_moving_picture(results),
     )
 
 
-def _of_chain(file: str, tree: Tree, results: ChainResults) -> Card:
+def _chain_card(file: str, tree: Tree, results: ChainResults) -> Card:
     problem = results.problem
-    values = list(_shown(results))
+    values = list(_shown_properties(results))
     if all(task.of != "W" for task in problem.shows.values()):
         values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
     return Card(
         file,
-        _language(tree),
+        _file_language(tree),
         problem.title,
         problem.reference,
-        problem.description or remark(file),
+        problem.description or leading_comment(file),
         "",
         typeset(f"W = {results.chain.chain.count}"),
         (),
         ("space",),
-        tuple(_told(values, problem.units)),
-        scheme(results.chain.chain),
+        tuple(_format_facts(values, problem.units)),
+        draw_chain(results.chain.chain),
     )
 
 
-def remark(file: str) -> str:
+def leading_comment(file: str) -> str:
     """The remark at the head of a file, where people say what it is."""
     lines = []
     with open(file, encoding="utf-8-sig") as stream:
@@ -175,30 +178,30 @@ def remark(file: str) -> str:
                 break
             lines.append(line.lstrip("#").strip())
     text = re.sub(r"\s+", " ", " ".join(lines)).strip()
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
 
 
-def _language(tree: Tree) -> str:
+def _file_language(tree: Tree) -> str:
     return str(tree.data.get("lang", ""))
 
 
 def _facts(results: Results) -> Iterator[Value]:
     """What the file shows; what every mechanism has."""
     structure, linkage = results.structure, results.linkage
-    yield from _shown(results)
+    yield from _shown_properties(results)
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
     if structure.redundant:
         yield _("passive constraints"), float(structure.redundant), NUMBER
     for one in results.swinging:
-        yield _stroke(linkage, one), one.travel, coordinate_dimension(one.kind)
+        yield _stroke_name(linkage, one), one.travel, coordinate_dimension(one.kind)
         yield _("coefficient of change of mean speed k"), one.k, NUMBER
     for travel in results.travels:
-        yield _stroke(linkage, travel), travel.high - travel.low, coordinate_dimension(travel.kind)
+        yield _stroke_name(linkage, travel), travel.high - travel.low, coordinate_dimension(travel.kind)
     if results.pressure:
         yield _("largest pressure angle"), max(one.largest for one in results.pressure), ANGLE
 
 
-def _stroke(linkage: Linkage, found: Strokes | OutputTravel) -> str:
+def _stroke_name(linkage: Linkage, found: Strokes | OutputTravel) -> str:
     link = found.link
     if linkage.output_point(link) is not None:
         return _("travel of {link}").format(link=link)
@@ -207,12 +210,12 @@ def _stroke(linkage: Linkage, found: Strokes | OutputTravel) -> str:
     return _("swing psi of link {link}").format(link=link)
 
 
-def _shown(results: Results | ChainResults) -> Iterable[Value]:
+def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
     for one in properties_shown(results):
         yield one.name, 0.0 if abs(one.value) <= MET else one.value, one.dimension
 
 
-def _told(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
+def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
     """With the units of the file; of one name the first, and none that has no value."""
     told = set[str]()
     for name, value, dimension in values:

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.animation.bodies import Body, Picture
-from tmm_cli.animation.page import SECONDS, picture_of, view
+from tmm_cli.animation.bodies import MechanismPicture, MovingBody
+from tmm_cli.animation.page import SECONDS, draw_first_frame, picture_view
 from tmm_cli.drawing.formats import svg_element
 from tmm_cli.drawing.paper import DARK_COLOUR, GREY_TEXT, AreaMark, CircleMark, LineMark, Mark, TextMark
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real
@@ -22,13 +22,13 @@ from tmm_cli.mechanics.structure import SpatialChain
 
 FRAMES = 48  # a turn
 MOST_FRAMES = 240  # of mechanisms that repeat after many turns
-PLACE, TURN = 100, 10_000  # steps in a mm of the picture; in a radian, and in a stretch of one
+STEPS_PER_MM, STEPS_PER_RADIAN = 100, 10_000  # steps in a mm of the picture; in a radian, and in a stretch of one
 
-Course = int | list[int]
+FrameValues = int | list[int]
 
 
 @dataclass(frozen=True)
-class Turning:
+class MovingPicture:
     """The drawing of the first frame, its sides (mm), and the frames; none of what does not move.
 
     bodies: x, y, turn and stretch of each, in PLACE and TURN: a number of what does not change, else the first value
@@ -37,39 +37,39 @@ class Turning:
 
     svg: str
     view: tuple[float, float, float, float]
-    bodies: tuple[tuple[Course, Course, Course, Course], ...] = ()
+    bodies: tuple[tuple[FrameValues, FrameValues, FrameValues, FrameValues], ...] = ()
     loops: bool = False
     seconds: float = SECONDS
 
 
-def turning(results: Results) -> Turning:
+def draw_moving_picture(results: Results) -> MovingPicture:
     """Of results with kinematics."""
     turns = results.turns or 1
-    motion = _motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
+    motion = _choose_motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
     still = len(motion.q) < 2
-    picture = picture_of(results, motion)
+    picture = draw_first_frame(results, motion)
     drawn = list(picture.layers())
     moving = [] if still else [name for name in dict.fromkeys(name for name, __ in drawn) if name != FRAME]
     svg = "".join(
-        f"<g{_attributes(picture, name, moving)}>{''.join(svg_element(mark, 0.0) for mark in marks)}</g>"
+        f"<g{_group_attributes(picture, name, moving)}>{''.join(svg_element(mark, 0.0) for mark in marks)}</g>"
         for name, marks in drawn
     )
-    bodies = tuple(_courses(picture.bodies[name]) for name in moving)
-    return Turning(svg, view(picture), bodies, results.turns > 0, SECONDS * turns)
+    bodies = tuple(_body_frames(picture.bodies[name]) for name in moving)
+    return MovingPicture(svg, picture_view(picture), bodies, results.turns > 0, SECONDS * turns)
 
 
-def _motion(results: Results, count: int) -> Motion:
+def _choose_motion(results: Results, count: int) -> Motion:
     """Where it moves over what is asked for, or else as far as its driver can go; or the sketch alone."""
     reach = results.driver_range
     assert reach is not None
     for q in (results.closely(count), np.linspace(reach.start, reach.end, count)):
-        motion = at_positions(results, q, 0)
+        motion = motion_at_positions(results, q, 0)
         if np.count_nonzero(motion.moving) > 1 and np.ptp(q) > 0:
-            return motion if motion.moving.all() else at_positions(results, q[motion.moving], 0)
-    return at_positions(results, np.array([results.linkage.sketch.at]), 0)
+            return motion if motion.moving.all() else motion_at_positions(results, q[motion.moving], 0)
+    return motion_at_positions(results, np.array([results.linkage.sketch.at]), 0)
 
 
-def _attributes(picture: Picture, name: str, moving: list[str]) -> str:
+def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -> str:
     """Where the body is in the first frame, and its number if it moves."""
     body = picture.bodies[name]
     if name == FRAME:
@@ -81,17 +81,17 @@ def _attributes(picture: Picture, name: str, moving: list[str]) -> str:
     return f'{number} transform="matrix({matrix})"'
 
 
-def _courses(body: Body) -> tuple[Course, Course, Course, Course]:
+def _body_frames(body: MovingBody) -> tuple[FrameValues, FrameValues, FrameValues, FrameValues]:
     """With y down, as the page has it."""
     return (
-        _course(body.place.real * PLACE),
-        _course(-body.place.imag * PLACE),
-        _course(-body.angle * TURN),
-        _course(body.stretch * TURN),
+        _frame_values(body.place.real * STEPS_PER_MM),
+        _frame_values(-body.place.imag * STEPS_PER_MM),
+        _frame_values(-body.angle * STEPS_PER_RADIAN),
+        _frame_values(body.stretch * STEPS_PER_RADIAN),
     )
 
 
-def _course(values: Real) -> Course:
+def _frame_values(values: Real) -> FrameValues:
     whole = np.rint(values).astype(int)
     if np.all(whole == whole[0]):
         return int(whole[0])
@@ -109,9 +109,9 @@ NEAR = 0.64  # of a pair's way to the link above: its circle; most links hang on
 EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
-def scheme(chain: SpatialChain) -> Turning:
+def draw_chain(chain: SpatialChain) -> MovingPicture:
     """The frame below; at each pair the number of its freedoms."""
-    places = places_of(chain)
+    places = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
     for pair in chain.pairs:
@@ -124,14 +124,14 @@ def scheme(chain: SpatialChain) -> Turning:
         marks.append(CircleMark(middle, 2.3, "white", DARK_COLOUR, 0.3))
         marks.append(TextMark(middle, str(pair.freedoms), 3.2, GREY_TEXT, "center"))
     for name, place in places.items():
-        marks += _box(name, place)
+        marks += _link_box(name, place)
     xs, ys = [abs(z.real) for z in places.values()], [z.imag for z in places.values()]
     half, top = max(max(xs) + APART / 2 + EDGE, LEAST / 2), max(ys) + BOW + EDGE
     sides = (-half, -top, 2 * half, top - min(ys) + HIGH + EDGE)
-    return Turning("".join(svg_element(mark, 0.0) for mark in marks), sides)
+    return MovingPicture("".join(svg_element(mark, 0.0) for mark in marks), sides)
 
 
-def _box(name: str, place: complex) -> list[Mark]:
+def _link_box(name: str, place: complex) -> list[Mark]:
     """A link, with as much of its name as there is room for."""
     most = int((APART - 2) / (SHARE * LETTER))
     text = name if len(name) <= most else f"{name[: most - 1]}…"
@@ -141,7 +141,7 @@ def _box(name: str, place: complex) -> list[Mark]:
     return [AreaMark(corners, face, DARK_COLOUR, 0.4), TextMark(place, text, LETTER, DARK_COLOUR, "center")]
 
 
-def places_of(chain: SpatialChain) -> dict[str, complex]:
+def chain_places(chain: SpatialChain) -> dict[str, complex]:
     """Middles of the links: row by row, each link as near to those that it hangs on as its row allows."""
     rows = [[FRAME]]
     known = {FRAME}

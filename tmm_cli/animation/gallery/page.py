@@ -12,8 +12,8 @@ from html import escape
 from typing import Any
 
 from tmm_cli.animation.gallery.card import PURPOSES, Card
-from tmm_cli.animation.gallery.moving_picture import PLACE, TURN
-from tmm_cli.animation.page import data_text, filled
+from tmm_cli.animation.gallery.moving_picture import STEPS_PER_MM, STEPS_PER_RADIAN
+from tmm_cli.animation.page import data_text, fill_page
 from tmm_cli.drawing.formats import NOT_XML
 from tmm_cli.language import LANGUAGES, _, translated
 from tmm_cli.mechanics.structure import ROMAN
@@ -46,19 +46,21 @@ def gallery_page(cards: Sequence[Card]) -> str:
             "Numbers of properties are compared in the units of each card."
         ),
     }
-    return filled(
+    return fill_page(
         "gallery/",
-        **{name: _text(word) for name, word in words.items()},
-        numbers=_options({number: number for number in sorted(numbers, key=ROMAN.index)}, numbers),
-        groups=_options({group: group for group in sorted(groups)}, groups),
-        purposes=_options({key: translated(words) for key, words in PURPOSES.items() if purposes[key]}, purposes),
-        facts="".join(f'<option value="{_text(name)}">' for name in sorted(names)),
-        cards="\n".join(map(_card, cards, _names_of_files([card.file for card in cards]))),
-        data=data_text({"place": PLACE, "turn": TURN, "cards": [_data(card) for card in cards]}),
+        **{name: _escape(word) for name, word in words.items()},
+        numbers=_options_html({number: number for number in sorted(numbers, key=ROMAN.index)}, numbers),
+        groups=_options_html({group: group for group in sorted(groups)}, groups),
+        purposes=_options_html({key: translated(words) for key, words in PURPOSES.items() if purposes[key]}, purposes),
+        facts="".join(f'<option value="{_escape(name)}">' for name in sorted(names)),
+        cards="\n".join(map(_card_html, cards, _display_names([card.file for card in cards]))),
+        data=data_text(
+            {"place": STEPS_PER_MM, "turn": STEPS_PER_RADIAN, "cards": [_card_data(card) for card in cards]}
+        ),
     )
 
 
-def _data(card: Card) -> dict[str, Any]:
+def _card_data(card: Card) -> dict[str, Any]:
     turning = card.turning
     return {
         "number": card.number,
@@ -71,7 +73,7 @@ def _data(card: Card) -> dict[str, Any]:
     }
 
 
-def _names_of_files(files: Sequence[str]) -> list[str]:
+def _display_names(files: Sequence[str]) -> list[str]:
     """Names for readers: of what was named by a full path, the part below the folder that all of these have."""
     full = [os.path.dirname(file) for file in files if os.path.isabs(file)]
     try:
@@ -81,47 +83,47 @@ def _names_of_files(files: Sequence[str]) -> list[str]:
     return [os.path.relpath(file, above) if os.path.isabs(file) else file for file in files]
 
 
-def _card(card: Card, file: str) -> str:
+def _card_html(card: Card, file: str) -> str:
     tongue = f' lang="{card.language}"' if card.language in LANGUAGES else ""
     tags = [
         *(("number", card.number, _("class {number}").format(number=card.number)) for __ in card.number[:1]),
         *(("group", group, group) for group in card.groups),
         *(("purpose", key, translated(PURPOSES[key])) for key in card.purposes),
     ]
-    source = f'<p class="source">{_text(card.reference)}</p>' if card.reference else ""
-    formula = f'<p class="formula">{_text(card.formula)}</p>' if card.formula else ""
-    facts = "".join(f"<tr><td>{_text(fact.name)}</td><td>{_text(fact.told)}</td></tr>" for fact in card.facts)
-    about = f"<p{tongue}>{_text(card.about)}</p>" if card.about else ""
+    source = f'<p class="source">{_escape(card.reference)}</p>' if card.reference else ""
+    formula = f'<p class="formula">{_escape(card.formula)}</p>' if card.formula else ""
+    facts = "".join(f"<tr><td>{_escape(fact.name)}</td><td>{_escape(fact.told)}</td></tr>" for fact in card.facts)
+    about = f"<p{tongue}>{_escape(card.about)}</p>" if card.about else ""
     return (
-        f'<li class="card">{_picture(card)}<h2{tongue}>{_text(card.title)}</h2>{source}'
-        f'<div class="tags">{"".join(_tag(*tag) for tag in tags)}</div>{formula}<table>{facts}</table>'
-        f"<details><summary>{_text(_('what it is'))}</summary>{about}<p><code>{_text(file)}</code></p></details>"
+        f'<li class="card">{_picture_html(card)}<h2{tongue}>{_escape(card.title)}</h2>{source}'
+        f'<div class="tags">{"".join(_tag_html(*tag) for tag in tags)}</div>{formula}<table>{facts}</table>'
+        f"<details><summary>{_escape(_('what it is'))}</summary>{about}<p><code>{_escape(file)}</code></p></details>"
         "</li>"
     )
 
 
-def _picture(card: Card) -> str:
+def _picture_html(card: Card) -> str:
     turning = card.turning
     sides = " ".join(f"{round(side, 1):g}" for side in turning.view)
     svg = f'<svg viewBox="{sides}" aria-hidden="true">{turning.svg}</svg>'
     if not turning.bodies:
         name = _("{title}: links, and pairs with their freedoms") if "space" in card.purposes else "{title}"
-        return f'<div class="picture" role="img" aria-label="{_text(name.format(title=card.title))}">{svg}</div>'
+        return f'<div class="picture" role="img" aria-label="{_escape(name.format(title=card.title))}">{svg}</div>'
     name = _("{title}: turn or stop")
-    label = _text(name.format(title=card.title))
+    label = _escape(name.format(title=card.title))
     return f'<button class="picture" type="button" aria-pressed="true" aria-label="{label}">{svg}</button>'
 
 
-def _tag(field: str, value: str, words: str) -> str:
-    return f'<button type="button" data-field="{field}" data-value="{_text(value)}">{_text(words)}</button>'
+def _tag_html(field: str, value: str, words: str) -> str:
+    return f'<button type="button" data-field="{field}" data-value="{_escape(value)}">{_escape(words)}</button>'
 
 
-def _options(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
+def _options_html(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
     return "".join(
-        f'<option value="{_text(value)}">{_text(told)} ({counts[value]})</option>' for value, told in words.items()
+        f'<option value="{_escape(value)}">{_escape(told)} ({counts[value]})</option>' for value, told in words.items()
     )
 
 
-def _text(text: str) -> str:
+def _escape(text: str) -> str:
     """As data of the page: no markup, and no signs that a page may not have."""
     return escape(text.translate(NOT_XML).encode(errors="replace").decode())

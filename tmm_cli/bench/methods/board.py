@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.mechanics.forces import Reactions, react
+from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import (
     Accel,
     Accels,
@@ -222,14 +222,14 @@ def prepare(millimetres: float, case: Case) -> Callable[[Real], Answers]:
 
     def at(q: Real) -> Answers:
         exact = compute_motion(case.linkage, case.kernels, q, case.law)
-        scales = Scales.of(case, exact, react(exact, case.structure, case.loads(exact)))
+        scales = Scales.of(case, exact, solve_reactions(exact, case.structure, case.loads(exact)))
         x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
         speed = np.abs(exact.rate)
         motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
         forces = {links: millimetres * scale for links, scale in scales.forces.items()}
         polygons = tuple(Polygon.around(k, forces[k.group.links]) for k in case.kernels)
         motion = replace(motion, kernels=polygons, placements=placements)
-        plan = react(motion, case.structure, case.loads(motion))
+        plan = solve_reactions(motion, case.structure, case.loads(motion))
         frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)
         found = from_plan(case, motion, replace(plan, frames=frames))
         assert found.positions and found.velocities and found.accelerations

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from tmm_cli.mechanics.assembly import assemble
-from tmm_cli.mechanics.forces import Applied, Reactions, applied
+from tmm_cli.mechanics.forces import AppliedLoad, Reactions, collect_loads
 from tmm_cli.mechanics.groups import Accel, DriverMotion, GroupSolver, Pose, Rate, Wrench, drives_at, link_extent
 from tmm_cli.mechanics.kinematics import Motion, Strokes
 from tmm_cli.mechanics.linkage import Linkage
@@ -77,9 +77,9 @@ class Case:
             acceleration=acceleration,
         )
 
-    def loads(self, motion: Motion) -> tuple[Applied, ...]:
+    def loads(self, motion: Motion) -> tuple[AppliedLoad, ...]:
         """All that acts on the links of a motion besides reactions."""
-        return applied(motion, self.strokes)
+        return collect_loads(motion, self.strokes)
 
     def wrenches(self, motion: Motion) -> dict[str, Wrench]:
         """The same, added up about the origin of each link."""

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_cli.bench.methods.case import Answers, Case, from_plan
-from tmm_cli.mechanics.forces import react
+from tmm_cli.mechanics.forces import solve_reactions
 from tmm_cli.mechanics.groups import Accel, Rate
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import Real
@@ -36,6 +36,6 @@ def prepare(step: float, case: Case) -> Callable[[Real], Answers]:
             first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
             second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
         motion = replace(case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements)
-        return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
+        return from_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return answer

@@ -13,8 +13,8 @@ import numpy as np
 
 from tmm_cli.batch import Batch, prepare_batch as batch_of
 from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
-from tmm_cli.mechanics.accuracy import widened
-from tmm_cli.mechanics.forces import Reactions, react
+from tmm_cli.mechanics.accuracy import as_double_doubles
+from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import GroupSolver, NewtonSolver, WrappedSolver
 from tmm_cli.mechanics.kinematics import Motion, compute_motion
 from tmm_cli.mechanics.numerics import DoubleDouble, Real, map_record, to_double_double
@@ -74,7 +74,7 @@ def _started(kernel: GroupSolver) -> GroupSolver:
 
 def extended(case: Case) -> Callable[[Real], Answers]:
     """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
-    linkage = widened(case.linkage)
+    linkage = as_double_doubles(case.linkage)
     wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double)
     return lambda q: map_record(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
 
@@ -88,7 +88,7 @@ def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
     def at(q: Real) -> Answers:
         motion = compute_motion(case.linkage, case.kernels, real(q), case.law)
         motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
-        return from_plan(case, motion, react(motion, case.structure, case.loads(motion)))
+        return from_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return at
 

@@ -27,7 +27,7 @@ from tmm_cli.drawing.paper import (
 from tmm_cli.drawing.sheets import Position, driver_caption
 from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.mechanics.forces import Lettered, Loaded, Symbol, balance_symbol, reaction_symbol
+from tmm_cli.mechanics.forces import CourseSymbol, LoadedPosition, Symbol, balance_symbol, reaction_symbol
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.quantities import (
     ACCELERATION,
@@ -196,7 +196,7 @@ def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
         return
-    given = Loaded.at(here.motion, reactions, k).given()
+    given = LoadedPosition.at(here.motion, reactions, k).given()
     forces = [(one.symbol, one.force) for one in given if not one.couple]
     forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
     moments = [(one.symbol, one.moment) for one in given if one.couple]
@@ -271,7 +271,7 @@ def _law_columns(results: Results) -> list[QuantityColumn]:
     return [
         (Symbol("J"), machine.inertia(way), INERTIA),
         (Symbol("M"), sense * machine.moment(way), MOMENT),
-        (Lettered("M_d"), sense * law.driving(way), MOMENT),
+        (CourseSymbol("M_d"), sense * law.driving(way), MOMENT),
         (_("A, J"), running.steady.work(way), NUMBER),
         (Symbol("ω"), motion.rate, ANGULAR_SPEED),
         (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),

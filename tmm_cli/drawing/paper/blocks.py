@@ -13,7 +13,7 @@ from tmm_cli.drawing.paper.picture import longest_for, on_large_sheet
 from tmm_cli.drawing.paper.record import POINT
 from tmm_cli.drawing.paper.script import Words, script_width
 from tmm_cli.mechanics.numerics import Vector
-from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, ROUND, extent, ground_of, round_scale
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, ROUND_SCALES, drawing_area, extent, round_scale
 
 NOTE_SIZE, CELL_SIZE = 9.0, 8.0  # points
 NOTE_LINE, TABLE_ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next
@@ -232,7 +232,7 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
         low = complex((at.real - about).min(), (at.imag - about).min())
         size = complex((at.real + about).max(), (at.imag + about).max()) - low
         for paper in (LANDSCAPE, PORTRAIT) if size.real > size.imag else (PORTRAIT, LANDSCAPE):
-            start, end = ground_of(paper)
+            start, end = drawing_area(paper)
             free = end - start - size
             if min(free.real, free.imag) < 0:
                 continue
@@ -256,7 +256,7 @@ def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
     at = places / mu + off
     low = complex((at.real - about).min(), (at.imag - about).min())
     size = complex((at.real + about).max(), (at.imag + about).max()) - low
-    start, end = ground_of((0.0, 0.0))
+    start, end = drawing_area((0.0, 0.0))
     paper = size + start - end
     return PaperLayout((paper.real, paper.imag), mu, start - low, (across / mu, up / mu))
 
@@ -267,7 +267,7 @@ def scaleless_layout(
     """For places (SI) that are put on a large sheet without a scale; below: what (mm) is free there at its width."""
     size, across, up, __ = extent(list(places) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
-    low, high = ground_of((0.0, 0.0))
+    low, high = drawing_area((0.0, 0.0))
     figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too
     paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
     return PaperLayout((paper.real, paper.imag), 1.0, 0j, figure, free=True)
@@ -279,4 +279,4 @@ def round_scales(size: float, also: Sequence[float]) -> Iterator[float]:
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
     for n in count(power):
         decade = 10.0**n
-        yield from sorted([f * decade for f in ROUND[:-1]] + [mu for mu in also if decade <= mu < 10 * decade])
+        yield from sorted([f * decade for f in ROUND_SCALES[:-1]] + [mu for mu in also if decade <= mu < 10 * decade])

@@ -39,7 +39,7 @@ from tmm_cli.drawing.paper.writing import DARK_COLOUR, fit_one_line
 from tmm_cli.language import numeral, spelt
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import unit
-from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, extent, ground_of
+from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, drawing_area, extent
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.problem import UnitSystem, typeset_unit
 
@@ -88,7 +88,7 @@ class DrawingSheet:
         self.paper, self.mu = (room.paper, room.mu) if room else choose_paper(found, pad, paper)
         self.free = room.free if room else paper is not None
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
-        self.ground = OccupiedArea(*ground_of(self.paper))
+        self.ground = OccupiedArea(*drawing_area(self.paper))
         self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
         if room is not None:
             self.origin = room.origin

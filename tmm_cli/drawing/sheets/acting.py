@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tmm_cli.drawing.paper import SAMPLE_STEP, VECTOR_COLOURS, DrawingSheet, Style, Words, count_beside, draw_dimension
-from tmm_cli.mechanics.forces import DRIVE, Acting, MomentEquation
+from tmm_cli.mechanics.forces import DRIVE, ForceOrCouple, MomentEquation
 from tmm_cli.mechanics.numerics import Vector, cross, dot
 
 ARM_COLOUR = "#00757d"
@@ -37,7 +37,7 @@ class ForceArrows:
     coupled: list[complex] = field(default_factory=list)
     ways: list[tuple[complex, complex]] = field(default_factory=list)
 
-    def draw(self, acting: Iterable[Acting]) -> None:
+    def draw(self, acting: Iterable[ForceOrCouple]) -> None:
         acting = list(acting)
         self.ways += [(self.sheet.on(one.at), one.force / abs(one.force)) for one in acting if not one.couple]
         for one in acting:
@@ -88,7 +88,7 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
     sheet.label(name, arc[20], 9, colour)
 
 
-def arrow_extent(acting: Iterable[Acting]) -> list[tuple[complex, complex]]:
+def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
     """Places (m), and how far (mm) an arrow may go on from there."""
     found = []
     for one in acting:

@@ -33,7 +33,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.assembly import Assemblies, Assembly, GroupAssemblies, name_assembly_files
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import DEAD
-from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, extent, ground_of, round_scale
+from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area, extent, round_scale
 from tmm_cli.mechanics.structure import Pair, Structure
 from tmm_cli.reports import place
 
@@ -113,7 +113,7 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
     found = []
     for paper in (LANDSCAPE, PORTRAIT):
         for columns in range(1, count + 1):
-            size, places = divide_into_cells(*ground_of(paper), columns, math.ceil(count / columns), CELL_GAP)
+            size, places = divide_into_cells(*drawing_area(paper), columns, math.ceil(count / columns), CELL_GAP)
             room = size - complex(2 * ASSEMBLY_PAD, 2 * ASSEMBLY_PAD + CAPTION_HEIGHT)
             if min(room.real, room.imag) > LEAST_CELL:
                 found.append((round_scale(largest.real, largest.imag, room.real, room.imag), paper, places))

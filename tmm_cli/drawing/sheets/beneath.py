@@ -26,7 +26,7 @@ from tmm_cli.drawing.paper import (
     wrap_symbols,
 )
 from tmm_cli.drawing.sheets.mechanism import Position
-from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, extent, ground_of, round_scale
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, drawing_area, extent, round_scale
 
 CAPTION_TEXT, CAPTION_LINE, CAPTION_ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
 COLUMN_SPACE, TABLE_GAP, CAPTION_GAP = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
@@ -152,7 +152,7 @@ def captioned_sheets(
     def with_tables_aside(mu: float) -> DrawingCaption:
         return replace(beneath(mu), aside=True)
 
-    low, high = ground_of(PORTRAIT)
+    low, high = drawing_area(PORTRAIT)
     alone = _best_layout(places, lambda mu: DrawingCaption())
     best = _best_layout(places, beneath, with_tables_aside)
     if (
@@ -194,7 +194,7 @@ def _large_sheet_layout(
     written = beneath(mu)
     _, across, up, middle = extent([place / mu + away for place, away in places])
     most = 10 * longest
-    low, edge = ground_of((0.0, 0.0))
+    low, edge = drawing_area((0.0, 0.0))
 
     def height(wide: float) -> float:
         return most - written.left(low, low + complex(wide, most)).imag
@@ -215,7 +215,7 @@ def _large_sheet_layout(
 def _captioned_sheet(
     name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _CaptionedLayout
 ) -> DrawingSheet:
-    low, high = ground_of(placed.paper)
+    low, high = drawing_area(placed.paper)
     _, across, up, __ = extent([place for place, __ in places])
     on = PaperLayout(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
     sheet, room = DrawingSheet(name, subject, room=on), placed.written.left(low, high)
@@ -229,7 +229,7 @@ def _fit_layout(
     paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
     """At the least round scale at which all fits."""
-    low, high = ground_of(paper)
+    low, high = drawing_area(paper)
     size, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:

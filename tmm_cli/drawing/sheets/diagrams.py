@@ -36,8 +36,8 @@ from tmm_cli.drawing.sheets import over_cycle
 from tmm_cli.drawing.sheets.over_cycle import QuantityPlot
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics import quantities
-from tmm_cli.mechanics.analysis import Results, at_places
-from tmm_cli.mechanics.forces import table_jumps
+from tmm_cli.mechanics.analysis import Results, results_at
+from tmm_cli.mechanics.forces import find_table_jumps
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
@@ -86,7 +86,7 @@ SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit i
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
     places, borders = dense_coordinates(results)
-    whole = at_places(results, places)
+    whole = results_at(results, places)
     motion = whole.motion
     assert motion is not None
     outputs = results.mechanism.outputs
@@ -117,7 +117,7 @@ def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
         return places, []
     gone, end = sense * (places - results.start), 2 * np.pi * turns
     stops = {stop for start, length, __ in _strokes_from_start(results) for stop in (start, start + length)}
-    stops |= {float(sense * (q - results.start)) % end for q in table_jumps(results.mechanism)}
+    stops |= {float(sense * (q - results.start)) % end for q in find_table_jumps(results.mechanism)}
     borders = [stop for stop in sorted(stops - {0.0}) if stop > 2 * BORDER_OFFSET]
     borders = [stop for k, stop in enumerate(borders) if not k or stop - borders[k - 1] > 4 * BORDER_OFFSET]
     for border in borders:

@@ -34,14 +34,14 @@ from tmm_cli.drawing.paper import (
 )
 from tmm_cli.language import _, numeral, spelt, symbol
 from tmm_cli.mechanics.analysis import Results
-from tmm_cli.mechanics.forces import Lettered, Symbol
+from tmm_cli.mechanics.forces import CourseSymbol, Symbol
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import INERTIA as MOMENT_OF_INERTIA
 from tmm_cli.problem import UnitSystem, typeset_unit
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics import Running, Steady, Tangent
+    from tmm_cli.mechanics.dynamics import SteadyRunning, SteadySolution, Tangent
 
 
 FAR_RATIO = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet
@@ -75,7 +75,7 @@ class DrawnTangent:
         return cls(begins, touching, math.atan(tangent.slope * factor * panel.x.mu / panel.y.mu))
 
 
-def energy_mass_sheet(results: Results, running: Running, way: Real) -> Drawing:
+def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Drawing:
     """Work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
@@ -133,7 +133,7 @@ def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
     return begins, high + AXIS_OVERHANG * (high - begins)
 
 
-def _massless_width(steady: Steady) -> float:
+def _massless_width(steady: SteadySolution) -> float:
     """The inertia (kg*m^2) over which a tangent rises as much as the work changes in the cycle; 1 where it does not."""
     fastest, slowest = steady.tangents
     rise = abs(fastest.offset - slowest.offset)
@@ -170,7 +170,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
     found = units.from_si(inertia, MOMENT_OF_INERTIA)
     return (
-        Lettered("J_f"),
+        CourseSymbol("J_f"),
         " = ab·",
         Symbol("μ", "J"),
         f"/({tan} ",

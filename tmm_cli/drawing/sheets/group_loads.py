@@ -21,7 +21,16 @@ from tmm_cli.drawing.sheets.beneath import CaptionTable, DrawingCaption, caption
 from tmm_cli.drawing.sheets.mechanism import Position, draw_measured
 from tmm_cli.drawing.symbols import MechanismScene
 from tmm_cli.language import _, filled, half_up, numeral, spelt
-from tmm_cli.mechanics.forces import Acting, ForceSum, LoadedPart, MomentEquation, Part, Symbol, Term, loaded_parts
+from tmm_cli.mechanics.forces import (
+    ForceOrCouple,
+    ForceSum,
+    FreeBody,
+    GuideComponent,
+    MomentEquation,
+    MomentTerm,
+    Symbol,
+    list_free_bodies,
+)
 from tmm_cli.mechanics.numerics import NO_MOMENT, SAME_POINTS
 from tmm_cli.mechanics.plans import extent as extent_of
 from tmm_cli.mechanics.quantities import LENGTH
@@ -90,16 +99,16 @@ def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
     )
 
 
-def _cosine_text(part: Part) -> tuple[EquationPart, ...]:
+def _cosine_text(part: GuideComponent) -> tuple[EquationPart, ...]:
     angle = float(np.degrees(np.arccos(part.cosine)))
     return (part.acting.symbol, f"·cos {numeral(angle, '.1f')}°") if angle >= 0.05 else (part.acting.symbol,)
 
 
-def _term_letters(term: Term) -> tuple[EquationPart, ...]:
+def _term_letters(term: MomentTerm) -> tuple[EquationPart, ...]:
     return (term.acting.symbol, "·", term.letter) if term.number else (term.acting.symbol,)
 
 
-def _term_numbers(term: Term) -> tuple[EquationPart, ...]:
+def _term_numbers(term: MomentTerm) -> tuple[EquationPart, ...]:
     return (
         f"{format_figures(term.acting.size)}·{format_figures(term.arm)}"
         if term.number
@@ -116,7 +125,7 @@ def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[E
     return [word for word in found if word]
 
 
-def forces_table(acting: Iterable[Acting], unit: str = "N·m") -> CaptionTable:
+def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> CaptionTable:
     """Sizes, angles of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
@@ -129,7 +138,7 @@ def forces_table(acting: Iterable[Acting], unit: str = "N·m") -> CaptionTable:
 
 def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
     """In the unit of lengths (none: they are ratios) and on paper; mu: SI a millimetre."""
-    found: dict[int, list[Term]] = {}
+    found: dict[int, list[MomentTerm]] = {}
     for term in (t for e in equations for t in e.terms if t.number):
         found.setdefault(term.number, []).append(term)
     rows: list[tuple[Words, ...]] = []
@@ -161,7 +170,7 @@ def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
     """A sheet for each group and each driving link; another one for equations whose arms would crowd the first."""
     if here.results.reactions is None:
         return
-    for part in loaded_parts(here.motion, here.results.reactions, here.k):
+    for part in list_free_bodies(here.motion, here.results.reactions, here.k):
         kind = "links" if len(part.links) > 1 else "link"
         stem = file_safe_name("-".join([here.stem("group-loads"), kind, *part.links]))
         few, *others = split_equations(part.equations)
@@ -190,7 +199,7 @@ def _arm_numbers(equation: MomentEquation) -> set[int]:
 
 
 def _group_sheets(
-    here: Position, part: LoadedPart, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
+    here: Position, part: FreeBody, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
 ) -> Iterable[DrawingSheet]:
     linkage = here.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
@@ -233,7 +242,7 @@ def _group_sheets(
     return (sheet,) if text is None else (sheet, text)
 
 
-def _draw_assur_point(sheet: DrawingSheet, part: LoadedPart, equation: MomentEquation) -> None:
+def _draw_assur_point(sheet: DrawingSheet, part: FreeBody, equation: MomentEquation) -> None:
     """The point of Assur, and the lines of the reactions that meet there."""
     at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for one in part.acting:

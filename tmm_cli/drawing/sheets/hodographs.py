@@ -22,7 +22,7 @@ from tmm_cli.drawing.paper import (
 from tmm_cli.drawing.sheets.diagrams import dense_coordinates, plot_over_driver
 from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Results, at_places
+from tmm_cli.mechanics.analysis import Results, results_at
 from tmm_cli.mechanics.forces import Reaction, reaction_symbol
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_FORCE, SAME_DRIVER_POSITION, Vector
@@ -65,7 +65,7 @@ def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Of every pair: the ends of its reaction from one pole, then its parts and its size over the turn of the crank."""
     assert results.reactions is not None
     places, borders = dense_coordinates(results)
-    whole = at_places(results, places)
+    whole = results_at(results, places)
     assert whole.reactions is not None
     for here, cycle in zip(results.reactions.all, whole.reactions.all, strict=True):
         pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)

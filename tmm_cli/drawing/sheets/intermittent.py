@@ -25,7 +25,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis import Intermittent
+    from tmm_cli.mechanics.analysis import IntermittentMotion
 
 
 def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -34,7 +34,7 @@ def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
         yield f"intermittent-{file_safe_name(wheel.task.name)}", _intermittent_sheet(results, wheel)
 
 
-def _intermittent_sheet(results: Results, wheel: Intermittent) -> Drawing:
+def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     factor = np.pi / 180 if crank else units.factor(LENGTH)
     caption = _("Intermittent motion over a cycle: {name}").format(name=wheel.task.name)

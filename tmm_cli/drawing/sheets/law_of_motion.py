@@ -16,13 +16,13 @@ from tmm_cli.drawing.sheets.diagrams import BORDER_OFFSET, plot_over_driver
 from tmm_cli.drawing.sheets.energy_mass import energy_mass_sheet
 from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Results, at_positions
-from tmm_cli.mechanics.forces import applied, inertias, reduced_moment
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
+from tmm_cli.mechanics.forces import collect_loads, reduced_inertias, reduced_moment
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import ANGULAR_ACCELERATION, ANGULAR_SPEED, INERTIA, MOMENT, NUMBER
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.dynamics import Running
+    from tmm_cli.mechanics.dynamics import SteadyRunning
 
 
 LEAST_STRETCH = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
@@ -54,7 +54,7 @@ def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
         yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
 
 
-def _dense_travel(running: Running) -> tuple[Real, list[int]]:
+def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
     """Ways close together, and after which of them a panel of the functions ends: there they may jump."""
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
@@ -75,7 +75,7 @@ def visible_stretches(edges: Real) -> tuple[Real, Real]:
     return kept[:-1][seen], kept[1:][seen]
 
 
-def _load_plots(results: Results, running: Running, way: Real, here: Real) -> list[QuantityPlot]:
+def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
     """Moments of the loads and their sum; that of what drives; works; energies."""
     steady = running.steady
     law, machine = steady.law, steady.machine
@@ -105,7 +105,7 @@ def _load_plots(results: Results, running: Running, way: Real, here: Real) -> li
     ]
 
 
-def _motion_plots(results: Results, running: Running, way: Real, here: Real) -> list[QuantityPlot]:
+def _motion_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
     """Inertia of each link and the sum, and its slope; speed, acceleration, time."""
     steady = running.steady
     law = steady.law
@@ -137,11 +137,11 @@ def _sample_curves(names: Sequence[str], of: Any, way: Real, here: Real) -> list
     return [SampledCurve(name, *both) for name, *both in zip(names, of(way), of(here), strict=True)]
 
 
-def _reduced_load_moments(results: Results, running: Running, way: Real) -> dict[str, Real]:
+def _reduced_load_moments(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
     """Reduced moments by names of loads, along the sense of the driver."""
-    motion = at_positions(results, running.start + running.sense * way)
+    motion = motion_at_positions(results, running.start + running.sense * way)
     found: dict[str, Real] = {}
-    for load in applied(motion, results.strokes):
+    for load in collect_loads(motion, results.strokes):
         if load.kind != "inertia":
             text = _("weight of link {link}") if load.kind == "weight" else _("load {name}")
             name = text.format(link=load.link, name=load.name.rstrip("'"))
@@ -149,10 +149,10 @@ def _reduced_load_moments(results: Results, running: Running, way: Real) -> dict
     return found
 
 
-def _reduced_link_inertias(results: Results, running: Running, way: Real) -> dict[str, Real]:
-    motion = at_positions(results, running.start + running.sense * way)
+def _reduced_link_inertias(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
+    motion = motion_at_positions(results, running.start + running.sense * way)
     text = _("link {link}")
-    return {text.format(link=link): own + 0.0 * way for link, (own, __) in inertias(motion).items()}
+    return {text.format(link=link): own + 0.0 * way for link, (own, __) in reduced_inertias(motion).items()}
 
 
 def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:

@@ -22,9 +22,9 @@ from tmm_cli.drawing.sheets.beneath import DrawingCaption, captioned_sheets
 from tmm_cli.drawing.sheets.group_loads import arms_table, equation_lines, forces_table, format_figures
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.language import _, filled, numeral, spelt
-from tmm_cli.mechanics.forces import Acting, Symbol, balance_symbol
+from tmm_cli.mechanics.forces import ForceOrCouple, Symbol, balance_symbol
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
-from tmm_cli.mechanics.plans import LEVER_POLE, LeverPlan, Pair, in_letters, lever_plan
+from tmm_cli.mechanics.plans import LEVER_POLE, CoupleAsForces, LeverPlan, lever_plan, with_subscripts
 
 MOST_FORCES, SLIGHT_SHARE = (
     20,
@@ -36,10 +36,10 @@ def draw_plan_points(sheet: DrawingSheet, ends: Mapping[str, complex], pole: str
     """The lettered points; those that coincide share a place and a label."""
     for at, names in gather_coincident((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK_COLOUR, DARK_COLOUR, 1.0)
-        sheet.label(", ".join(map(in_letters, names)), at, 11 if pole in names else 10)
+        sheet.label(", ".join(map(with_subscripts, names)), at, 11 if pole in names else 10)
 
 
-def significant_forces(plan: LeverPlan) -> Sequence[Acting]:
+def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
     """Of many forces and couples those that count: no load below a thousandth of the largest force or moment."""
     if len(plan.acting) <= MOST_FORCES:
         return plan.acting
@@ -99,7 +99,7 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
         yield here.stem("lever") + "-sheet-2", text.finish()
 
 
-def _couple_equation(pair: Pair) -> tuple[str | Symbol, ...]:
+def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
     """P = M / AB: the forces that stand for a couple."""
     moment, distance, force = map(format_figures, (abs(pair.moment), pair.distance, pair.force))
     numbers = f"{moment} / {distance} = {force} {spelt('N')}"

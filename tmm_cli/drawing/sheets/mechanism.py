@@ -34,11 +34,11 @@ from tmm_cli.drawing.symbols import (
     render_scene,
 )
 from tmm_cli.language import _, numeral, typeset
-from tmm_cli.mechanics.analysis import Results, at_positions, detailed_positions
-from tmm_cli.mechanics.forces import Loaded
+from tmm_cli.mechanics.analysis import Results, detailed_positions, motion_at_positions
+from tmm_cli.mechanics.forces import LoadedPosition
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Vector, dot
-from tmm_cli.mechanics.plans import massive
+from tmm_cli.mechanics.plans import links_with_mass
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 
@@ -143,9 +143,9 @@ def draw_skeleton(
 
 def point_paths(results: Results) -> list[Vector]:
     """Paths of all moving points over the cycle, and of centres of mass that are none of them, m."""
-    linkage, whole = results.linkage, at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
+    linkage, whole = results.linkage, motion_at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
     found = [whole.spot(name) for name in linkage.moving_points]
-    for link in massive(linkage):
+    for link in links_with_mass(linkage):
         own = linkage.links[link]
         if all(abs(complex(own.centre) - local) > 0 for local in own.points.values()):
             found.append(whole.poses[link].at(complex(own.centre)))
@@ -181,7 +181,7 @@ def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions
     scene = MechanismScene(linkage, results.structure, motion.poses, k)
-    given = () if reactions is None else Loaded.at(motion, reactions, k).given()
+    given = () if reactions is None else LoadedPosition.at(motion, reactions, k).given()
     places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     figure, notes = FigureExtent(), [_("loads without scale")] if reactions is not None else []

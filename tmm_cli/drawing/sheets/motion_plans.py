@@ -27,10 +27,10 @@ from tmm_cli.mechanics.plans import (
     NamedVector,
     Plan,
     acceleration_plan,
-    in_letters,
-    readings,
-    turns,
+    angular_values,
+    plan_readings,
     velocity_plan,
+    with_subscripts,
 )
 
 PLAN_MARGIN = 9.0  # mm about the lines of a plan, for letters
@@ -131,13 +131,13 @@ def name_position(vector: NamedVector, plan: Plan) -> complex:
 def motion_plan_rows(here: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
     """Every vector with its segment, its length on paper and its value; what each link turns with."""
     rows = [TableRow((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
-    for reading in readings(plan):
+    for reading in plan_readings(plan):
         first, *others = reading.symbols
         names = (first, *(part for symbol in others for part in (" = ", symbol)))
         length = numeral(reading.size / mu, ".1f") if reading.size else "0"
-        rows.append(TableRow((names, in_letters(reading.segment), length, format_figures(reading.size))))
+        rows.append(TableRow((names, with_subscripts(reading.segment), length, format_figures(reading.size))))
     rows.append(TableRow((_("link"), _("sense"), "", spelt(sort.turning)), head=True))
-    for turn in turns(here.motion, here.k, sort.what):
+    for turn in angular_values(here.motion, here.k, sort.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""
         rows.append(TableRow((turn.symbol, sense, "", format_figures(abs(turn.value)))))
     return rows

@@ -34,7 +34,7 @@ from tmm_cli.drawing.sheets.lengths import length_rows
 from tmm_cli.drawing.sheets.mechanism import detailed_drawings, draw_measured, draw_paths, draw_skeleton, point_paths
 from tmm_cli.drawing.symbols import MEASURED, MechanismScene, draw_driver_arrows, frame_pivots, points_to_scale
 from tmm_cli.language import _, numeral
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.forces import subscript
 from tmm_cli.mechanics.groups import LinkStates
 from tmm_cli.mechanics.kinematics import Motion
@@ -145,7 +145,7 @@ def driver_path(results: Results) -> NumberedPath | None:
 
 def extreme_states(results: Results, found: list[OutputExtreme]) -> LinkStates:
     """The mechanism at the ends of the output's way."""
-    return at_positions(results, np.array([extreme.q for extreme in found]), 0)
+    return motion_at_positions(results, np.array([extreme.q for extreme in found]), 0)
 
 
 # The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths.

@@ -47,10 +47,10 @@ from tmm_cli.drawing.symbols import (
     symbol_scale,
 )
 from tmm_cli.language import _, printed, typeset
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, dot
-from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, ground_of
+from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area
 from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
 from tmm_cli.reports import ROLES, counted_mobility, left_out
 
@@ -113,7 +113,7 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
         return None
     others = COORDINATES_TRIED if len(structure.pairs) <= MOST_PAIRS else 0
     places = np.linspace(driver_range.start, driver_range.end, others + 2)
-    motion = at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
+    motion = motion_at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
     if not bool(motion.placed[0]):
         return None
     scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
@@ -158,7 +158,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     places, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
 
     def scale(paper: tuple[float, float]) -> float:
-        low, high = ground_of(paper)
+        low, high = drawing_area(paper)
         return scale_to_fit(places, high - low - 2 * SCHEME_PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
     subject = _("Structural scheme, {place} (not to scale)").format(place=place)

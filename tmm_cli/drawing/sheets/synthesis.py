@@ -39,7 +39,7 @@ from tmm_cli.drawing.symbols import (
     points_to_scale,
 )
 from tmm_cli.language import _, translated
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, Dimension
 from tmm_cli.problem import UnitSystem
@@ -120,7 +120,7 @@ def extreme_positions_sheet(results: Results) -> DrawingSheet:
     ends = [stroke.start for stroke in strokes.strokes]
     if len(ends) == 1:
         ends.append(ends[0] + linkage.driver.sense * strokes.strokes[0].length)
-    motion = at_positions(results, np.array(ends), 2)
+    motion = motion_at_positions(results, np.array(ends), 2)
     scene = MechanismScene(linkage, results.structure, motion.poses)
     ways = point_paths(results)
     used = [*frame_pivots(linkage), *(place for way in ways for place in way)]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal
 
-from tmm_cli.batch import Asked, Task
+from tmm_cli.batch import Question, Task
 from tmm_cli.grading.record import Mark, StudentMarks, factor
 from tmm_cli.grading.untrusted_tables import sentence, shown
 from tmm_cli.language import N_, _, numeral, spelt
@@ -30,7 +30,7 @@ STATES = {
 class Answer:
     """An answer that is asked, as exports name it. unit: the file's own; scale: it in SI."""
 
-    asked: Asked
+    asked: Question
     name: str
     unit: str
     scale: float

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.grading.mistakes.data import Degrees, Millimetres, Neighbour, OtherZero, Rpm, ScaleInverted, Sense
 from tmm_cli.grading.mistakes.forces import (
@@ -42,6 +42,6 @@ MISTAKES: tuple[type[Mistake], ...] = (
 )
 
 
-def cases(family: Family) -> tuple[Mistake, ...]:
+def cases(family: VariantFamily) -> tuple[Mistake, ...]:
     """All cases of all mistakes that a task has."""
     return tuple(case for kind in MISTAKES for case in kind.cases(family))

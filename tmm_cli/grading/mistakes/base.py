@@ -8,10 +8,10 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Quantity
-from tmm_cli.mechanics.forces import Applied, Reactions, applied, react, solve_friction
+from tmm_cli.mechanics.analysis import NamedQuantity
+from tmm_cli.mechanics.forces import AppliedLoad, Reactions, collect_loads, solve_friction, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion, GroupSolver
 from tmm_cli.mechanics.kinematics import Motion, Strokes, compute_motion
 from tmm_cli.mechanics.linkage import Linkage
@@ -22,7 +22,7 @@ from tmm_cli.mechanics.numerics import Real
 class Solution:
     """Motion and forces of all variants at all positions, (variants, positions)."""
 
-    family: Family
+    family: VariantFamily
     motion: Motion
     reactions: Reactions
 
@@ -35,7 +35,7 @@ class Solution:
         return self.family.strokes
 
 
-def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
+def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
     """All stages; each mistake changes what it is a mistake in, the first one first."""
     for mistake in mistakes:
         family = mistake.family(family)
@@ -49,10 +49,10 @@ def solve(family: Family, mistakes: Sequence[Mistake] = ()) -> Solution:
     for mistake in mistakes:
         motion = mistake.motion(motion)
     with np.errstate(all="ignore"):
-        loads = applied(motion, family.strokes)
+        loads = collect_loads(motion, family.strokes)
         for mistake in mistakes:
             loads = tuple(mistake.load(load, motion, family) for load in loads)
-        reactions = react(motion, family.structure, loads)
+        reactions = solve_reactions(motion, family.structure, loads)
         if family.linkage.friction:
             reactions = solve_friction(motion, family.structure, loads, reactions).reactions
     return Solution(family, motion, reactions)
@@ -71,7 +71,7 @@ class Mistake:
     price: ClassVar[float] = 0.0  # squares of standard errors that it must explain more than others, as it fits so much
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         """All of its cases that this task has."""
         yield cls()
 
@@ -85,11 +85,11 @@ class Mistake:
         """The name with the fields of this case."""
         return _(self.name).format(**vars(self))
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         """The variants as the student took them."""
         return family
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         """A group as the student solved it."""
         return kernel
 
@@ -97,10 +97,10 @@ class Mistake:
         """The motion as the student found it."""
         return motion
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         """What the student let act in the place of a load."""
         return load
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         """What the student wrote down of the values (variants, positions) that the stages gave."""
         return values

@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake, Solution
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis import Quantity
+from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.numerics import Real
 
 
@@ -28,10 +28,10 @@ class Degrees(Mistake):
     solves = False
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(180 / np.pi), cls(np.pi / 180))
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.factor if quantity.dimension.angle and quantity.against != "angle" else values
 
 
@@ -49,10 +49,10 @@ class Millimetres(Mistake):
     solves = False
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(1000.0), cls(0.001))
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.factor if quantity.dimension.length else values
 
 
@@ -67,11 +67,11 @@ class Rpm(Mistake):
     sentence = N_("The speed of the crank was put in as revolutions a minute; omega = pi n / 30 is wanted, in rad/s.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if family.linkage.driver.kind == "turn":
             yield cls()
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         return family.changed(replace(family.linkage, driver=replace(driver, rate=driver.rate * (30 / np.pi))))
 
@@ -89,13 +89,13 @@ class OtherZero(Mistake):
     sentence = N_("The positions were counted from another zero of the crank than the task's.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if family.strokes is not None and len(family.strokes.strokes) == 2:
             yield cls(True)
         if family.linkage.driver.kind == "turn":
             yield cls(False)
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         first: Real = np.zeros(1)
         if self.extreme:
             assert family.strokes is not None
@@ -119,10 +119,10 @@ class Neighbour(Mistake):
     solves = False
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(1), cls(-1))
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return np.roll(values, self.step, axis=1)
 
 
@@ -139,10 +139,10 @@ class Sense(Mistake):
     sentence = N_("This belongs to a crank that turns the other way.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(False), cls(True))
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         linkage = replace(family.linkage, driver=replace(driver, sense=-driver.sense))
         if family.strokes is not None:  # the same ways of the driver, from their other ends
@@ -174,8 +174,8 @@ class ScaleInverted(Mistake):
     price = 25.0
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(stage, scale) for stage in ("velocities", "accelerations", "forces") for scale in SIZES)
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.scale**2 if quantity.stage == self.stage else values

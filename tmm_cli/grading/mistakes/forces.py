@@ -8,11 +8,11 @@ from typing import Self
 
 import numpy as np
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake, Solution
 from tmm_cli.language import N_
-from tmm_cli.mechanics.analysis import Quantity
-from tmm_cli.mechanics.forces import Applied
+from tmm_cli.mechanics.analysis import NamedQuantity
+from tmm_cli.mechanics.forces import AppliedLoad
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real
@@ -28,10 +28,10 @@ class InertiaReversed(Mistake):
     sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(parts) for parts in (("force",), ("moment",), ("force", "moment")))
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia":
             return load
         return replace(load, **{part: -getattr(load, part) for part in self.parts})
@@ -50,21 +50,21 @@ class HingeInertia(Mistake):
     sentence = N_("The moment of inertia was taken about the hinge; the couple wants it about the centre of mass.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         links = family.linkage.links
         own = [n for n in family.linkage.moving if np.any(links[n].inertia != 0) and np.any(_arm(family, n) != 0)]
         yield from (cls(name) for name in own)
         if len(own) > 1:
             yield cls()
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or self.link not in ("", load.link):
             return load
         extra = family.linkage.links[load.link].mass * np.abs(_arm(family, load.link)) ** 2
         return replace(load, moment=load.moment - extra * motion.link(load.link).epsilon)
 
 
-def _arm(family: Family, name: str) -> Real:
+def _arm(family: VariantFamily, name: str) -> Real:
     """From a link's hinge, that on the frame if it has one, to its centre of mass, m."""
     link = family.linkage.links[name]
     frame = family.linkage.links[FRAME].points
@@ -86,14 +86,14 @@ class NoInertia(Mistake):
     part, of = "force", "mass"  # what is left out of the load, and what of the link makes it
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         links = family.linkage.links
         own = [name for name in family.linkage.moving if np.any(getattr(links[name], cls.of) != 0)]
         yield from (cls(name) for name in own)
         if len(own) > 1:
             yield cls()
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or self.link not in ("", load.link):
             return load
         return replace(load, **{self.part: getattr(load, self.part) * 0})
@@ -125,7 +125,7 @@ class NoWeight(Mistake):
     sentence = N_("A weight G = m g was left out, or the mass was put in for it.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if np.all(family.linkage.gravity == 0):
             return
         links = family.linkage.links
@@ -133,7 +133,7 @@ class NoWeight(Mistake):
         yield from (cls(name) for name in own)
         yield from (cls("", mass) for mass in (False, True))
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "weight" or self.link not in ("", load.link):
             return load
         return replace(load, force=load.force * (1 / np.abs(family.linkage.gravity) if self.mass else 0.0))
@@ -152,11 +152,11 @@ class WeightForMass(Mistake):
     )
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if np.any(family.linkage.gravity != 0):
             yield cls()
 
-    def load(self, load: Applied, motion: Motion, family: Family) -> Applied:
+    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         return replace(load, force=load.force * np.abs(family.linkage.gravity)) if load.kind == "inertia" else load
 
 
@@ -171,7 +171,7 @@ class GuideThroughHinge(Mistake):
     sentence = N_("The reaction of a guide does not act through the hinge: its place follows from moments about it.")
     solves = False
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * 0 if quantity.name.startswith("arm of R_") else values
 
 
@@ -186,7 +186,7 @@ class OppositeReaction(Mistake):
     sentence = N_("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
     solves = False
 
-    def value(self, quantity: Quantity, values: Real, solution: Solution) -> Real:
+    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return -values if quantity.name.startswith("R_") else values
 
 
@@ -203,11 +203,11 @@ class WrongStroke(Mistake):
     sentence = N_("The useful resistance acts in the working stroke only; here it acts in the idle one.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         if family.strokes is not None and any(load.working_stroke_only for load in family.linkage.loads):
             yield from (cls(False), cls(True))
 
-    def family(self, family: Family) -> Family:
+    def family(self, family: VariantFamily) -> VariantFamily:
         assert family.strokes is not None
         strokes = family.strokes.changed(lambda s: replace(s, working=self.both or not s.working))
         return replace(family, strokes=strokes)

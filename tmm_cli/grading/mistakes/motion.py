@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Self
 
-from tmm_cli.batch import Family
+from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.mistakes.base import Mistake
 from tmm_cli.language import N_
 from tmm_cli.mechanics.groups import (
@@ -39,12 +39,12 @@ class Mirror(Mistake):
     sentence = N_("This belongs to another assembly: links {links} were drawn on the other side.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         for kernel in family.kernels:
             if isinstance(kernel, ClosedFormSolver) and kernel.assemblies == 2:
                 yield cls(", ".join(kernel.group.links))
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if isinstance(kernel, ClosedFormSolver) and ", ".join(kernel.group.links) == self.links:
             return replace(kernel, sign=-kernel.sign)
         return kernel
@@ -98,11 +98,11 @@ class Normal(Mistake):
     sentence = N_("The normal part omega^2 r of the acceleration of link {link} was left out.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         linkage = family.linkage
         yield from (cls(link) for link in linkage.moving if not linkage.slides_on_frame(link))
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if self.link in kernel.group.links:
             return OtherTerms.of(kernel, family.linkage, self._terms)
         return Unturned.around(kernel, self.link)
@@ -164,13 +164,13 @@ class Tangential(Mistake):
     sentence = N_("The tangential part epsilon r of the acceleration of link {link} was left out.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         for kernel in family.kernels:
             for pair in kernel.group.outer:
                 if pair.kind == "R":
                     yield cls(kernel.group.own(pair))
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if self.link not in kernel.group.links:
             return kernel
         pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
@@ -213,12 +213,12 @@ class Coriolis(Mistake):
     sentence = N_("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
 
     @classmethod
-    def cases(cls, family: Family) -> Iterable[Self]:
+    def cases(cls, family: VariantFamily) -> Iterable[Self]:
         for slide in family.linkage.slides:
             if FRAME not in (slide.carrier, slide.runner):
                 yield from (cls(slide.runner, slide.carrier, sense) for sense in (0, -1))
 
-    def kernel(self, kernel: GroupSolver, family: Family) -> GroupSolver:
+    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         slides = [pair.slide for pair in (*kernel.group.inner, *kernel.group.outer) if pair.slide is not None]
         if all(slide.runner != self.runner for slide in slides):
             return kernel

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from tmm_cli.batch import Asked, Task
+from tmm_cli.batch import Question, Task
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import ProblemError, quote
@@ -33,7 +33,7 @@ def _header(task: Task) -> list[str]:
     return [*COLUMNS, f"angle, {task.units.symbol(ANGLE)}"]
 
 
-def _row(one: Asked, task: Task) -> list[str | int]:
+def _row(one: Question, task: Task) -> list[str | int]:
     position = "" if one.number is None else one.number
     return [one.quantity.name, position, task.units.symbol(one.quantity.dimension)]
 

@@ -1,18 +1,27 @@
 """How many digits are to be trusted."""
 
-from .length_sensitivity import changed as changed, list_lengths as list_lengths, widened as widened
-from .rounding_bounds import (
-    FEWEST as FEWEST,
-    PAPER as PAPER,
-    Digits as Digits,
-    at as at,
-    bare as bare,
-    bounds as bounds,
-    exact as exact,
-    is_angle as is_angle,
-    judged as judged,
-    quantities as quantities,
-    relative as relative,
-    sizes as sizes,
+from .length_sensitivity import (
+    as_double_doubles as as_double_doubles,
+    change_length as change_length,
+    list_lengths as list_lengths,
 )
-from .search_bounds import Wide as Wide, blur as blur, coarsely as coarsely, searched as searched
+from .rounding_bounds import (
+    PAPER_CHANGE as PAPER_CHANGE,
+    SIX_FIGURES as SIX_FIGURES,
+    Digits as Digits,
+    bound_values as bound_values,
+    exact_linkage as exact_linkage,
+    is_angle as is_angle,
+    judge_values as judge_values,
+    largest_values as largest_values,
+    list_values as list_values,
+    relative_bound as relative_bound,
+    results_with_linkage as results_with_linkage,
+    solve_bare_linkage as solve_bare_linkage,
+)
+from .search_bounds import (
+    PreciseLinkage as PreciseLinkage,
+    choose_precision as choose_precision,
+    judge_searched as judge_searched,
+    start_uncertainty as start_uncertainty,
+)

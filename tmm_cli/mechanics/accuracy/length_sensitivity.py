@@ -17,7 +17,7 @@ from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, ma
 
 
 @dataclass(frozen=True)
-class Length:
+class LengthCoordinate:
     """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed.
 
     along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0. paths: where it
@@ -30,29 +30,31 @@ class Length:
     paths: frozenset[str]
 
 
-def list_lengths(linkage: Linkage) -> tuple[Length, ...]:
+def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
     """Every coordinate of every link that is not zero. The same number on the same link is one length."""
     found: dict[tuple[str, complex, float], list[str]] = {}
-    vectors = list(_vectors(linkage))
+    vectors = list(_link_vectors(linkage))
     least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
     for link, path, value in vectors:
         for along, part in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
             if abs(part) > least:
                 found.setdefault((link, along, part), []).append(path)
-    return tuple(Length(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items())
+    return tuple(
+        LengthCoordinate(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items()
+    )
 
 
-def largest_beside(data: Sequence[Length]) -> Real:
+def largest_on_link(data: Sequence[LengthCoordinate]) -> Real:
     """The largest length of the same link, of each length (m)."""
     return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
 
 
-def changed(linkage: Linkage, length: Length, by: Any) -> Linkage:
+def change_length(linkage: Linkage, length: LengthCoordinate, by: Any) -> Linkage:
     """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
-    return all_changed(linkage, [(length, by)])
+    return change_lengths(linkage, [(length, by)])
 
 
-def all_changed(linkage: Linkage, changes: Iterable[tuple[Length, Any]]) -> Linkage:
+def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, Any]]) -> Linkage:
     """The same with several of its lengths longer, each by so much."""
     more: dict[str, Any] = {}
     for length, by in changes:
@@ -61,7 +63,7 @@ def all_changed(linkage: Linkage, changes: Iterable[tuple[Length, Any]]) -> Link
     return map_record(lambda path, value: value + more[path] if path in more else value, linkage)
 
 
-def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
+def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
     """Every vector in axes of a link: that link, where it stands, its value."""
     for name, link in linkage.links.items():
         for point, value in link.points.items():
@@ -80,7 +82,7 @@ def _vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
             yield spring.j, f"springs[{k}].at_j", spring.at_j
 
 
-def widened(record: Record) -> Record:
+def as_double_doubles(record: Record) -> Record:
     """The same record with every float and complex number as a double-double, as it stands."""
 
     def wide(path: str, value: Any) -> Any:
@@ -98,35 +100,43 @@ def widened(record: Record) -> Record:
 
 Function = Callable[[LinkStates], Real]  # (..., places)
 
-ASIDE = 1e-4  # rad, or of a slider's way: so far before and after it an extreme is looked at
-CHANGE = 1e-6  # of a length, beside an extreme
-INSIDE = 1e-4 * np.array([1, 4, 16])  # of the way: so far from an end groups are looked at; they go as roots of it
-SMALL = 1e-3  # of what is left to an end: steps of the driver there
-LEAST = 1e-6  # likewise: steps of lengths
+EXTREME_STEP = 1e-4  # rad, or of a slider's way: so far before and after it an extreme is looked at
+LENGTH_STEP = 1e-6  # of a length, beside an extreme
+END_DISTANCES = 1e-4 * np.array(
+    [1, 4, 16]
+)  # of the way: so far from an end groups are looked at; they go as roots of it
+DRIVER_STEP_AT_END = 1e-3  # of what is left to an end: steps of the driver there
+LENGTH_STEP_AT_END = 1e-6  # likewise: steps of lengths
 AT_END = 2e-9  # of the way: a largest pressure angle that was found so near to its end is there
-FLAT = 64 * ROUNDOFF  # of its value: an extreme that bends less has no place of its own
-SMOOTH = 0.9  # of the one side's bend the other has at least; else it is the edge of a dwell, which no length shifts
+FLAT_EXTREME = 64 * ROUNDOFF  # of its value: an extreme that bends less has no place of its own
+LEAST_SYMMETRY = (
+    0.9  # of the one side's bend the other has at least; else it is the edge of a dwell, which no length shifts
+)
 
 
-def responses(results: Results, data: tuple[Length, ...]) -> Mapping[str, Real]:
+def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -> Mapping[str, Real]:
     """How far each number that was searched for goes a metre of each length, (lengths,), by its path in results.
 
     What tells nothing is 0: a place where it is flat, a length that passive constraints do not leave free.
     """
     assert results.driver_range is not None
-    beside = _Beside(results, results.driver_range, data)
-    found = {path: _at_end(beside.ends[k]) for k, paths in enumerate(ends(results.driver_range)) for path in paths}
-    for path, strokes in outputs(results).items():
-        starts, lows = beside.extremes(np.array([s.start for s in strokes.strokes]), _output(strokes.link))
+    beside = _LocalRates(results, results.driver_range, data)
+    found = {
+        path: _extrapolate_to_end(beside.ends[k])
+        for k, paths in enumerate(range_end_paths(results.driver_range))
+        for path in paths
+    }
+    for path, strokes in stroke_paths(results).items():
+        starts, lows = beside.extremes(np.array([s.start for s in strokes.strokes]), _output_function(strokes.link))
         ways = results.linkage.driver.sense * (np.roll(starts, -1, axis=0) - starts)
         parts = {"start": starts, "length": ways, "low": lows, "run": np.roll(lows, -1, axis=0) - lows}
         found |= {f"{path}.strokes[{k}].{part}": row for part, rows in parts.items() for k, row in enumerate(rows)}
     for k, travel in enumerate(results.travels):
-        rows = beside.travel(np.array([travel.low_at, travel.high_at]), _output(travel.link))
+        rows = beside.travel(np.array([travel.low_at, travel.high_at]), _output_function(travel.link))
         paths = [f"travels[{k}].{part}" for part in ("low_at", "high_at", "low", "high")]
         found |= zip(paths, np.concatenate(rows), strict=True)
     for k, dead in enumerate(results.dead):
-        found[f"dead[{k}].place"] = beside.extremes(np.array([dead.place]), _margin(dead.group))[0][0]
+        found[f"dead[{k}].place"] = beside.extremes(np.array([dead.place]), _margin_function(dead.group))[0][0]
     for k, pressure in enumerate(results.pressure):
         place, largest = beside.pressure(pressure)
         found |= {f"pressure[{k}].place": place, f"pressure[{k}].largest": largest}
@@ -136,7 +146,7 @@ def responses(results: Results, data: tuple[Length, ...]) -> Mapping[str, Real]:
     return {path: np.where(np.isfinite(rate), rate, 0.0) for path, rate in found.items()}
 
 
-def ends(driver_range: DriverRange) -> tuple[list[str], list[str]]:
+def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
     """Where the start of the driver's way and its end stand in results."""
     limits = [(f"driver_range.limits[{k}].place", limit.place) for k, limit in enumerate(driver_range.limits)]
     named = (("start", driver_range.start), ("end", driver_range.end))
@@ -144,19 +154,19 @@ def ends(driver_range: DriverRange) -> tuple[list[str], list[str]]:
     return start, end
 
 
-def outputs(results: Results) -> dict[str, Strokes]:
+def stroke_paths(results: Results) -> dict[str, Strokes]:
     """The outputs that have strokes, by their paths in results."""
     every = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
     return {path: strokes for path, strokes in every.items() if strokes is not None and strokes.strokes}
 
 
 @dataclass(frozen=True)
-class _Beside:
+class _LocalRates:
     """Functions of the links beside places of the driver; what it gives are rates a metre, (..., lengths)."""
 
     results: Results
     driver_range: DriverRange
-    data: tuple[Length, ...]
+    data: tuple[LengthCoordinate, ...]
 
     def values(self, places: Real, aside: Real | float, of: Function, change: float) -> tuple[Real, Real]:
         """A function before, at and after each place (..., 3, places), and its rates a metre (..., 3, places, lengths).
@@ -164,10 +174,10 @@ class _Beside:
         change: of the largest length of the same link.
         """
         q = places + aside * np.array([[-1], [0], [1]])
-        by = change * largest_beside(self.data)
+        by = change * largest_on_link(self.data)
         number = np.repeat(np.arange(len(by) + 1), q.size)
         changes = [(length, np.where(number == k, by[k - 1], 0.0)) for k, length in enumerate(self.data, 1)]
-        linkage = all_changed(self.results.linkage, changes)
+        linkage = change_lengths(self.results.linkage, changes)
         kernels = tuple(kernel.rebind(linkage) for kernel in self.results.kernels)
         found = of(link_states(linkage, kernels, np.tile(q.ravel(), len(by) + 1), 0))
         found = np.moveaxis(found.reshape(*np.shape(found)[:-1], -1, *q.shape), -3, -1)
@@ -176,21 +186,23 @@ class _Beside:
     def extremes(self, places: Real, of: Function) -> tuple[Real, Real]:
         """Of places where a function is extreme, and of its values there, both (places, lengths)."""
         slider = self.results.linkage.driver.kind == "slide"
-        aside = ASIDE * (self.driver_range.end - self.driver_range.start if slider else 1.0)
-        values, rates = self.values(places, aside, of, CHANGE)
+        aside = EXTREME_STEP * (self.driver_range.end - self.driver_range.start if slider else 1.0)
+        values, rates = self.values(places, aside, of, LENGTH_STEP)
         before, after = values[0] - values[1], values[2] - values[1]
-        bends = np.minimum(before / after, after / before) > SMOOTH
-        bends = bends & (np.abs(before) > FLAT * np.abs(values[1]))
+        bends = np.minimum(before / after, after / before) > LEAST_SYMMETRY
+        bends = bends & (np.abs(before) > FLAT_EXTREME * np.abs(values[1]))
         moved = -(rates[2] - rates[0]) / 2 * (aside / (before + after))[:, None]
         return np.where(bends[:, None], moved, 0.0), rates[1]
 
     def by_end(self, k: int, of: Function) -> tuple[Real, Real]:
         """A function's slopes by the driver's place (..., 3) and rates (..., 3, lengths) beside an end."""
         span = self.driver_range.end - self.driver_range.start
-        left = INSIDE * span
+        left = END_DISTANCES * span
         places = self.driver_range.end - left if k else self.driver_range.start + left
-        values, rates = self.values(places, SMALL * left, of, LEAST * INSIDE[0] * min(span, 1.0))
-        return (values[..., 2, :] - values[..., 0, :]) / (2 * SMALL * left), rates[..., 1, :, :]
+        values, rates = self.values(
+            places, DRIVER_STEP_AT_END * left, of, LENGTH_STEP_AT_END * END_DISTANCES[0] * min(span, 1.0)
+        )
+        return (values[..., 2, :] - values[..., 0, :]) / (2 * DRIVER_STEP_AT_END * left), rates[..., 1, :, :]
 
     @cached_property
     def ends(self) -> tuple[Real, Real]:
@@ -201,7 +213,7 @@ class _Beside:
         group = next((kernel.group for kernel in self.results.kernels if kernel.group.title in self.stops(place)), None)
         if self.driver_range.full or group is None:
             return np.zeros((3, len(self.data)))
-        slopes, rates = self.by_end(k, lambda states: _coordinates(states, group.links))
+        slopes, rates = self.by_end(k, lambda states: _link_coordinates(states, group.links))
         best = int(np.nanargmax(np.abs(slopes[:, 0])))
         moved: Real = -rates[best] / slopes[best, :, None]
         return moved
@@ -214,7 +226,7 @@ class _Beside:
         """As extremes, of places some of which are the first or the last that was asked for."""
         asked, driver_range = self.results.asked, self.driver_range
         moved, rates = self.extremes(places, of)
-        start, end = map(_at_end, self.ends)
+        start, end = map(_extrapolate_to_end, self.ends)
         share = (places[:, None] - driver_range.start) / (driver_range.end - driver_range.start)
         edges = (start + share * (end - start)) * (not self.results.inputs.request.places)
         inner = (np.min(asked) < places) & (places < np.max(asked))
@@ -226,40 +238,40 @@ class _Beside:
         At an end where a group stops the driver and it is a right angle it stays one, whatever the lengths.
         """
         driver_range = self.driver_range
-        of, close = _angle(pressure), AT_END * (driver_range.end - driver_range.start)
+        of, close = _pressure_function(pressure), AT_END * (driver_range.end - driver_range.start)
         for k, end in () if driver_range.full else enumerate((driver_range.start, driver_range.end)):
             if abs(pressure.place - end) <= close:
-                moved = _at_end(self.ends[k])
+                moved = _extrapolate_to_end(self.ends[k])
                 if pressure.largest == np.pi / 2:
                     return moved, np.zeros(len(self.data))
                 slopes, rates = self.by_end(k, of)
-                return moved, _at_end(rates + slopes[:, None] * moved)
+                return moved, _extrapolate_to_end(rates + slopes[:, None] * moved)
         places, largest = self.extremes(np.array([pressure.place]), of)
         return places[0], largest[0]
 
 
-def _at_end(rates: Real) -> Real:
+def _extrapolate_to_end(rates: Real) -> Real:
     """Rates at an end from those inside, (3, lengths): polynomials of roots of what is left to it, 1 to 2 to 4."""
     found: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
     return found
 
 
-def _coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
+def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
     """All places and directions of some links."""
     poses = [states.poses[link] for link in links]
     vectors = [part for pose in poses for part in (pose.x, pose.z)]
     return np.stack([part for vector in vectors for part in (vector.real, vector.imag)])
 
 
-def _output(link: str) -> Function:
+def _output_function(link: str) -> Function:
     return lambda states: output_coordinate(states, link)
 
 
-def _angle(pressure: PressureAngle) -> Function:
+def _pressure_function(pressure: PressureAngle) -> Function:
     return lambda states: pressure_at(states, pressure.group, pressure.link)
 
 
-def _margin(group: str) -> Function:
+def _margin_function(group: str) -> Function:
     """The square of a group's margin, which is smooth through a dead position."""
 
     def of(states: LinkStates) -> Real:

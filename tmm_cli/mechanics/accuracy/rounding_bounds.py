@@ -17,16 +17,21 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.mechanics.accuracy.length_sensitivity import all_changed, largest_beside, list_lengths, widened
+from tmm_cli.mechanics.accuracy.length_sensitivity import (
+    as_double_doubles,
+    change_lengths,
+    largest_on_link,
+    list_lengths,
+)
 from tmm_cli.mechanics.analysis import (
     Inputs,
     Mechanism,
     Results,
     driver_motion,
+    is_near_dead,
+    leading_values as leading_values,
     mass_centres,
-    near_dead,
-    refined,
-    values as leading_values,
+    refine_near_dead,
     with_forces,
 )
 from tmm_cli.mechanics.groups import DriverMotion, GroupSolver, link_extent
@@ -48,13 +53,13 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.mechanics.structure import Structure
 
-SHARE = 1e-3  # of each length: the change that sensitivities are told for
-PAPER = 0.5  # mm of paper, likewise
+LENGTH_CHANGE = 1e-3  # of each length: the change that sensitivities are told for
+PAPER_CHANGE = 0.5  # mm of paper, likewise
 STEP = 1e-7  # of a length, where the linkage is far from dead positions
-CLOSE = 2.0**-7  # of the square of the margin, where it is near one
-WIDE = 2.0**-102  # rounding of double-doubles
-LEAST = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
-CHUNK = 1500  # positions at once
+STEP_PER_MARGIN = 2.0**-7  # of the square of the margin, where it is near one
+DOUBLE_DOUBLE_ROUNDING = 2.0**-102  # rounding of double-doubles
+LEAST_STEP = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
+POSITIONS_PER_CHUNK = 1500  # positions at once
 
 Cells = Mapping[Hashable, Real]  # one value a position
 
@@ -73,7 +78,7 @@ class Digits:
     mu: float = float("nan")
 
 
-def judged(
+def judge_values(
     results: Results,
     of: Callable[[Results], Cells],
     *,
@@ -90,10 +95,10 @@ def judged(
     values = of(results)
     if not values:
         return Digits(mu=mu)
-    judge = _Judge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
+    judge = _ValueJudge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
     found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
-    chunk = max(CHUNK // (1 + len(list_lengths(results.linkage))), 1)
-    near = near_dead(motion) if motion.where is None else motion.where
+    chunk = max(POSITIONS_PER_CHUNK // (1 + len(list_lengths(results.linkage))), 1)
+    near = is_near_dead(motion) if motion.where is None else motion.where
     for these, close in ((~near & motion.placed, False), (near, True)):
         places = np.flatnonzero(these)
         for start in range(0, len(places), chunk):
@@ -108,13 +113,13 @@ def is_angle(key: Hashable) -> bool:
     return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
-def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSolver, ...]) -> Results:
+def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSolver, ...]) -> Results:
     """Motion and reactions of a linkage without a file, at places q of its driver (position 0 first)."""
     law = driver_motion(linkage, float(q[0]))
     motion = compute_motion(linkage, kernels, q, law)
-    where = near_dead(motion)
+    where = is_near_dead(motion)
     if bool(np.any(where)):
-        motion = refined(motion, widened(linkage), to_double_double(q[where]), law, where)
+        motion = refine_near_dead(motion, as_double_doubles(linkage), to_double_double(q[where]), law, where)
     inputs = Inputs(linkage)
     mechanism = Mechanism(inputs, structure).known(
         kernels=kernels,
@@ -131,16 +136,16 @@ def bare(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSo
     return with_forces(Results(inputs, structure, mechanism, tuple(range(len(q))), motion), cycle=False)
 
 
-def bounds(results: Results) -> tuple[Cells, Digits]:
+def bound_values(results: Results) -> tuple[Cells, Digits]:
     """Values and their digits, of a linkage whose numbers are exact as they stand when it has no file (see `bare`).
 
     Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
     links, force and couple of pairs, balancing of drivers.
     """
-    return quantities(results), judged(results, quantities)
+    return list_values(results), judge_values(results, list_values)
 
 
-def quantities(results: Results) -> Cells:
+def list_values(results: Results) -> Cells:
     """The motion and reactions of results, by quantity, name and component."""
     assert results.motion is not None
     found: dict[Hashable, Real] = {}
@@ -151,7 +156,7 @@ def quantities(results: Results) -> Cells:
 
 
 @dataclass(frozen=True)
-class _Judge:
+class _ValueJudge:
     """Judges values read out of results, at some positions together; arrays are (values, positions)."""
 
     results: Results
@@ -167,16 +172,16 @@ class _Judge:
         if results.inputs.extended is not None and results.inputs.request.places:
             places = np.stack(results.inputs.extended().request.places)
             first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
-        wide = at(results, exact(results), q, first, chosen)
+        wide = results_with_linkage(results, exact_linkage(results), q, first, chosen)
         values, true = np.stack([value[..., chosen] for value in self.values.values()]), self.rows(self.of(wide))
         if near:
-            share, paper, by_q = self.responses(wide.linkage, q, first, chosen, true, _step(wide))
+            share, paper, by_q = self.responses(wide.linkage, q, first, chosen, true, _length_step(wide))
         else:
             share, paper, by_q = self.responses(results.linkage, motion.q[chosen], results.start, chosen, values, STEP)
         bound = to_float(self.gap(values, true)) + ROUNDOFF * np.abs(values)
         if results.running is not None:
             bound = bound + KNOWN_LAW * np.nanmax(np.abs(values), axis=1, keepdims=True, initial=0.0)
-        bound = bound + WIDE / SHARE * share + np.where(blur > 0, by_q * blur, 0.0)
+        bound = bound + DOUBLE_DOUBLE_ROUNDING / LENGTH_CHANGE * share + np.where(blur > 0, by_q * blur, 0.0)
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
     def responses(self, linkage: Linkage, q: Real, first: float, chosen: Real, rows: Real, step: float) -> Any:
@@ -186,17 +191,21 @@ class _Judge:
         the values at q; step: the relative change of a length.
         """
         count, data = len(q), list_lengths(self.results.linkage)
-        sizes = largest_beside(data)
+        sizes = largest_on_link(data)
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else np.max(sizes, initial=0.0) or 1.0
         by = step * np.array([reach, *sizes])
         there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
         changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
         places = q[there] + np.where(number == 0, by[0], 0.0)
-        other = at(self.results, all_changed(linkage, changes), places, first, chosen[there])
+        other = results_with_linkage(self.results, change_lengths(linkage, changes), places, first, chosen[there])
         gaps = to_float(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
         slopes = gaps / by[:, None]
         values = np.array([abs(length.value) for length in data])
-        return SHARE * np.tensordot(slopes[:, 1:], values, (1, 0)), PAPER * slopes[:, 1:].sum(1), slopes[:, 0]
+        return (
+            LENGTH_CHANGE * np.tensordot(slopes[:, 1:], values, (1, 0)),
+            PAPER_CHANGE * slopes[:, 1:].sum(1),
+            slopes[:, 0],
+        )
 
     def rows(self, cells: Cells) -> Real:
         """The values one below the other; those that are not there are 0."""
@@ -211,21 +220,23 @@ class _Judge:
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
 
-def _step(results: Results) -> float:
+def _length_step(results: Results) -> float:
     """The relative change of a length for derivatives near dead positions: small against what is left to them."""
     motion = results.motion
     assert motion is not None
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
-    return min(STEP, max(CLOSE * least**2, LEAST))
+    return min(STEP, max(STEP_PER_MARGIN * least**2, LEAST_STEP))
 
 
-def exact(results: Results) -> Linkage:
+def exact_linkage(results: Results) -> Linkage:
     """The linkage with the decimals of its file; without a file, with its numbers as they stand."""
     extended = results.inputs.extended
-    return widened(results.linkage) if extended is None else extended().linkage
+    return as_double_doubles(results.linkage) if extended is None else extended().linkage
 
 
-def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real | None = None) -> Results:
+def results_with_linkage(
+    results: Results, linkage: Linkage, q: Real, first: float, chosen: Real | None = None
+) -> Results:
     """The same results at places q with the numbers of another linkage in the same assembly.
 
     first: the place of position 0. chosen: which of the positions these are; all of them when left out.
@@ -237,7 +248,7 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
-        strokes = _begun(strokes, linkage, kernels, q)
+        strokes = _strokes_with_linkage(strokes, linkage, kernels, q)
     found = replace(
         results,
         inputs=replace(results.inputs, linkage=linkage),
@@ -253,7 +264,7 @@ def at(results: Results, linkage: Linkage, q: Real, first: float, chosen: Real |
     return replace(found, lever=found.lever.with_rows_of(results.lever, moved))
 
 
-def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
+def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
     """Strokes whose output begins and ends where it really is there: tables against the stroke are counted from there,
     and in shares of its run."""
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
@@ -267,7 +278,7 @@ def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...],
         more = lows[(k + 1) % len(lows)] - low - stroke.run
         run = stroke.run + (more - 2 * np.pi * np.round(to_float(more) / (2 * np.pi)) if swings else more)
         begun.append(replace(stroke, low=low, run=run))
-    others = tuple(_begun(other, linkage, kernels, q) for other in strokes.others)
+    others = tuple(_strokes_with_linkage(other, linkage, kernels, q) for other in strokes.others)
     return replace(strokes, strokes=tuple(begun), others=others)
 
 
@@ -283,13 +294,17 @@ def _begun(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...],
 # judged by accuracy.digits.
 
 
-LOSS = 128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
-SHARP = 10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
-AWAY = 4.0  # the same for a driver that is not where it was asked to be
-FEWEST = 0.5e-6  # of the largest value: where so much is open, six figures are not sure
+LOSS_FACTOR = (
+    128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
+)
+LOSS_MARGIN = (
+    10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
+)
+DRIVER_ERROR_FACTOR = 4.0  # the same for a driver that is not where it was asked to be
+SIX_FIGURES = 0.5e-6  # of the largest value: where so much is open, six figures are not sure
 
 
-def relative(results: Results, blur: float = 0.0) -> Real:
+def relative_bound(results: Results, blur: float = 0.0) -> Real:
     """How far numbers at each position may be from the truth, in shares of the largest of their kind.
 
     blur: how far places of the driver may be from those that were asked for (rad or m).
@@ -299,42 +314,44 @@ def relative(results: Results, blur: float = 0.0) -> Real:
     unit = np.full(np.shape(motion.q), ROUNDOFF)
     if motion.where is not None:  # computed in extended precision, and rounded
         unit[motion.where] = EPS
-    away = blur if results.linkage.driver.kind == "turn" else blur / _longest(results)
-    lost = growth(results)
+    away = blur if results.linkage.driver.kind == "turn" else blur / _mechanism_size(results)
+    lost = error_growth(results)
     way = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
     if motion.limits is not None:
-        lost = np.where(motion.limits, LIMIT_AGREES / (LOSS * ROUNDOFF), lost)
-    found: Real = LOSS * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + AWAY * away * lost
+        lost = np.where(motion.limits, LIMIT_AGREES / (LOSS_FACTOR * ROUNDOFF), lost)
+    found: Real = (
+        LOSS_FACTOR * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + DRIVER_ERROR_FACTOR * away * lost
+    )
     return found if results.running is None else np.maximum(found, KNOWN_LAW)
 
 
-def growth(results: Results) -> Real:
+def error_growth(results: Results) -> Real:
     """How much errors grow on their way through the groups, at each position."""
     motion = results.motion
     assert motion is not None
     lost = np.ones(np.shape(motion.q))
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         with np.errstate(all="ignore"):
-            lost = lost * np.maximum(SHARP * kernel.near / at.margin, 1.0) ** 2
+            lost = lost * np.maximum(LOSS_MARGIN * kernel.near / at.margin, 1.0) ** 2
     return lost
 
 
 def slenderness(results: Results) -> float:
     """The size of the mechanism over its shortest link: errors of places turn that by so much more."""
     short = [link_extent(results.linkage, link) for link in results.linkage.moving]
-    return _longest(results) / min((size for size in short if size > 0), default=1.0)
+    return _mechanism_size(results) / min((size for size in short if size > 0), default=1.0)
 
 
-def sizes(results: Results) -> Mapping[Dimension, float]:
+def largest_values(results: Results) -> Mapping[Dimension, float]:
     """The largest value of each kind that the mechanism has, SI; of plain numbers that of transfer functions."""
     motion = results.motion
     assert motion is not None
-    size = _longest(results)
-    w = _most(rate.w for rate in motion.first.values())
-    v = _most(rate.v for rate in motion.first.values()) + w * size
-    e = _most(accel.e for accel in motion.second.values()) + w * w
-    a = _most(accel.a for accel in motion.second.values()) + e * size
-    rate, gain = _most([motion.rate]), _most([motion.acceleration])
+    size = _mechanism_size(results)
+    w = _largest_magnitude(rate.w for rate in motion.first.values())
+    v = _largest_magnitude(rate.v for rate in motion.first.values()) + w * size
+    e = _largest_magnitude(accel.e for accel in motion.second.values()) + w * w
+    a = _largest_magnitude(accel.a for accel in motion.second.values()) + e * size
+    rate, gain = _largest_magnitude([motion.rate]), _largest_magnitude([motion.acceleration])
     found = {
         LENGTH: max(size, v),
         ANGLE: np.pi,
@@ -347,27 +364,34 @@ def sizes(results: Results) -> Mapping[Dimension, float]:
     if results.reactions is not None:
         applied = results.reactions.applied
         links = results.linkage.links.values()
-        mass, inertia = _most(link.mass for link in links), _most(link.inertia for link in links)
+        mass, inertia = (
+            _largest_magnitude(link.mass for link in links),
+            _largest_magnitude(link.inertia for link in links),
+        )
         # a link that does not move has the errors of its forces all the same
-        forces = max(found[ACCELERATION] * mass, _most(reaction.force for reaction in results.reactions.all))
-        couples = max(found[ANGULAR_ACCELERATION] * inertia, _most(load.moment for load in applied))
+        forces = max(
+            found[ACCELERATION] * mass, _largest_magnitude(reaction.force for reaction in results.reactions.all)
+        )
+        couples = max(found[ANGULAR_ACCELERATION] * inertia, _largest_magnitude(load.moment for load in applied))
         found[INERTIA] = mass * v**2 + inertia * w**2  # reduced to the driver
-        found[FORCE] = max(forces, _most(load.force for load in applied)) + couples / size
+        found[FORCE] = max(forces, _largest_magnitude(load.force for load in applied)) + couples / size
         found[MOMENT] = found[FORCE] * found[LENGTH]
     return found
 
 
-def _longest(results: Results) -> float:
+def _mechanism_size(results: Results) -> float:
     """How far points of the links, and what acts on them, are from one another and from the origin, m."""
     assert results.motion is not None
     linkage = results.linkage
     spreads = (link_extent(linkage, link) for link in linkage.links)
-    acted_on = _most([*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)])
-    longest: float = max(*spreads, acted_on) + _most(pose.x for pose in results.motion.poses.values())
+    acted_on = _largest_magnitude(
+        [*(at for __, at in mass_centres(linkage).values()), *(load.at for load in linkage.loads)]
+    )
+    longest: float = max(*spreads, acted_on) + _largest_magnitude(pose.x for pose in results.motion.poses.values())
     return longest
 
 
-def _most(values: object) -> float:
+def _largest_magnitude(values: object) -> float:
     """The largest size of arrays, nan left out."""
     found = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
     return float(max(found, default=0.0))

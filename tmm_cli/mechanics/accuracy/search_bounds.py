@@ -11,9 +11,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_cli.mechanics.accuracy.length_sensitivity import ends, list_lengths, outputs, responses
-from tmm_cli.mechanics.accuracy.rounding_bounds import PAPER, SHARE, Digits, exact, growth, slenderness
-from tmm_cli.mechanics.analysis import CYCLE, Results, cycle_losses
+from tmm_cli.mechanics.accuracy.length_sensitivity import (
+    list_lengths,
+    range_end_paths,
+    search_sensitivities,
+    stroke_paths,
+)
+from tmm_cli.mechanics.accuracy.rounding_bounds import (
+    LENGTH_CHANGE,
+    PAPER_CHANGE,
+    Digits,
+    error_growth,
+    exact_linkage,
+    slenderness,
+)
+from tmm_cli.mechanics.analysis import CYCLE_SAMPLES, Results, cycle_losses
 from tmm_cli.mechanics.groups import ClosedFormSolver, LinkStates, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics import (
     DriverRange,
@@ -25,16 +37,18 @@ from tmm_cli.mechanics.kinematics import (
 )
 from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble, Real, map_record, to_float
 
-FARTHEST = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
-AROUND = 65  # places over the driver's way that tell how large a function is
-SMOOTH = 1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
+DOUBLINGS = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
+RANGE_SAMPLES = 65  # places over the driver's way that tell how large a function is
+SLOPE_ERROR = (
+    1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
+)
 NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
-FINE = 1e-10  # of the largest value: more noise in float64, near a dead position, would blur all that was found
-LEAST = 1e-12  # of the way: ends of groups that were followed there
-GUESS = 1e-9  # of the way: dead positions where a margin is least
+MOST_NOISE = 1e-10  # of the largest value: more noise in float64, near a dead position, would blur all that was found
+FOLLOWED_END_ERROR = 1e-12  # of the way: ends of groups that were followed there
+DEAD_POSITION_ERROR = 1e-9  # of the way: dead positions where a margin is least
 
 
-class Wide:
+class PreciseLinkage:
     """The linkage of results at any places of its driver, with the decimals of its file.
 
     growth: how much rounding of the data may grow; then the linkage is as it is, in float64.
@@ -42,7 +56,7 @@ class Wide:
 
     def __init__(self, results: Results, growth: float | None = None) -> None:
         self.results = results
-        self.linkage = exact(results) if growth is None else results.linkage
+        self.linkage = exact_linkage(results) if growth is None else results.linkage
         self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
         self.kind: Any = DoubleDouble if growth is None else np.asarray
         self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
@@ -55,7 +69,7 @@ class Wide:
 
     def sides(self, places: Real) -> tuple[Real, Real]:
         """Growing distances from each place, the last bit first, and the places on both sides at them."""
-        steps = 2.0 ** np.arange(FARTHEST) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
+        steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
         there = self.kind(places)[:, None]
         return steps, np.stack([there - steps, there + steps])
 
@@ -69,13 +83,13 @@ class Wide:
         """
         steps, both = self.sides(places)
         driver_range = self.results.mechanism.driver_range
-        way = np.linspace(driver_range.start, driver_range.end, AROUND)
+        way = np.linspace(driver_range.start, driver_range.end, RANGE_SAMPLES)
         with np.errstate(all="ignore"):
             states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
             there, values, along = np.split(to_float(of(states)), [len(places), len(places) + both.size])
         size = float(np.nanmax(np.abs(along))) if size is None else size
         below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
-        distance = _first((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
+        distance = _first_sure_step((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
         return distance, states, np.abs(there) + self.noise * size
 
     def turns(self, places: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
@@ -109,24 +123,24 @@ class Wide:
         """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
         kernel = next((k for k in self.kernels if k.group.title == group), None)
         if not isinstance(kernel, ClosedFormSolver):
-            return LEAST * span + 4 * ROUNDOFF * abs(place)
+            return FOLLOWED_END_ERROR * span + 4 * ROUNDOFF * abs(place)
         steps, both = self.sides(np.array([place]))
         inside, outside = self.at(both.ravel(), kernel.group.links).placed.reshape(both.shape)[::towards]
-        sure = float(_first(inside & ~outside, steps)[0])
-        return (sure if np.isfinite(sure) else LEAST * span) + self.noise * span
+        sure = float(_first_sure_step(inside & ~outside, steps)[0])
+        return (sure if np.isfinite(sure) else FOLLOWED_END_ERROR * span) + self.noise * span
 
     def dead(self, place: float, group: str, span: float) -> float:
         """Of a dead position inside the way: there the gap of the group stops growing."""
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
         if not isinstance(kernel, ClosedFormSolver):
-            return GUESS * span
+            return DEAD_POSITION_ERROR * span
 
         def closing(states: LinkStates) -> Real:
             at = kernel.closed(states.poses, states.drives)
             return kernel.residual_rate(at, states.poses, states.first, states.drives)
 
         distance = self.brackets(np.array([place]), closing, kernel.group.links, float(kernel.size))[0]
-        return min(float(distance[0]), GUESS * span)
+        return min(float(distance[0]), DEAD_POSITION_ERROR * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
         """Of an extreme pressure angle, and of the driver's place there: where it is flat, half the digits only.
@@ -145,7 +159,7 @@ class Wide:
         states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
         b2, b1, here, a1, a2 = pressure_at(states, group, link)
         error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
-        edge = 2 * GUESS * span
+        edge = 2 * DEAD_POSITION_ERROR * span
         for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
             if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)
@@ -155,18 +169,18 @@ class Wide:
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
         off = abs(slope / bend)  # where the slope of a smooth top is nothing
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
-        there = 4 * off + SMOOTH * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
+        there = 4 * off + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
         return error, there if there < span else np.inf
 
 
-def coarsely(results: Results) -> Wide:
+def choose_precision(results: Results) -> PreciseLinkage:
     """In float64, with the rounding of the data as it may grow on its way through the groups, if that tells enough."""
-    grown = growth(results)
+    grown = error_growth(results)
     most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
-    return Wide(results, most if NOISE * ROUNDOFF * most < FINE else None)
+    return PreciseLinkage(results, most if NOISE * ROUNDOFF * most < MOST_NOISE else None)
 
 
-def _first(sure: Real, steps: Real) -> Real:
+def _first_sure_step(sure: Real, steps: Real) -> Real:
     """The first of its steps at which each place is sure, or inf."""
     return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
 
@@ -179,11 +193,11 @@ def _first(sure: Real, steps: Real) -> Real:
 
 Cells = Mapping[Hashable, Real]
 
-LARGE = 2.0**20  # bounds in a shift, so that it is no rounding itself
-SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
+SHIFT_FACTOR = 2.0**20  # bounds in a shift, so that it is no rounding itself
+LARGEST_SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
 
 
-class Found(NamedTuple):
+class SearchedNumber(NamedTuple):
     """A number of the mechanism that was searched for: where it stands, its bound, the results with it shifted by so
     much; sense: to which side they are.
     """
@@ -194,33 +208,37 @@ class Found(NamedTuple):
     sense: int = 1
 
 
-def searched(results: Results, of: Callable[[Results], Cells], wide: Wide, mu: float = float("nan")) -> Digits:
+def judge_searched(
+    results: Results, of: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
+) -> Digits:
     """Judge what `of` reads out of results that belongs to no position.
 
     mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
     """
     values, data = of(results), list_lengths(results.linkage)
-    here = _row(values, values)
+    here = _value_row(values, values)
     bound = 2 * ROUNDOFF * np.abs(here)
     with np.errstate(all="ignore"):
-        rates = {} if np.isnan(mu) or results.driver_range is None else responses(results, data)
+        rates = {} if np.isnan(mu) or results.driver_range is None else search_sensitivities(results, data)
         goes = np.zeros((len(here), len(data)))  # how far each number goes a metre of each length
-        for found in found_in(results, wide):
+        for found in searched_numbers(results, wide):
             rate = rates.get(found.path, 0.0)
-            by = found.sense * (min(SHIFT, LARGE * found.bound) or (SHIFT if np.any(rate) else 0.0))
+            by = found.sense * (
+                min(LARGEST_SHIFT, SHIFT_FACTOR * found.bound) or (LARGEST_SHIFT if np.any(rate) else 0.0)
+            )
             if by:
-                slope = _gap(_row(of(found.shifted(by)), values), here) / by
+                slope = _value_changes(_value_row(of(found.shifted(by)), values), here) / by
                 bound = bound + np.where(slope != 0, np.abs(slope) * found.bound, 0.0)
                 goes = goes + np.where(rate, slope[:, None] * rate, 0.0)
         sizes = np.array([abs(length.value) for length in data])
-        share, paper = SHARE * np.abs(goes) @ sizes, PAPER * mu * np.abs(goes).sum(axis=1)
+        share, paper = LENGTH_CHANGE * np.abs(goes) @ sizes, PAPER_CHANGE * mu * np.abs(goes).sum(axis=1)
     ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
     # of nothing an array is still one part
     told = [dict(zip(values, np.split(part, ends_of), strict=False)) for part in (bound, share, paper)]
     return Digits(told[0], told[1], told[2], mu)
 
 
-def _row(moved: Cells, values: Cells) -> Real:
+def _value_row(moved: Cells, values: Cells) -> Real:
     """All numbers in a row; what is not there any more has not moved."""
     kept = (
         moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
@@ -229,26 +247,30 @@ def _row(moved: Cells, values: Cells) -> Real:
     return np.concatenate([np.zeros(0), *(np.ravel(value) for value in kept)])
 
 
-def _gap(moved: Real, here: Real) -> Real:
+def _value_changes(moved: Real, here: Real) -> Real:
     """How far numbers have moved, and to which side; a full turn is no way, nor is one from or to nowhere."""
     way: Real = moved - here
     turn = np.copysign(2 * np.pi, way)
     return np.where(np.abs(way - turn) < 1e-3, way - turn, np.where(np.isnan(way), 0.0, way))
 
 
-def found_in(results: Results, wide: Wide) -> Iterator[Found]:
+def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[SearchedNumber]:
     """Everything that was searched for."""
     driver_range = results.driver_range
     if driver_range is None:
         return
     span = driver_range.end - driver_range.start
 
-    def found(path: str, bound: float, sense: int = 1, also: Sequence[str] = ()) -> Found:
-        return Found(path, float(bound), lambda by: _shifted(results, dict.fromkeys((path, *also), by)), sense)
+    def found(path: str, bound: float, sense: int = 1, also: Sequence[str] = ()) -> SearchedNumber:
+        return SearchedNumber(
+            path, float(bound), lambda by: _shifted_results(results, dict.fromkeys((path, *also), by)), sense
+        )
 
-    for (end, *also), bound in zip(ends(driver_range), _ends(results, driver_range, wide), strict=True):
+    for (end, *also), bound in zip(
+        range_end_paths(driver_range), _range_end_bounds(results, driver_range, wide), strict=True
+    ):
         yield found(end, bound, also=also)
-    for output, strokes in outputs(results).items():
+    for output, strokes in stroke_paths(results).items():
         starts, lows = wide.strokes(strokes)
         parts = {"start": starts, "length": starts + np.roll(starts, -1), "low": lows, "run": lows + np.roll(lows, -1)}
         for k in range(len(starts)):
@@ -270,7 +292,7 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
             yield found(f"pressure[{k}].other", other, -1)
             yield found(f"pressure[{k}].other_place", there)
     if results.losses is not None:  # a sum over half as many places has a larger error than theirs
-        rough = cycle_losses(results, CYCLE // 2, ranges=False)
+        rough = cycle_losses(results, CYCLE_SAMPLES // 2, ranges=False)
 
         def towards(by: float) -> Results:
             losses = map_record(
@@ -278,30 +300,30 @@ def found_in(results: Results, wide: Wide) -> Iterator[Found]:
             )
             return replace(results, losses=losses)
 
-        yield Found("losses", 1.0, towards)
+        yield SearchedNumber("losses", 1.0, towards)
 
 
-def _ends(results: Results, driver_range: DriverRange, wide: Wide) -> Iterator[float]:
+def _range_end_bounds(results: Results, driver_range: DriverRange, wide: PreciseLinkage) -> Iterator[float]:
     """Bounds of both ends of the driver's way."""
     span = driver_range.end - driver_range.start
     for sense, place in ((-1, driver_range.start), (1, driver_range.end)):
-        limit = None if driver_range.full else _limit(results, place)
+        limit = None if driver_range.full else _limiting_group(results, place)
         yield 2 * ROUNDOFF * abs(place) if limit is None else wide.end(place, sense, limit, span)
 
 
-def blur(results: Results, wide: Wide) -> float:
+def start_uncertainty(results: Results, wide: PreciseLinkage) -> float:
     """How far position 0 may be from where it was asked for, rad or m."""
     request, driver_range = results.inputs.request, results.driver_range
     if driver_range is None or request.places:
         return 0.0
     if not driver_range.full:
-        return max(_ends(results, driver_range, wide))
+        return max(_range_end_bounds(results, driver_range, wide))
     if request.start != "working stroke" or results.strokes is None or not results.strokes.strokes:
         return 0.0
     return float(wide.strokes(results.strokes)[0][0])
 
 
-def _shifted(results: Results, by: Mapping[str, float]) -> Results:
+def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
     """The results with numbers of the mechanism shifted by so much; paths: travels[0].low, as vectors.mapped has them.
 
     Pressure angles at the positions are no searched ones: they stay.
@@ -316,7 +338,7 @@ def _shifted(results: Results, by: Mapping[str, float]) -> Results:
     return replace(results, mechanism=results.mechanism.changed(**{part: moved(part) for part in parts | {"pressure"}}))
 
 
-def _limit(results: Results, place: float) -> str | None:
+def _limiting_group(results: Results, place: float) -> str | None:
     """The group that stops the driver at a place."""
     assert results.driver_range is not None
     return next((limit.group for limit in results.driver_range.limits if limit.place == place), None)

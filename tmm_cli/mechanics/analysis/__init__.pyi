@@ -3,8 +3,8 @@
 from . import mechanism as mechanism, pipeline as pipeline
 from .checks import Check as Check, run_checks as run_checks
 from .details_on_request import (
-    balancing as balancing,
-    chosen_here as chosen_here,
+    balancing_magnitude as balancing_magnitude,
+    detail_chosen_by_program as detail_chosen_by_program,
     detailed_positions as detailed_positions,
     with_assemblies as with_assemblies,
     with_centres as with_centres,
@@ -12,37 +12,37 @@ from .details_on_request import (
 from .extremes import with_extremes as with_extremes
 from .intermittent import (
     MOST_CYCLES as MOST_CYCLES,
-    Intermittent as Intermittent,
-    Part as Part,
-    Setting as Setting,
+    IntermittentMotion as IntermittentMotion,
+    WheelMotion as WheelMotion,
+    WheelSetting as WheelSetting,
     WheelTask as WheelTask,
 )
-from .mechanism import Inputs as Inputs, Mechanism as Mechanism, redriven as redriven
+from .mechanism import Inputs as Inputs, Mechanism as Mechanism, with_driver as with_driver
 from .named_quantities import (
     STAGES as STAGES,
-    Quantity as Quantity,
-    Solved as Solved,
-    of_wheels as of_wheels,
-    quantities as quantities,
+    NamedQuantity as NamedQuantity,
+    SolvedState as SolvedState,
+    list_quantities as list_quantities,
     relative_angles as relative_angles,
+    wheel_quantities as wheel_quantities,
 )
 from .optional_stages import driver_motion as driver_motion
 from .pipeline import (
-    CYCLE as CYCLE,
+    CYCLE_SAMPLES as CYCLE_SAMPLES,
     Results as Results,
     Stage as Stage,
-    at_places as at_places,
-    at_positions as at_positions,
     cycle_losses as cycle_losses,
-    near_dead as near_dead,
-    refined as refined,
+    is_near_dead as is_near_dead,
+    motion_at_positions as motion_at_positions,
+    refine_near_dead as refine_near_dead,
+    results_at as results_at,
     solve as solve,
     with_forces as with_forces,
 )
 from .selection import (
-    links as links,
+    leading_values as leading_values,
     mass_centres as mass_centres,
     moving_centres as moving_centres,
     moving_points as moving_points,
-    values as values,
+    select_links as select_links,
 )

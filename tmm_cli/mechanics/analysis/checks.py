@@ -12,14 +12,14 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results, at_positions
-from tmm_cli.mechanics.forces import given_loads
+from tmm_cli.mechanics.analysis.pipeline import Results, motion_at_positions
+from tmm_cli.mechanics.forces import problem_loads
 from tmm_cli.mechanics.groups import GroupSolver, LinkStates, link_states, solvers_towards
 from tmm_cli.mechanics.kinematics import SCAN, Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_PRESSURE, NO_WORK, SEAM_OF_EXTREMES, Real, dot, find_minima
 
-Kind = Literal["slot", "pressure", "load", "near dead", "lever"]
+CheckKind = Literal["slot", "pressure", "load", "near dead", "lever"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Check:
     margin of a group, at least the limit. lever: its largest difference from the force plan, at most the limit.
     """
 
-    kind: Kind
+    kind: CheckKind
     of: str
     at: float | None
     value: float
@@ -46,13 +46,13 @@ def run_checks(results: Results) -> tuple[Check, ...]:
     """All checks of results with forces, which have a motion and are whole."""
     if results.lever is None or results.of or results.driver_range is None:
         return ()
-    closely = at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
+    closely = motion_at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
     found = (
-        *_slots(results),
-        *_pressure(results),
-        *_loads(results, closely),
-        *_near_dead(results, closely),
-        *_lever(results),
+        *_slot_checks(results),
+        *_pressure_checks(results),
+        *_load_checks(results, closely),
+        *_dead_position_checks(results, closely),
+        *_lever_checks(results),
     )
     if not results.driver_range.full:
         return found
@@ -61,20 +61,20 @@ def run_checks(results: Results) -> tuple[Check, ...]:
     return tuple(c if c.at is None else replace(c, at=max((c.at + seam) % cycle - seam, 0.0)) for c in found)
 
 
-def _slots(results: Results) -> Iterable[Check]:
+def _slot_checks(results: Results) -> Iterable[Check]:
     """The end of each slot to which its link comes nearest, or beyond which it goes farthest."""
     for name in dict.fromkeys(excess.slide.name for excess in results.slots):
         worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
         yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
 
 
-def _pressure(results: Results) -> Iterable[Check]:
+def _pressure_checks(results: Results) -> Iterable[Check]:
     for found in results.pressure:
         place = found.place if found.largest > NO_PRESSURE else None
         yield Check("pressure", found.link, place, found.largest, found.allowed, found.holds, found.group)
 
 
-def _loads(results: Results, motion: Motion) -> Iterable[Check]:
+def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
     """Loads that act always, and are constant or tabulated against the stroke, which comes and goes."""
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
@@ -89,7 +89,7 @@ def _loads(results: Results, motion: Motion) -> Iterable[Check]:
         and (x.table is None or x.table.against == "stroke")
     }
     between = (motion.q[1:] + motion.q[:-1]) / 2
-    for load in given_loads(motion, strokes):
+    for load in problem_loads(motion, strokes):
         if load.name not in always:
             continue
         works = strokes.of_link(always[load.name]).share(between, motion.linkage.driver.sense)
@@ -104,7 +104,7 @@ def _loads(results: Results, motion: Motion) -> Iterable[Check]:
         yield Check("load", load.name, None, done[drives] if both else 0.0, 0.0, not both, drives if both else "")
 
 
-def _near_dead(results: Results, motion: LinkStates) -> Iterable[Check]:
+def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Check]:
     """The least margin of each group: in its dead or change positions, or where it comes nearest to one."""
     step = abs(float(motion.q[1] - motion.q[0]))
     for kernel, placement in zip(motion.kernels, motion.placements, strict=True):
@@ -114,20 +114,22 @@ def _near_dead(results: Results, motion: LinkStates) -> Iterable[Check]:
             continue
         k = int(np.argmin(margin))
         upto = solvers_towards(motion.kernels, kernel.group.links)
-        found = [find_minima(partial(_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)]
+        found = [
+            find_minima(partial(_last_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)
+        ]
         found += [(float(motion.q[k]), float(margin[k]))]
         found += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
         place, value = min(found, key=lambda pair: pair[1])
         yield Check("near dead", title, place, value, kernel.near, value >= kernel.near)
 
 
-def _margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
+def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
     """Of the last group."""
     there = link_states(results.linkage, upto, q, 0)
     return np.where(there.placed, there.placements[-1].margin, np.inf)
 
 
-def _lever(results: Results) -> Iterable[Check]:
+def _lever_checks(results: Results) -> Iterable[Check]:
     """The position where the lever differs most from the force plan."""
     assert results.lever is not None and results.motion is not None
     counted = results.motion.moving & ~results.locked

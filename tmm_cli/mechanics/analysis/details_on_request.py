@@ -23,33 +23,33 @@ def detailed_positions(results: Results) -> tuple[int, ...]:
     A single position is always one. Where the file names none it is the one of the largest balancing moment or force
     of the first driver; where nothing acts, the one after position 0, in which the output often rests.
     """
-    computed = _computed(results)
+    computed = _solved_positions(results)
     wanted = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
     if wanted:
         return tuple(k for k in np.flatnonzero(computed).tolist() if results.numbers[k] in wanted)
     if not computed.any():
         return ()
-    balance = balancing(results)
+    balance = balancing_magnitude(results)
     if balance.any():
         return (int(np.argmax(balance)),)
     return (int(np.flatnonzero(computed)[:2][-1]),)
 
 
-def chosen_here(results: Results) -> bool:
+def detail_chosen_by_program(results: Results) -> bool:
     """Whether the file leaves it to the program which position is drawn in full."""
     return len(results.numbers) > 1 and not results.inputs.request.detail
 
 
-def balancing(results: Results) -> Real:
+def balancing_magnitude(results: Results) -> Real:
     """The size of the first driver's balancing moment (N m) or force (N) at each position; zero where there is none."""
-    computed = _computed(results)
+    computed = _solved_positions(results)
     if results.reactions is None:
         return np.zeros(len(computed))
     sizes: Real = np.abs(results.reactions.balance.generalized)
     return np.where(computed & np.isfinite(sizes), sizes, 0.0)
 
 
-def _computed(results: Results) -> Real:
+def _solved_positions(results: Results) -> Real:
     motion = results.motion
     assert motion is not None
     return motion.moving & ~results.locked
@@ -78,7 +78,7 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
     try:
         results = solve(inputs, "kinematics", positions, problem=problem)
     except AmbiguousSketchError as error:
-        return _undecided(inputs, error.group, positions or (), problem)
+        return _undecided_assemblies(inputs, error.group, positions or (), problem)
     numbers = positions or inputs.request.detail[:1] or (0,)
     return replace(
         results,
@@ -89,7 +89,7 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
     )
 
 
-def _undecided(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
+def _undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
     """The groups before the one that is not decided, and this one, at the sketch's place or those of the file."""
     results = solve(inputs, "structure", problem=problem)
     order = [g.links for g in results.structure.solved]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.mechanics.analysis.pipeline import Results, at_places
+from tmm_cli.mechanics.analysis.pipeline import Results, results_at
 from tmm_cli.mechanics.analysis.selection import mass_centres, named_points
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
@@ -15,13 +15,13 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real, to_float
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, LENGTH, MOMENT, Dimension
 
-STEPS = 720  # in a turn, or over the driver's way
+STEPS_PER_TURN = 720  # in a turn, or over the driver's way
 ROUNDS, PARTS = 5, 16  # of looking closer about each extreme place, and how many steps of it there are in the next one
-WHOLE = 2 * np.pi - 1e-6  # rad: what turns by that has no extreme angles
+FULL_TURN = 2 * np.pi - 1e-6  # rad: what turns by that has no extreme angles
 
 
 @dataclass(frozen=True)
-class Extreme:
+class QuantityExtreme:
     """The least and the largest value of a quantity of a thing (SI), and the driver's places there."""
 
     kind: str
@@ -34,7 +34,7 @@ class Extreme:
 
 
 @dataclass(frozen=True)
-class Course:
+class SampledQuantity:
     """A quantity over places; its values are angles if `turns`."""
 
     kind: str
@@ -50,49 +50,60 @@ class Course:
 def with_extremes(results: Results) -> Results:
     """With extreme places of all points, links and stones; where there are forces with the sizes of these instead."""
 
-    def sample(q: Real) -> list[Course]:
-        there = at_places(results, q)
+    def sample(q: Real) -> list[SampledQuantity]:
+        there = results_at(results, q)
         assert there.motion is not None
-        return _places(there.motion) if there.reactions is None else _forces(there.reactions, results.linkage)
+        return (
+            _sample_motion(there.motion)
+            if there.reactions is None
+            else _sample_forces(there.reactions, results.linkage)
+        )
 
-    q = results.closely(STEPS * max(results.turns, 1) + 1)
-    return replace(results, extremes=extremes(sample, q, cyclic=bool(results.turns)))
+    q = results.closely(STEPS_PER_TURN * max(results.turns, 1) + 1)
+    return replace(results, extremes=find_extremes(sample, q, cyclic=bool(results.turns)))
 
 
-def _places(motion: Motion) -> list[Course]:
+def _sample_motion(motion: Motion) -> list[SampledQuantity]:
     linkage, found = motion.linkage, []
     for name in named_points(linkage):
         place = motion.named(name).x
-        found += [Course("x", name, LENGTH, place.real), Course("y", name, LENGTH, place.imag)]
+        found += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
     for name, (link, __) in mass_centres(linkage).items():
         place = motion.centre(link).x
-        found += [Course("x", name, LENGTH, place.real), Course("y", name, LENGTH, place.imag)]
-    found += [Course("angle", link, ANGLE, motion.link(link).angle) for link in linkage.moving]
-    found += [Course("s", slide.name, LENGTH, motion.slide(slide).run) for slide in linkage.slides]
+        found += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
+    found += [SampledQuantity("angle", link, ANGLE, motion.link(link).angle) for link in linkage.moving]
+    found += [SampledQuantity("s", slide.name, LENGTH, motion.slide(slide).run) for slide in linkage.slides]
     return found
 
 
-def _forces(reactions: Reactions, linkage: Linkage) -> list[Course]:
-    found = [Course("R", r.pair.name, FORCE, np.abs(r.force)) for r in reactions.all]
-    found += [Course("M", r.pair.name, MOMENT, r.couple) for r in reactions.all if r.couple is not None]
-    found += [Course("R pin", f"{pin.point}, {pin.link}", FORCE, np.abs(pin.force)) for pin in reactions.pins(linkage)]
+def _sample_forces(reactions: Reactions, linkage: Linkage) -> list[SampledQuantity]:
+    found = [SampledQuantity("R", r.pair.name, FORCE, np.abs(r.force)) for r in reactions.all]
+    found += [SampledQuantity("M", r.pair.name, MOMENT, r.couple) for r in reactions.all if r.couple is not None]
+    found += [
+        SampledQuantity("R pin", f"{pin.point}, {pin.link}", FORCE, np.abs(pin.force))
+        for pin in reactions.pins(linkage)
+    ]
     for balance in reactions.balances:
         turns = balance.moment is not None
         size = MOMENT if turns else FORCE
-        found.append(Course("M_b" if turns else "F_b", balance.driver.link, size, np.asarray(balance.generalized)))
+        found.append(
+            SampledQuantity("M_b" if turns else "F_b", balance.driver.link, size, np.asarray(balance.generalized))
+        )
     return found
 
 
-def extremes(sample: Callable[[Real], Sequence[Course]], q: Real, *, cyclic: bool) -> tuple[Extreme, ...]:
+def find_extremes(
+    sample: Callable[[Real], Sequence[SampledQuantity]], q: Real, *, cyclic: bool
+) -> tuple[QuantityExtreme, ...]:
     """Of all that is sampled, over places q close together; links that turn fully have no extreme angles.
 
     About each place of a grid that is extreme, finer grids are laid, one in another. cyclic: the ends of q are one.
     """
     courses = list(sample(q))
-    rows, turning = _rows(courses, q), np.array([c.turns for c in courses])
+    rows, turning = _value_rows(courses, q), np.array([c.turns for c in courses])
     rows[turning] = _unwrapped(rows[turning])
     spread = np.array([np.ptp(row[np.isfinite(row)]) if np.isfinite(row).any() else 0.0 for row in rows])
-    kept = (spread > 0) & ~(turning & (spread > WHOLE))
+    kept = (spread > 0) & ~(turning & (spread > FULL_TURN))
     # what is least is the largest of what has the other sign: each row comes twice
     signs, turning = np.repeat([-1.0, 1.0], len(rows))[:, None], np.concatenate([turning, turning])[:, None]
     each = np.arange(2 * len(rows))
@@ -102,7 +113,7 @@ def extremes(sample: Callable[[Real], Sequence[Course]], q: Real, *, cyclic: boo
     for _ in range(ROUNDS):
         near = at[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
         near = near if cyclic else np.clip(near, np.min(q), np.max(q))
-        fine = _rows(sample(near.ravel()), near.ravel()).reshape(len(rows), *near.shape)
+        fine = _value_rows(sample(near.ravel()), near.ravel()).reshape(len(rows), *near.shape)
         own = signs * np.concatenate([fine, fine])[each, each]
         off = own - values[:, None]
         own = np.where(turning, values[:, None] + off - 2 * np.pi * np.round(off / (2 * np.pi)), own)
@@ -113,7 +124,7 @@ def extremes(sample: Callable[[Real], Sequence[Course]], q: Real, *, cyclic: boo
         step /= PARTS
     half = len(courses)
     return tuple(
-        Extreme(
+        QuantityExtreme(
             c.kind, c.name, c.dimension, -float(values[n]), float(at[n]), float(values[half + n]), float(at[half + n])
         )
         for n, c in enumerate(courses)
@@ -121,7 +132,7 @@ def extremes(sample: Callable[[Real], Sequence[Course]], q: Real, *, cyclic: boo
     )
 
 
-def _rows(courses: Iterable[Course], q: Real) -> Real:
+def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
     """Their values, a row a quantity."""
     return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 

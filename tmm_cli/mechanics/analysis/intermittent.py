@@ -28,11 +28,11 @@ from tmm_cli.mechanics.kinematics import (
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SHOCKLESS, WHOLE_TURNS, Real, find_minima, find_roots
 
-When = Literal["forward", "backward", "working stroke", "idle stroke"]
+DrivenWhen = Literal["forward", "backward", "working stroke", "idle stroke"]
 
 
 @dataclass(frozen=True)
-class Setting:
+class WheelSetting:
     """The linkage of one of the settings that take turns; values: of parameters, as they are written.
 
     linkage: None where it is that of the file.
@@ -52,8 +52,8 @@ class WheelTask:
 
     name: str
     link: str
-    when: When
-    settings: tuple[Setting, ...] = (Setting(),)
+    when: DrivenWhen
+    settings: tuple[WheelSetting, ...] = (WheelSetting(),)
 
 
 # Stage: the parts of a cycle in which a link takes a wheel along, and those in which the wheel stands.
@@ -62,12 +62,12 @@ class WheelTask:
 # what holds it in between is not asked. In each part the link goes one way only, between ends that are found exactly.
 
 
-PLACES = 181  # of a part in which the wheel is driven
+MOTION_SAMPLES = 181  # of a part in which the wheel is driven
 MOST_CYCLES = 1000  # that are looked at for whole turns of the wheel
 
 
 @dataclass(frozen=True)
-class Ride:
+class OneWayMotion:
     """The link goes one way while the driver goes from `start` on by `way` in the sense +1 or -1 (rad or m).
 
     driven: whether it takes the wheel along.
@@ -84,14 +84,14 @@ class Ride:
 
 
 @dataclass(frozen=True)
-class Part:
+class WheelMotion:
     """A ride as the wheel has it: its angle, omega and epsilon at driver's ways (from the cycle's beginning).
 
     setting: which of the task's. time: that it takes, nan where the driver's speed changes. omega, epsilon: the largest
     sizes in it, found between those places. Rad and s.
     """
 
-    ride: Ride
+    ride: OneWayMotion
     setting: int
     time: float
     ways: Real
@@ -107,14 +107,14 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Intermittent:
+class IntermittentMotion:
     """A wheel over a cycle of all its settings: parts in their order."""
 
     task: WheelTask
-    parts: tuple[Part, ...]
+    parts: tuple[WheelMotion, ...]
 
     @property
-    def driven(self) -> tuple[Part, ...]:
+    def driven(self) -> tuple[WheelMotion, ...]:
         return tuple(part for part in self.parts if part.ride.driven)
 
     @property
@@ -170,7 +170,7 @@ class Intermittent:
         return float(np.max(np.abs(self.jumps)))
 
 
-def rides_of_turns(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[Ride]:
+def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[OneWayMotion]:
     """Over the strokes of a driver that turns fully in a sense, from that which begins first at `start` or after it.
 
     strokes: of the task's link, or of the output where the task asks for those.
@@ -185,15 +185,15 @@ def rides_of_turns(task: WheelTask, strokes: Strokes, sense: int, start: float) 
             float(np.mod(sense * (stroke.start - start) + SAME_DRIVER_POSITION, strokes.cycle)) - SAME_DRIVER_POSITION
         )
         first = start + sense * gone
-        found.append(Ride(first, stroke.length, sense, driven))
+        found.append(OneWayMotion(first, stroke.length, sense, driven))
         if stroke.rest:
-            found.append(Ride(first + sense * stroke.length, stroke.rest, sense, driven=False))
-    return _joined(sorted(found, key=lambda ride: sense * ride.start))
+            found.append(OneWayMotion(first + sense * stroke.length, stroke.rest, sense, driven=False))
+    return _join_rests(sorted(found, key=lambda ride: sense * ride.start))
 
 
-def rides_there_and_back(
+def one_way_motions_of_stroke(
     linkage: Linkage, kernels: Sequence[GroupSolver], task: WheelTask, driver_range: DriverRange
-) -> list[Ride]:
+) -> list[OneWayMotion]:
     """Over the stroke of a driver, forth in its sense and back: cut where the link turns back."""
     sense, curve = linkage.driver.sense, OutputCurve(linkage, solvers_towards(kernels, [task.link]), task.link)
     q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
@@ -210,21 +210,21 @@ def rides_there_and_back(
         __, runs = measure_runs(curve, places[:-1], np.diff(places))
         lengths = np.abs(np.diff(places))
         found += [
-            Ride(float(first), float(length), way, bool(run * wanted > 0))
+            OneWayMotion(float(first), float(length), way, bool(run * wanted > 0))
             for first, length, run in zip(places, lengths, runs, strict=False)
         ]
-    return _joined(found)
+    return _join_rests(found)
 
 
-def parts_of(
+def wheel_motions(
     linkage: Linkage,
     kernels: Sequence[GroupSolver],
     link: str,
-    rides: Sequence[Ride],
+    rides: Sequence[OneWayMotion],
     law: LawOfMotion,
     setting: int,
-    before: Sequence[Part],
-) -> list[Part]:
+    before: Sequence[WheelMotion],
+) -> list[WheelMotion]:
     """The wheel in the rides with one of the settings, after the parts before them.
 
     A driver that goes back is as fast at each place as it was on its way there.
@@ -238,32 +238,32 @@ def parts_of(
 
     found = []
     for ride in rides:
-        gone = np.linspace(0, ride.way, PLACES if ride.driven else 2)
+        gone = np.linspace(0, ride.way, MOTION_SAMPLES if ride.driven else 2)
         places, back = ride.start + ride.sense * gone, ride.sense * sense
         angles = omegas = epsilons = np.zeros(len(gone))
         omega = epsilon = 0.0
         if ride.driven:
             own = turning(places)
             angles, omegas, epsilons = np.unwrap(own.angle), back * own.omega, own.epsilon
-            omega = _largest(lambda q: np.abs(turning(q).omega), places)
-            epsilon = _largest(lambda q: np.abs(turning(q).epsilon), places)
+            omega = _largest_value(lambda q: np.abs(turning(q).omega), places)
+            epsilon = _largest_value(lambda q: np.abs(turning(q).epsilon), places)
         time = ride.way / rate if rate else float("nan")
         angles = angle + (angles - angles[0])
-        found.append(Part(ride, setting, time, way + gone, angles, omegas, epsilons, omega, epsilon))
+        found.append(WheelMotion(ride, setting, time, way + gone, angles, omegas, epsilons, omega, epsilon))
         way, angle = way + ride.way, float(angles[-1])
     return found
 
 
-def _joined(rides: Sequence[Ride]) -> list[Ride]:
+def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
     """Rides one after another in which the wheel stands, and the driver does not turn back, are one."""
-    found: list[Ride] = []
+    found: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):
         first, *others = group
-        found.append(Ride(first.start, first.way + sum(ride.way for ride in others), sense, driven))
+        found.append(OneWayMotion(first.start, first.way + sum(ride.way for ride in others), sense, driven))
     return found
 
 
-def _largest(size: Callable[[Real], Real], places: Real) -> float:
+def _largest_value(size: Callable[[Real], Real], places: Real) -> float:
     """The largest size over places close together, found between them."""
     values = size(places)
     if not bool(np.all(np.isfinite(values))):
@@ -279,30 +279,30 @@ def _largest(size: Callable[[Real], Real], places: Real) -> float:
 LawOf = Callable[[Linkage], LawOfMotion]  # how the driver of a linkage moves
 
 
-def intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> tuple[Intermittent, ...]:
+def compute_intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> tuple[IntermittentMotion, ...]:
     """All wheels of the file, from the driver's place `start` on. Raises NoCycleError, MissingStrokesError,
     SettingError.
     """
-    return tuple(_wheel(mechanism, task, start, law_of) for task in mechanism.inputs.wheels)
+    return tuple(_wheel_cycle(mechanism, task, start, law_of) for task in mechanism.inputs.wheels)
 
 
-def _wheel(mechanism: Mechanism, task: WheelTask, start: float, law_of: LawOf) -> Intermittent:
-    parts: list[Part] = []
+def _wheel_cycle(mechanism: Mechanism, task: WheelTask, start: float, law_of: LawOf) -> IntermittentMotion:
+    parts: list[WheelMotion] = []
     for number, setting in enumerate(task.settings):
         own, linkage = mechanism, setting.linkage
         try:
             if linkage is not None:
                 own = Mechanism(Inputs(linkage), analyse_mobile_structure(linkage))
-            rides = _rides(own, task, start)
-            parts += parts_of(own.linkage, own.kernels, task.link, rides, law_of(own.linkage), number, parts)
+            rides = _one_way_motions(own, task, start)
+            parts += wheel_motions(own.linkage, own.kernels, task.link, rides, law_of(own.linkage), number, parts)
         except LinkageError as error:
             if linkage is None:
                 raise
             raise SettingError(("intermittent", task.name, "settings", number), error) from None
-    return Intermittent(task, tuple(parts))
+    return IntermittentMotion(task, tuple(parts))
 
 
-def _rides(mechanism: Mechanism, task: WheelTask, start: float) -> list[Ride]:
+def _one_way_motions(mechanism: Mechanism, task: WheelTask, start: float) -> list[OneWayMotion]:
     linkage, driver_range, block = mechanism.linkage, mechanism.driver_range, ("intermittent", task.name)
     by_link = task.when in ("forward", "backward")
     if driver_range.full and driver_range.repeats:
@@ -311,9 +311,9 @@ def _rides(mechanism: Mechanism, task: WheelTask, start: float) -> list[Ride]:
             strokes = find_strokes(linkage, mechanism.kernels, driver_range, link=task.link)
         if strokes is None or not strokes.strokes:
             raise MissingStrokesError(task.link, (*block, "moves_with" if by_link else "when"))
-        return rides_of_turns(task, strokes, linkage.driver.sense, start)
+        return one_way_motions_of_rotation(task, strokes, linkage.driver.sense, start)
     if driver_range.full or not driver_range.inclusive or linkage.others:
         raise NoCycleError(block)
     if not by_link:
         raise MissingStrokesError(task.link, (*block, "when"))
-    return rides_there_and_back(linkage, mechanism.kernels, task, driver_range)
+    return one_way_motions_of_stroke(linkage, mechanism.kernels, task, driver_range)

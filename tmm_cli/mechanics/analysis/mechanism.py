@@ -42,7 +42,18 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.dynamics import BalancingTask, RunTask, SteadyTask
 
 
-PARTS = ("kernels", "driver_range", "asked", "dead", "output", "outputs", "strokes", "further", "travels", "pressure")
+CACHED_PARTS = (
+    "kernels",
+    "driver_range",
+    "asked",
+    "dead",
+    "output",
+    "outputs",
+    "strokes",
+    "further",
+    "travels",
+    "pressure",
+)
 
 
 @dataclass(frozen=True)
@@ -89,7 +100,7 @@ class Mechanism:
 
     def changed(self, **parts: Any) -> Mechanism:
         """The mechanism with other parts; those that are not given are as they were found."""
-        return self.known(**{name: getattr(self, name) for name in PARTS} | parts)
+        return self.known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
 
     @cached_property
     def kernels(self) -> tuple[GroupSolver, ...]:
@@ -208,7 +219,7 @@ class Mechanism:
 # The same linkage with another driver: its Assur groups are others then.
 
 
-def redriven(linkage: Linkage, link: str) -> Linkage:
+def with_driver(linkage: Linkage, link: str) -> Linkage:
     """Driven by a link on the frame instead of the first driver, in the assembly of the sketch.
 
     Where the linkage cannot be assembled with its own driver the new one's place in the sketch is not known; the
@@ -220,10 +231,10 @@ def redriven(linkage: Linkage, link: str) -> Linkage:
         on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
         raise NotOnFrameError(link, tuple(on_frame))
     driver = Driver(link, "turn" if pivots else "slide", (pivots or runs)[0], linkage.driver.rate)
-    return replace(linkage, driver=driver, sketch=_sketch(linkage, driver))
+    return replace(linkage, driver=driver, sketch=_sketch_for_driver(linkage, driver))
 
 
-def _sketch(linkage: Linkage, driver: Driver) -> Sketch:
+def _sketch_for_driver(linkage: Linkage, driver: Driver) -> Sketch:
     try:
         kernels = assemble(linkage, analyse_structure(linkage))
     except LinkageError:

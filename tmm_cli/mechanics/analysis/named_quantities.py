@@ -29,14 +29,14 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.mechanics.structure import Structure, output_link
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import Intermittent, WheelTask
+    from tmm_cli.mechanics.analysis.intermittent import IntermittentMotion, WheelTask
 
 
-Stage = Literal["structure", "places", "velocities", "accelerations", "forces", "balance"]
-STAGES: tuple[Stage, ...] = ("structure", "places", "velocities", "accelerations", "forces", "balance")
+QuantityStage = Literal["structure", "places", "velocities", "accelerations", "forces", "balance"]
+STAGES: tuple[QuantityStage, ...] = ("structure", "places", "velocities", "accelerations", "forces", "balance")
 
 
-class Solved(Protocol):
+class SolvedState(Protocol):
     """What quantities are read from: one linkage at its positions, or many variants at once."""
 
     @property
@@ -53,7 +53,7 @@ class Solved(Protocol):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class NamedQuantity:
     """A quantity of this linkage, by name.
 
     read: its values in SI, (positions) or (variants, positions), complex where it is a vector; (1) or (variants, 1)
@@ -65,15 +65,15 @@ class Quantity:
     """
 
     name: str
-    stage: Stage
+    stage: QuantityStage
     dimension: Dimension
-    read: Callable[[Solved], Any]
+    read: Callable[[SolvedState], Any]
     vector: bool = False
     whole: bool = False
     against: Literal["largest", "range", "angle", "exact"] = "largest"
     thing: str = ""
     on: str = ""
-    otherwise: Quantity | None = None
+    otherwise: NamedQuantity | None = None
 
     @property
     def order(self) -> int:
@@ -81,13 +81,13 @@ class Quantity:
         return STAGES.index(self.stage)
 
 
-Maker = Callable[["Linkage", "Structure"], "dict[str, Quantity]"]  # all quantities of a kind, by name
+QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  # all quantities of a kind, by name
 
 
 # What belongs to the mechanism as a whole: mobility, class, stroke or swing, coefficient of the mean speed.
 
 
-def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """W, class, numbers of links, pairs, passive constraints and strokes; H of an output (where it swings: the
     arc psi l of its first point), psi, k."""
     exact = {
@@ -99,38 +99,38 @@ def whole(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
         "passive": structure.redundant,
     }
     found = {
-        name: Quantity(name, "structure", NUMBER, _constant(value), whole=True, against="exact")
+        name: NamedQuantity(name, "structure", NUMBER, _read_constant(value), whole=True, against="exact")
         for name, value in exact.items()
     }
     output = output_link(linkage, structure.groups)
     slides = output is not None and linkage.slides_on_frame(output)
     name, dimension = ("H", LENGTH) if slides else ("psi", ANGLE)
-    found[name] = Quantity(name, "places", dimension, _travel, whole=True)
+    found[name] = NamedQuantity(name, "places", dimension, _read_stroke, whole=True)
     if output is not None and not slides and linkage.output_arm(output) is not None:
-        found["H"] = Quantity("H", "places", LENGTH, partial(_arc, output), whole=True)
-    found["strokes"] = Quantity("strokes", "places", NUMBER, _number, whole=True, against="exact")
-    found["k"] = Quantity("k", "places", NUMBER, _k, whole=True)
+        found["H"] = NamedQuantity("H", "places", LENGTH, partial(_read_arc, output), whole=True)
+    found["strokes"] = NamedQuantity("strokes", "places", NUMBER, _read_stroke_count, whole=True, against="exact")
+    found["k"] = NamedQuantity("k", "places", NUMBER, _read_time_ratio, whole=True)
     return found
 
 
-def _constant(value: int) -> Any:
+def _read_constant(value: int) -> Any:
     return lambda solution: np.array([float(value)])
 
 
-def _travel(solution: Solved) -> Any:
+def _read_stroke(solution: SolvedState) -> Any:
     strokes = solution.strokes
     if strokes is None or not strokes.strokes:
         return np.array([np.nan])
     return np.abs(strokes.strokes[0].run) + np.zeros(1)
 
 
-def _arc(output: str, solution: Solved) -> Any:
+def _read_arc(output: str, solution: SolvedState) -> Any:
     """H = psi l of an output that swings, m."""
     arm = solution.linkage.output_arm(output)
-    return _travel(solution) * (np.nan if arm is None else arm[1])
+    return _read_stroke(solution) * (np.nan if arm is None else arm[1])
 
 
-def _k(solution: Solved) -> Any:
+def _read_time_ratio(solution: SolvedState) -> Any:
     strokes = solution.strokes
     if strokes is None or len(strokes.strokes) < 2:
         return np.array([np.nan])
@@ -138,7 +138,7 @@ def _k(solution: Solved) -> Any:
     return np.asarray(working / idle) + np.zeros(1)
 
 
-def _number(solution: Solved) -> Any:
+def _read_stroke_count(solution: SolvedState) -> Any:
     strokes = solution.strokes
     return np.array([float("nan") if strokes is None else float(len(strokes.strokes))])
 
@@ -146,74 +146,99 @@ def _number(solution: Solved) -> Any:
 # Places, velocities and accelerations of points, links and sliding pairs.
 
 
-def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in sliding pairs."""
-    found: dict[str, Quantity] = {}
+    found: dict[str, NamedQuantity] = {}
 
-    def put(quantity: Quantity) -> None:
+    def put(quantity: NamedQuantity) -> None:
         found[quantity.name] = quantity
 
     for point, place in {**named_points(linkage), **mass_centres(linkage)}.items():
         put(
-            Quantity(
+            NamedQuantity(
                 f"x of {point}",
                 "places",
                 LENGTH,
-                partial(_coordinate, point, place, "real"),
+                partial(_read_coordinate, point, place, "real"),
                 against="range",
                 thing=point,
             )
         )
         put(
-            Quantity(
+            NamedQuantity(
                 f"y of {point}",
                 "places",
                 LENGTH,
-                partial(_coordinate, point, place, "imag"),
+                partial(_read_coordinate, point, place, "imag"),
                 against="range",
                 thing=point,
             )
         )
-        put(Quantity(f"v of {point}", "velocities", SPEED, partial(_point, point, place, "v"), True, thing=point))
         put(
-            Quantity(
-                f"a of {point}", "accelerations", ACCELERATION, partial(_point, point, place, "a"), True, thing=point
+            NamedQuantity(
+                f"v of {point}", "velocities", SPEED, partial(_read_point, point, place, "v"), True, thing=point
+            )
+        )
+        put(
+            NamedQuantity(
+                f"a of {point}",
+                "accelerations",
+                ACCELERATION,
+                partial(_read_point, point, place, "a"),
+                True,
+                thing=point,
             )
         )
     for link in linkage.moving:
-        put(Quantity(f"phi of {link}", "places", ANGLE, partial(_link, link, "angle"), against="angle", thing=link))
-        put(Quantity(f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_link, link, "omega"), thing=link))
         put(
-            Quantity(
-                f"epsilon of {link}", "accelerations", ANGULAR_ACCELERATION, partial(_link, link, "epsilon"), thing=link
+            NamedQuantity(
+                f"phi of {link}", "places", ANGLE, partial(_read_link, link, "angle"), against="angle", thing=link
+            )
+        )
+        put(
+            NamedQuantity(
+                f"omega of {link}", "velocities", ANGULAR_SPEED, partial(_read_link, link, "omega"), thing=link
+            )
+        )
+        put(
+            NamedQuantity(
+                f"epsilon of {link}",
+                "accelerations",
+                ANGULAR_ACCELERATION,
+                partial(_read_link, link, "epsilon"),
+                thing=link,
             )
         )
         if linkage.slides_on_frame(link) or linkage.hinged_to_frame(link):
             slides = linkage.slides_on_frame(link)
             put(
-                Quantity(
+                NamedQuantity(
                     f"s of {link}",
                     "places",
                     coordinate_dimension("slide" if slides else "turn"),
-                    partial(_run, link),
+                    partial(_read_run, link),
                     against="range" if slides else "angle",
                     thing=link,
                 )
             )
     for slide in linkage.slides:
         name = f"{slide.runner} on {slide.carrier}"
-        put(Quantity(f"v of {name}", "velocities", SPEED, partial(_slide, slide.name, "v"), thing=slide.runner))
         put(
-            Quantity(
-                f"a of {name}", "accelerations", ACCELERATION, partial(_slide, slide.name, "a"), thing=slide.runner
+            NamedQuantity(
+                f"v of {name}", "velocities", SPEED, partial(_read_slide, slide.name, "v"), thing=slide.runner
             )
         )
         put(
-            Quantity(
+            NamedQuantity(
+                f"a of {name}", "accelerations", ACCELERATION, partial(_read_slide, slide.name, "a"), thing=slide.runner
+            )
+        )
+        put(
+            NamedQuantity(
                 f"Coriolis of {name}",
                 "accelerations",
                 ACCELERATION,
-                partial(_slide, slide.name, "coriolis"),
+                partial(_read_slide, slide.name, "coriolis"),
                 True,
                 thing=slide.runner,
             )
@@ -221,22 +246,22 @@ def motion(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
     return found
 
 
-def relative_angles(linkage: Linkage) -> dict[str, Quantity]:
+def relative_angles(linkage: Linkage) -> dict[str, NamedQuantity]:
     """`phi of 5 on 4`: rotation of a link relative to another one that moves and is hinged to it, rad."""
     found = {}
     for hinge in linkage.hinges:
         for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
             name = f"phi of {link} on {base}"
-            read = partial(_relative_angle, link, base)
-            found[name] = Quantity(name, "places", ANGLE, read, against="angle", thing=link)
+            read = partial(_read_relative_angle, link, base)
+            found[name] = NamedQuantity(name, "places", ANGLE, read, against="angle", thing=link)
     return found
 
 
-def _relative_angle(link: str, base: str, solution: Solved) -> Any:
+def _read_relative_angle(link: str, base: str, solution: SolvedState) -> Any:
     return solution.motion.link(link).angle - solution.motion.link(base).angle
 
 
-def _point(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
+def _read_point(point: str, place: tuple[str, complex], part: str, solution: SolvedState) -> Any:
     link = place[0]
     motion = solution.motion
     if point in motion.linkage.links[link].points:
@@ -244,19 +269,19 @@ def _point(point: str, place: tuple[str, complex], part: str, solution: Solved) 
     return getattr(motion.centre(link), part)
 
 
-def _coordinate(point: str, place: tuple[str, complex], part: str, solution: Solved) -> Any:
-    return getattr(_point(point, place, "x", solution), part)
+def _read_coordinate(point: str, place: tuple[str, complex], part: str, solution: SolvedState) -> Any:
+    return getattr(_read_point(point, place, "x", solution), part)
 
 
-def _link(link: str, part: str, solution: Solved) -> Any:
+def _read_link(link: str, part: str, solution: SolvedState) -> Any:
     return getattr(solution.motion.link(link), part)
 
 
-def _run(link: str, solution: Solved) -> Any:
+def _read_run(link: str, solution: SolvedState) -> Any:
     return output_run(solution.motion, link)[0]
 
 
-def _slide(name: str, part: str, solution: Solved) -> Any:
+def _read_slide(name: str, part: str, solution: SolvedState) -> Any:
     return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), part))
 
 
@@ -266,45 +291,61 @@ def _slide(name: str, part: str, solution: Solved) -> Any:
 NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be drawn
 
 
-def forces(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """U3 and M3 of inertia; R_34, the force of link 3 on link 4; R_A, the whole pin of a compound hinge; M_b or F_b."""
-    found: dict[str, Quantity] = {}
+    found: dict[str, NamedQuantity] = {}
 
-    def put(quantity: Quantity) -> None:
+    def put(quantity: NamedQuantity) -> None:
         found.setdefault(quantity.name, quantity)
 
     for name in linkage.moving:
         link = linkage.links[name]
         if np.any(link.mass != 0):
-            put(Quantity(f"U of {name}", "forces", FORCE, partial(_inertia, name, "force"), True, thing=name))
+            put(NamedQuantity(f"U of {name}", "forces", FORCE, partial(_read_inertia, name, "force"), True, thing=name))
         if np.any(link.inertia != 0):
-            put(Quantity(f"M of {name}", "forces", MOMENT, partial(_inertia, name, "moment"), thing=name))
+            put(NamedQuantity(f"M of {name}", "forces", MOMENT, partial(_read_inertia, name, "moment"), thing=name))
     common_links = _common_links(linkage, structure)
     for pair in structure.pairs:
         alone = sum({other.i, other.j} == {pair.i, pair.j} for other in structure.pairs) == 1
         for by, on in ((pair.i, pair.j), (pair.j, pair.i)):
             called = _reaction_name(by, on) if alone else f"{_reaction_name(by, on)} in {pair.name}"
-            force = Quantity(called, "forces", FORCE, partial(_reaction, pair.name, on), True, thing=pair.name, on=on)
+            force = NamedQuantity(
+                called, "forces", FORCE, partial(_read_reaction, pair.name, on), True, thing=pair.name, on=on
+            )
             if pair.point in common_links and pair.kind == "R":
                 common = common_links[pair.point]
-                read = partial(_pin_force, pair.point, common, 1 if on == common else -1)
+                read = partial(_read_pin_force, pair.point, common, 1 if on == common else -1)
                 force = replace(force, otherwise=replace(force, read=read))
             put(force)
             if pair.slide is not None:
-                put(Quantity(f"arm of {called}", "forces", LENGTH, partial(_arm, pair.name), thing=pair.name))
+                put(NamedQuantity(f"arm of {called}", "forces", LENGTH, partial(_read_arm, pair.name), thing=pair.name))
     for hinge in linkage.hinges:
         if hinge.point in common_links:
             common = common_links[hinge.point]
-            put(Quantity(f"R_{hinge.point}", "forces", FORCE, partial(_pin_force, hinge.point, common, -1), True))
+            put(
+                NamedQuantity(
+                    f"R_{hinge.point}", "forces", FORCE, partial(_read_pin_force, hinge.point, common, -1), True
+                )
+            )
             for by, on in permutations([link for link in hinge.links if link != common], 2):
-                force = Quantity(_reaction_name(by, on), "forces", FORCE, partial(_pin_force, hinge.point, on, 1), True)
-                put(replace(force, otherwise=replace(force, read=partial(_pin_force, hinge.point, by, -1))))
+                force = NamedQuantity(
+                    _reaction_name(by, on), "forces", FORCE, partial(_read_pin_force, hinge.point, on, 1), True
+                )
+                put(replace(force, otherwise=replace(force, read=partial(_read_pin_force, hinge.point, by, -1))))
     for driver in linkage.drivers:
         own = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
         if driver.kind == "turn":
-            put(Quantity(f"M_b{own}", "balance", MOMENT, partial(_balance, driver.link, "moment"), thing=driver.link))
+            put(
+                NamedQuantity(
+                    f"M_b{own}", "balance", MOMENT, partial(_read_balance, driver.link, "moment"), thing=driver.link
+                )
+            )
         if driver.kind == "slide" or driver.base == FRAME:
-            put(Quantity(f"F_b{own}", "balance", FORCE, partial(_balance, driver.link, "force"), thing=driver.link))
+            put(
+                NamedQuantity(
+                    f"F_b{own}", "balance", FORCE, partial(_read_balance, driver.link, "force"), thing=driver.link
+                )
+            )
     return found
 
 
@@ -322,20 +363,20 @@ def _reaction_name(by: str, on: str) -> str:
     return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
 
 
-def _pin_force(point: str, link: str, sense: int, solution: Solved) -> Any:
+def _read_pin_force(point: str, link: str, sense: int, solution: SolvedState) -> Any:
     """The force of the pin of a compound hinge on one of its links, or its opposite."""
     return sense * solution.reactions.pin_force(point, link)
 
 
-def _inertia(link: str, part: str, solution: Solved) -> Any:
+def _read_inertia(link: str, part: str, solution: SolvedState) -> Any:
     return next(getattr(x, part) for x in solution.reactions.applied if x.link == link and x.kind == "inertia")
 
 
-def _reaction(pair: str, on: str, solution: Solved) -> Any:
+def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
     return solution.reactions.of(pair).onto(on)
 
 
-def _arm(pair: str, solution: Solved) -> Any:
+def _read_arm(pair: str, solution: SolvedState) -> Any:
     """Where a guide's force acts, along the guide from its running point; nothing where the force is nearly zero."""
     reaction = solution.reactions.of(pair)
     size = np.abs(reaction.force)
@@ -343,15 +384,15 @@ def _arm(pair: str, solution: Solved) -> Any:
     return np.where(size > NEARLY_ZERO * np.max(size, axis=-1, keepdims=True), reaction.arm, np.nan)
 
 
-def _balance(link: str, part: str, solution: Solved) -> Any:
+def _read_balance(link: str, part: str, solution: SolvedState) -> Any:
     return next(getattr(balance, part) for balance in solution.reactions.balances if balance.driver.link == link)
 
 
 # What a wheel of the block intermittent makes of the mechanism's motion.
 
 
-Reader = Callable[["Intermittent"], float]
-OF_WHEELS: tuple[tuple[str, Dimension, Reader], ...] = (
+WheelReader = Callable[["IntermittentMotion"], float]
+WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
     ("turn", ANGLE, lambda wheel: abs(wheel.turn)),
     ("standing", NUMBER, lambda wheel: wheel.standing),
     ("cycles", NUMBER, lambda wheel: np.nan if wheel.cycles is None else wheel.cycles),
@@ -361,31 +402,31 @@ OF_WHEELS: tuple[tuple[str, Dimension, Reader], ...] = (
 )
 
 
-def of_wheels(tasks: Iterable[WheelTask]) -> dict[str, Quantity]:
+def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
     """Sizes of a wheel's turn in a cycle and of each step; share of standing, cycles to whole turns, speeds."""
     found = []
     for number, task in enumerate(tasks):
-        for name, dimension, of in OF_WHEELS:
-            found.append((f"{name} of {task.name}", dimension, partial(_read, number, of)))
+        for name, dimension, of in WHEEL_READERS:
+            found.append((f"{name} of {task.name}", dimension, partial(_read_wheel, number, of)))
         for k in range(len(task.settings)):
-            found.append((f"step {k + 1} of {task.name}", ANGLE, partial(_read, number, partial(_step, k))))
-    return {name: Quantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in found}
+            found.append((f"step {k + 1} of {task.name}", ANGLE, partial(_read_wheel, number, partial(_step_angle, k))))
+    return {name: NamedQuantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in found}
 
 
-def _read(number: int, of: Reader, results: Any) -> Any:
+def _read_wheel(number: int, of: WheelReader, results: Any) -> Any:
     return np.array([float(of(results.wheels[number]))])
 
 
-def _step(setting: int, wheel: Intermittent) -> float:
+def _step_angle(setting: int, wheel: IntermittentMotion) -> float:
     return abs(wheel.of_setting(setting))
 
 
 # All quantities by name: what students may be asked, what a file shows. A further kind: a file, a word in KINDS.
 
 
-KINDS: tuple[Maker, ...] = (whole, motion, forces)
+QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quantities, force_quantities)
 
 
-def quantities(linkage: Linkage, structure: Structure) -> dict[str, Quantity]:
+def list_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """All quantities of a linkage by name, in the order of the kinds."""
-    return {name: quantity for kind in KINDS for name, quantity in kind(linkage, structure).items()}
+    return {name: quantity for kind in QUANTITY_MAKERS for name, quantity in kind(linkage, structure).items()}

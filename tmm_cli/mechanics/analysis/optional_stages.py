@@ -12,45 +12,52 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.intermittent import Intermittent
-    from tmm_cli.mechanics.dynamics import Balancing, BalancingTask, Running, RunTask, SingleRun, SteadyTask
+    from tmm_cli.mechanics.analysis.intermittent import IntermittentMotion
+    from tmm_cli.mechanics.dynamics import (
+        BalancingResults,
+        BalancingTask,
+        RunTask,
+        SingleRun,
+        SteadyRunning,
+        SteadyTask,
+    )
 
 
 def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
     """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
     driver = linkage.driver
     if driver.law is not None:
-        from tmm_cli.mechanics.dynamics import LawByTable
+        from tmm_cli.mechanics.dynamics import SpeedTableLaw
 
-        return LawByTable(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
+        return SpeedTableLaw(driver.law, start, driver.sense, 2 * np.pi * linkage.turns)
     at = linkage.sketch.at if linkage.others else start
     return DriverMotion(at, driver.rate, driver.acceleration, driver.sense)
 
 
-def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> Running | SingleRun:
+def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> SteadyRunning | SingleRun:
     """From position 0 on. Raises what `running` and `single_run` raise."""
     if task.cyclic:
-        from tmm_cli.mechanics.dynamics import running
+        from tmm_cli.mechanics.dynamics import find_running_law
 
-        return running(mechanism, float(mechanism.asked[0]), task)
+        return find_running_law(mechanism, float(mechanism.asked[0]), task)
 
     from tmm_cli.mechanics.dynamics import compute_single_run
 
     return compute_single_run(mechanism, mechanism.asked, task)
 
 
-def balancing(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balancing:
+def balancing_stage(mechanism: Mechanism, q: Real, task: BalancingTask) -> BalancingResults:
     """Over the cycle from position 0 on, and at places of the driver. Raises what `analysis.balancing` raises."""
     from tmm_cli.mechanics.dynamics import balance_machine as found
 
     return found(mechanism, float(mechanism.asked[0]), q, task)
 
 
-def intermittent(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[Intermittent, ...]:
+def intermittent_stage(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[IntermittentMotion, ...]:
     """Wheels over a cycle from position 0 on; running: a law of motion that was found, which then holds with every
     setting. Raises what `analysis.intermittent` raises.
     """
-    from tmm_cli.mechanics.analysis.intermittent import intermittent as found
+    from tmm_cli.mechanics.analysis.intermittent import compute_intermittent as found
 
     start = float(mechanism.asked[0])
     return found(mechanism, start, lambda linkage: driver_motion(linkage, start) if running is None else running)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from tmm_cli.mechanics.analysis.mechanism import Inputs, Mechanism
-from tmm_cli.mechanics.analysis.optional_stages import balancing, driver_motion, intermittent, law_of_motion
-from tmm_cli.mechanics.analysis.selection import carriers, check
+from tmm_cli.mechanics.analysis.optional_stages import balancing_stage, driver_motion, intermittent_stage, law_of_motion
+from tmm_cli.mechanics.analysis.selection import carrying_links, refuse_unknown_names
 from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import (
     MissingStrokesError,
@@ -26,20 +26,20 @@ from tmm_cli.mechanics.errors import (
     UnknownPositionError,
 )
 from tmm_cli.mechanics.forces import (
-    Applied,
+    AppliedLoad,
     Energy,
+    FrictionLosses,
     FrictionSolution,
-    Lever,
-    Losses,
     Reactions,
-    applied,
+    ZhukovskyLever,
+    collect_loads,
     compute_energy,
     compute_lever,
+    compute_losses,
     find_locked_ranges,
-    losses,
-    power,
-    react,
+    reduced_driving_moment,
     solve_friction,
+    solve_reactions,
 )
 from tmm_cli.mechanics.groups import GroupSolver, LawOfMotion, solvers_towards
 from tmm_cli.mechanics.kinematics import (
@@ -60,14 +60,14 @@ from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, Real, to_double_dou
 from tmm_cli.mechanics.structure import Structure
 
 if TYPE_CHECKING:
-    from tmm_cli.mechanics.analysis.extremes import Extreme
-    from tmm_cli.mechanics.analysis.intermittent import Intermittent
+    from tmm_cli.mechanics.analysis.extremes import QuantityExtreme
+    from tmm_cli.mechanics.analysis.intermittent import IntermittentMotion
     from tmm_cli.mechanics.assembly import Assemblies
-    from tmm_cli.mechanics.dynamics import Balancing, Running, SingleRun
+    from tmm_cli.mechanics.dynamics import BalancingResults, SingleRun, SteadyRunning
     from tmm_cli.mechanics.kinematics import InstantCentre
 
 
-def near_dead(motion: Motion) -> Real:
+def is_near_dead(motion: Motion) -> Real:
     """Positions where a group is so near to a dead position that float64 blurs its motion, but not in it."""
     near = np.zeros(np.shape(motion.q), dtype=bool)
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -75,7 +75,7 @@ def near_dead(motion: Motion) -> Real:
     return near & motion.moving
 
 
-def refined(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
+def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
     """A motion with some of its positions taken from that of the same linkage with numbers in double-doubles.
 
     q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.
@@ -89,14 +89,14 @@ def refined(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: 
 # What loads, positions and tables of a file rest on: refused where it is not there, not quietly done without.
 
 
-def refuse_unmet(mechanism: Mechanism) -> None:
+def refuse_missing_data(mechanism: Mechanism) -> None:
     """Raises MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedsEndError."""
-    _need_strokes(mechanism)
-    _need_rows(mechanism)
-    _need_speeds(mechanism)
+    _refuse_missing_strokes(mechanism)
+    _refuse_long_load_tables(mechanism)
+    _refuse_short_speed_table(mechanism)
 
 
-def _need_strokes(mechanism: Mechanism) -> None:
+def _refuse_missing_strokes(mechanism: Mechanism) -> None:
     """Strokes of the output, of which positions are counted, or in which loads act."""
     request, driver_range = mechanism.inputs.request, mechanism.driver_range
     loads = [x for x in mechanism.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
@@ -117,7 +117,7 @@ def _need_strokes(mechanism: Mechanism) -> None:
                 raise MissingStrokesError(own.link if own else None, path, limits)
 
 
-def _need_rows(mechanism: Mechanism) -> None:
+def _refuse_long_load_tables(mechanism: Mechanism) -> None:
     """A crank that comes to all rows of a load's table, rather than a table that is quietly cut."""
     turns = mechanism.linkage.turns
     if turns > 1 and not mechanism.driver_range.full:
@@ -133,7 +133,7 @@ def _need_rows(mechanism: Mechanism) -> None:
                 raise TableBeyondCycleError(path, float(argument), cycle)
 
 
-def _need_speeds(mechanism: Mechanism) -> None:
+def _refuse_short_speed_table(mechanism: Mechanism) -> None:
     """A table of the driver's speeds that reaches over all positions."""
     law, asked = mechanism.linkage.driver.law, mechanism.asked
     if law is None:
@@ -153,7 +153,7 @@ def _need_speeds(mechanism: Mechanism) -> None:
 # Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
 
 
-CYCLE = 720  # places over which losses are summed up
+CYCLE_SAMPLES = 720  # places over which losses are summed up
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -173,18 +173,18 @@ class Results:
     mechanism: Mechanism
     numbers: tuple[int, ...] = ()
     motion: Motion | None = None
-    loads: tuple[Applied, ...] = ()
+    loads: tuple[AppliedLoad, ...] = ()
     reactions: Reactions | None = None
-    lever: Lever | None = None
+    lever: ZhukovskyLever | None = None
     friction: FrictionSolution | None = None
-    losses: Losses | None = None
+    losses: FrictionLosses | None = None
     energy: Energy | None = None
-    running: Running | SingleRun | None = None
-    balancing: Balancing | None = None
-    wheels: tuple[Intermittent, ...] | None = None
+    running: SteadyRunning | SingleRun | None = None
+    balancing: BalancingResults | None = None
+    wheels: tuple[IntermittentMotion, ...] | None = None
     assemblies: tuple[Assemblies, ...] | None = None
     centres: Mapping[int, Sequence[InstantCentre]] | None = None
-    extremes: tuple[Extreme, ...] | None = None
+    extremes: tuple[QuantityExtreme, ...] | None = None
     of: tuple[str, ...] = ()
     problem: Any = None
 
@@ -276,7 +276,7 @@ class Results:
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
-    def steady(self) -> Running | None:
+    def steady(self) -> SteadyRunning | None:
         """Steady running, where that is asked for."""
         return self.running if self.running is not None and self.running.task.cyclic else None
 
@@ -319,37 +319,37 @@ def solve(
         return results
     kernels = results.mechanism.kernels
     if of:
-        check(inputs.linkage, of)
-        kernels = solvers_towards(kernels, carriers(inputs.linkage, kernels, of))
-    refuse_unmet(results.mechanism)
+        refuse_unknown_names(inputs.linkage, of)
+        kernels = solvers_towards(kernels, carrying_links(inputs.linkage, kernels, of))
+    refuse_missing_data(results.mechanism)
     if inputs.dynamics is not None:
         results = replace(results, running=law_of_motion(results.mechanism, inputs.dynamics))
     numbers = tuple(range(len(results.asked))) if positions is None else tuple(positions)
     for number in numbers:
         if not 0 <= number < len(results.asked):
             raise UnknownPositionError(number, len(results.asked))
-    results = replace(results, numbers=numbers, motion=_moved(results, kernels, numbers))
+    results = replace(results, numbers=numbers, motion=_solve_motion(results, kernels, numbers))
     if inputs.wheels and not of:
-        results = replace(results, wheels=intermittent(results.mechanism, results.running))
+        results = replace(results, wheels=intermittent_stage(results.mechanism, results.running))
     if stage == "kinematics":
         return results
     results = with_forces(results)
     if inputs.balancing is None or results.motion is None:
         return results
-    return replace(results, balancing=balancing(results.mechanism, results.motion.q, inputs.balancing))
+    return replace(results, balancing=balancing_stage(results.mechanism, results.motion.q, inputs.balancing))
 
 
-def _moved(results: Results, kernels: tuple[GroupSolver, ...], numbers: tuple[int, ...]) -> Motion:
+def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: tuple[int, ...]) -> Motion:
     """The motion, its positions near dead ones in extended precision where the machine has it."""
     law = results.law
     motion = compute_motion(results.linkage, kernels, results.asked[list(numbers)], law)
-    where = near_dead(motion)
+    where = is_near_dead(motion)
     if results.inputs.extended is None or not np.any(where):
         return fill_in_limits(motion)
     exact = results.inputs.extended()
     asked: Any = exact.request.places
     asked = np.stack(asked) if asked else to_double_double(results.asked)
-    return fill_in_limits(refined(motion, exact.linkage, asked[list(numbers)][where], law, where))
+    return fill_in_limits(refine_near_dead(motion, exact.linkage, asked[list(numbers)][where], law, where))
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
@@ -357,22 +357,22 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     motion = results.motion
     assert motion is not None
     strokes = results.strokes if results.linkage.by_strokes else None
-    loads = applied(motion, strokes)
+    loads = collect_loads(motion, strokes)
     bare = motion if motion.bare is None else motion.bare  # reactions have no limits in change points
-    reactions = react(bare, results.structure, loads if motion.bare is None else applied(bare, strokes))
+    reactions = solve_reactions(bare, results.structure, loads if motion.bare is None else collect_loads(bare, strokes))
     reactions = replace(reactions, applied=loads)
     if motion.finer is not None and motion.where is not None:
-        exact = applied(motion.finer, strokes)
+        exact = collect_loads(motion.finer, strokes)
         structure = results.structure.rebind(motion.finer.linkage)
         loads = splice_positions(loads, exact, motion.where)
-        reactions = splice_positions(reactions, react(motion.finer, structure, exact), motion.where)
+        reactions = splice_positions(reactions, solve_reactions(motion.finer, structure, exact), motion.where)
     rubbed, lost = None, None
     if results.linkage.friction:
         rubbed = solve_friction(bare, results.structure, loads, reactions)
         loads, reactions = rubbed.loads, rubbed.reactions
         if cycle:
             lost = cycle_losses(results)
-    drivers = power(motion, reactions)
+    drivers = reduced_driving_moment(motion, reactions)
     return replace(
         results,
         loads=loads,
@@ -384,11 +384,11 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     )
 
 
-def cycle_losses(results: Results, places: int = CYCLE, *, ranges: bool = True) -> Losses:
+def cycle_losses(results: Results, places: int = CYCLE_SAMPLES, *, ranges: bool = True) -> FrictionLosses:
     """What friction takes over the cycle, summed up over so many places; ranges: with those in which it locks."""
-    whole = at_positions(results, results.closely(places + 1))
-    rubbed = _friction_at(results, whole)
-    found = losses(rubbed, whole)
+    whole = motion_at_positions(results, results.closely(places + 1))
+    rubbed = _solve_friction_at(results, whole)
+    found = compute_losses(rubbed, whole)
     if not found.locked or not ranges:
         return found
     q = whole.q
@@ -397,22 +397,22 @@ def cycle_losses(results: Results, places: int = CYCLE, *, ranges: bool = True) 
         rubbed = replace(rubbed, locked=rubbed.locked[::-1], pair=rubbed.pair[::-1])
 
     def locked_at(q: Real) -> Real:
-        return _friction_at(results, at_positions(results, q)).locked
+        return _solve_friction_at(results, motion_at_positions(results, q)).locked
 
     return replace(found, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
 
 
-def _friction_at(results: Results, motion: Motion) -> FrictionSolution:
-    acting = applied(motion, results.strokes)
-    return solve_friction(motion, results.structure, acting, react(motion, results.structure, acting))
+def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:
+    acting = collect_loads(motion, results.strokes)
+    return solve_friction(motion, results.structure, acting, solve_reactions(motion, results.structure, acting))
 
 
-def at_positions(results: Results, q: Real, order: int = 2) -> Motion:
+def motion_at_positions(results: Results, q: Real, order: int = 2) -> Motion:
     """The same motion at other places of the driver (trajectories)."""
     return fill_in_limits(compute_motion(results.linkage, results.kernels, q, results.law, order))
 
 
-def at_places(results: Results, q: Real) -> Results:
+def results_at(results: Results, q: Real) -> Results:
     """The same results at other places of the driver (diagrams); with forces if they have them."""
-    moved = replace(results, motion=at_positions(results, q), numbers=tuple(range(len(q))))
+    moved = replace(results, motion=motion_at_positions(results, q), numbers=tuple(range(len(q))))
     return moved if results.reactions is None else with_forces(moved, cycle=False)

@@ -14,10 +14,10 @@ from tmm_cli.mechanics.kinematics import Motion, PointMotion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import BALANCING, LINK, POINT, REACTION, Quantity
 
-Place = tuple[str, complex]  # a link and a place in its axes, m
+PointOnLink = tuple[str, complex]  # a link and a place in its axes, m
 
 
-def named_points(linkage: Linkage) -> dict[str, Place]:
+def named_points(linkage: Linkage) -> dict[str, PointOnLink]:
     """Every named point of a moving link, once, with its link and place on it."""
     return {
         point: (link, local)
@@ -27,13 +27,13 @@ def named_points(linkage: Linkage) -> dict[str, Place]:
     }
 
 
-def mass_centres(linkage: Linkage) -> dict[str, Place]:
+def mass_centres(linkage: Linkage) -> dict[str, PointOnLink]:
     """Centres of mass of the links that have one, named S3 after the link."""
     links = linkage.links
     return {f"S{name}": (name, links[name].centre) for name in linkage.moving if np.any(links[name].mass != 0)}
 
 
-def check(linkage: Linkage, names: Sequence[str]) -> None:
+def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
     """Raises UnknownNameError."""
     known = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
     for name in names:
@@ -41,10 +41,10 @@ def check(linkage: Linkage, names: Sequence[str]) -> None:
             raise UnknownNameError(name, tuple(known))
 
 
-def places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, Place]:
+def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, PointOnLink]:
     """The points and centres of mass among the names; a point on the link that takes the fewest groups to reach."""
     points, centres = named_points(linkage), mass_centres(linkage)
-    found: dict[str, Place] = {}
+    found: dict[str, PointOnLink] = {}
     for name in names:
         if name in points:
             link = min(
@@ -71,7 +71,7 @@ def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) 
     return {name: motion.centre(known[name][0]) for name in chosen if name in known}
 
 
-def links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
+def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
     """The links among the names, in the order of the file; a point of the same name comes first. All without names."""
     points = {**named_points(linkage), **mass_centres(linkage)}
     if not names:
@@ -79,12 +79,14 @@ def links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(link for link in linkage.moving if link in names and link not in points)
 
 
-def carriers(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
+def carrying_links(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
     """All links that must be placed for what is asked."""
-    return {link for link, _ in places(linkage, kernels, names).values()} | set(links(linkage, names))
+    return {link for link, _ in point_places(linkage, kernels, names).values()} | set(select_links(linkage, names))
 
 
-def values(motion: Motion, reactions: Reactions | None, *, first: bool = False) -> Iterator[tuple[Quantity, str, Any]]:
+def leading_values(
+    motion: Motion, reactions: Reactions | None, *, first: bool = False
+) -> Iterator[tuple[Quantity, str, Any]]:
     """The leading quantities of named points, centres of mass, links, pairs and drivers: which, of what, its values.
 
     first: a point of several links is taken as one of the first of them, not of the one on which least is lost (which
@@ -94,17 +96,17 @@ def values(motion: Motion, reactions: Reactions | None, *, first: bool = False) 
     for name in linkage.moving:
         points = [point for point in linkage.links[name].points if point not in told]
         told.update(points)
-        yield from _leading(LINK, name, motion.link(name))
+        yield from _leading_of(LINK, name, motion.link(name))
         for point in points:
-            yield from _leading(POINT, point, motion.named_on(name, point) if first else motion.named(point))
-        yield from _leading(POINT, f"S{name}", motion.centre(name))
+            yield from _leading_of(POINT, point, motion.named_on(name, point) if first else motion.named(point))
+        yield from _leading_of(POINT, f"S{name}", motion.centre(name))
     for reaction in reactions.all if reactions is not None else ():
-        yield from _leading(REACTION, reaction.pair.name, reaction)
+        yield from _leading_of(REACTION, reaction.pair.name, reaction)
     for balance in reactions.balances if reactions is not None else ():
-        yield from _leading((BALANCING,), balance.driver.link, balance)
+        yield from _leading_of((BALANCING,), balance.driver.link, balance)
 
 
-def _leading(quantities: Iterable[Quantity], name: str, record: Any) -> Iterator[tuple[Quantity, str, Any]]:
+def _leading_of(quantities: Iterable[Quantity], name: str, record: Any) -> Iterator[tuple[Quantity, str, Any]]:
     for quantity in quantities:
         if quantity.leading and quantity.there(record):
             yield quantity, name, quantity.value(record)

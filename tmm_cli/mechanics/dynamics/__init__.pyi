@@ -1,34 +1,40 @@
 """The law of motion: what drives the machine, the flywheel, balancing."""
 
 from .balancing import (
-    Balanced as Balanced,
-    Balancing as Balancing,
+    BalancedCycle as BalancedCycle,
+    BalancingResults as BalancingResults,
     BalancingTask as BalancingTask,
-    Counterweight as Counterweight,
-    Place as Place,
-    Plane as Plane,
-    Rotor as Rotor,
+    CorrectionPlane as CorrectionPlane,
+    CounterweightPlace as CounterweightPlace,
+    CounterweightSolution as CounterweightSolution,
+    UnbalancedShaft as UnbalancedShaft,
+    balance_cycle as balance_cycle,
     balance_machine as balance_machine,
-    balanced as balanced,
-    shaking as shaking,
-    steadily as steadily,
+    compute_shaking as compute_shaking,
+    constant_speed_motion as constant_speed_motion,
 )
 from .flywheel import Tangent as Tangent
-from .laws_of_motion import Cycle as Cycle, LawByTable as LawByTable
-from .motors import Kloss as Kloss, Linear as Linear, Motor as Motor
-from .reduced_model import Curve as Curve, fitted as fitted, reduce_machine as reduce_machine
+from .laws_of_motion import MotorCycle as MotorCycle, SpeedTableLaw as SpeedTableLaw
+from .motors import KlossMotor as KlossMotor, LinearMotor as LinearMotor, MotorCharacteristic as MotorCharacteristic
+from .reduced_model import PanelCurve as PanelCurve, fit_curves as fit_curves, reduce_machine as reduce_machine
 from .single_run import (
     SingleRun as SingleRun,
-    acceleration as acceleration,
     compute_single_run as compute_single_run,
-    run as run,
+    driver_acceleration as driver_acceleration,
+    integrate_run as integrate_run,
 )
 from .steady_running import (
-    Running as Running,
-    Steady as Steady,
+    SteadyRunning as SteadyRunning,
+    SteadySolution as SteadySolution,
+    find_running_law as find_running_law,
     find_steady_running as find_steady_running,
-    fluctuation as fluctuation,
-    reduced_machine as reduced_machine,
-    running as running,
+    reduce_mechanism as reduce_mechanism,
+    speed_fluctuation as speed_fluctuation,
 )
-from .tasks import Disk as Disk, Profile as Profile, Rim as Rim, RunTask as RunTask, SteadyTask as SteadyTask
+from .tasks import (
+    DiskFlywheel as DiskFlywheel,
+    DriveProfile as DriveProfile,
+    RimFlywheel as RimFlywheel,
+    RunTask as RunTask,
+    SteadyTask as SteadyTask,
+)

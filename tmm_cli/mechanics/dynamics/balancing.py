@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Place:
+class CounterweightPlace:
     """Where a counterweight sits: on a link, `radius` from a point of it (its axes, m); 0: the radius is not told."""
 
     link: str
@@ -31,7 +31,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Plane:
+class CorrectionPlane:
     """A plane across a shaft `at` a place along it, with a mass at a radius (m; 0: its size alone counts)."""
 
     at: float
@@ -39,12 +39,12 @@ class Plane:
 
 
 @dataclass(frozen=True)
-class Rotor:
+class UnbalancedShaft:
     """Masses on a shaft: mass times radius at an angle (complex, kg m), where along it (m); planes for two others."""
 
     sizes: Vector
     at: Real
-    planes: tuple[Plane, ...]
+    planes: tuple[CorrectionPlane, ...]
 
     def corrections(self) -> Vector:
         """In one plane what leaves no force, in two planes what leaves no couple either (kg m, complex)."""
@@ -72,10 +72,10 @@ class BalancingTask:
     share of the reciprocating masses that a counterweight on the crank balances.
     """
 
-    counterweights: tuple[Place, ...] = ()
+    counterweights: tuple[CounterweightPlace, ...] = ()
     share: float = 0.5
     along: complex = 1 + 0j
-    rotor: Rotor | None = None
+    rotor: UnbalancedShaft | None = None
 
 
 # Balancing: what shakes the frame over a cycle, and the counterweights that take it away.
@@ -86,14 +86,14 @@ class BalancingTask:
 # for completely force balancing simple linkages, J. Eng. Ind. 91 (1969).
 
 
-NO_HELP = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
+NO_EFFECT = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
 ROUNDS = 200  # of masses that move pivots, whose counterweights follow from them
-ALONG = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
+NO_ANGLE = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
 SETTLED = 1e-15  # of the largest counterweight
 
 
 @dataclass(frozen=True)
-class Shaking:
+class ShakingLoads:
     """What the links do to the frame by their inertia, at every position: force (N), couple about `about` (N m)."""
 
     force: Vector
@@ -102,10 +102,10 @@ class Shaking:
 
 
 @dataclass(frozen=True)
-class Counterweight:
+class CounterweightSolution:
     """At its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
 
-    place: Place
+    place: CounterweightPlace
     size: float
     angle: float
 
@@ -116,12 +116,12 @@ class Counterweight:
 
 
 @dataclass(frozen=True)
-class Balanced:
+class BalancedCycle:
     """Counterweights, what shakes before and after over a whole cycle; alike: some of them do the same as others."""
 
-    counterweights: tuple[Counterweight, ...]
-    before: Shaking
-    after: Shaking
+    counterweights: tuple[CounterweightSolution, ...]
+    before: ShakingLoads
+    after: ShakingLoads
     alike: bool = False
 
     @property
@@ -136,7 +136,7 @@ class Balanced:
         return float(np.nanmax(np.abs(self.after.force))) / most if most > 0 else 0.0
 
 
-def shaking(motion: Motion, about: complex = 0j, weights: Sequence[Counterweight] = ()) -> Shaking:
+def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[CounterweightSolution] = ()) -> ShakingLoads:
     """Of all links with mass, and of counterweights.
 
     Of one whose radius is not told mass times radius alone counts: not the mass on its pivot, nor its own inertia.
@@ -149,28 +149,32 @@ def shaking(motion: Motion, about: complex = 0j, weights: Sequence[Counterweight
         moment = moment - link.mass * cross(centre.x - about, centre.a) - link.inertia * turning.epsilon
     for weight in weights:
         c, place = weight.size * np.exp(1j * weight.angle), weight.place
-        pivot, added, mass = motion.point(place.link, place.about), c * _turning(motion, place.link), weight.mass or 0.0
+        pivot, added, mass = (
+            motion.point(place.link, place.about),
+            c * _direction_acceleration(motion, place.link),
+            weight.mass or 0.0,
+        )
         force = force - added - mass * pivot.a
         moment = (
             moment - cross(pivot.x - about, added + mass * pivot.a) - cross(c * motion.poses[place.link].z, pivot.a)
         )
         moment = moment - weight.size * place.radius * motion.link(place.link).epsilon
-    return Shaking(force, moment, about)
+    return ShakingLoads(force, moment, about)
 
 
-def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanced:
+def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> BalancedCycle:
     """Counterweights that leave the least shaking force. Raises UnsettledError.
 
     motion: over a whole cycle at even steps, without its end twice; dead positions are left out. A radius that is told
     gives a mass, which loads the pivot: where this moves, the counterweights are found again with that mass, until they
     stay.
     """
-    before = shaking(motion, about)
+    before = compute_shaking(motion, about)
     if not task.counterweights:
-        return Balanced((), before, before)
+        return BalancedCycle((), before, before)
     places = task.counterweights
     # force of a counterweight: -c times the second derivative of the link's direction
-    columns = np.stack([-_turning(motion, place.link) for place in places], axis=1)
+    columns = np.stack([-_direction_acceleration(motion, place.link) for place in places], axis=1)
     fastest = float(np.max(np.square(motion.rate))) if motion.linkage.driver.kind == "turn" else 0.0
     columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # a link that translates balances nothing
     pivots = np.stack([-motion.point(place.link, place.about).a for place in places], axis=1)
@@ -181,33 +185,34 @@ def balanced(motion: Motion, task: BalancingTask, about: complex = 0j) -> Balanc
     )
     for _ in range(ROUNDS):
         last = found
-        found, rank = _least(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
+        found, rank = _least_squares(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
         if np.max(np.abs(found - last)) <= SETTLED * np.max(np.abs(found)):
             break
     else:
         raise CounterweightError
     weights = tuple(
-        Counterweight(place, float(abs(c)), _direction(complex(c))) for place, c in zip(places, found, strict=True)
+        CounterweightSolution(place, float(abs(c)), _direction(complex(c)))
+        for place, c in zip(places, found, strict=True)
     )
-    return Balanced(weights, before, shaking(motion, about, weights), rank < 2 * len(places))
+    return BalancedCycle(weights, before, compute_shaking(motion, about, weights), rank < 2 * len(places))
 
 
-def _least(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
+def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
     """Counterweights (kg m, complex) that leave the least force, and how many of their parts differ in what they do."""
     own, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
     share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
     matrix = np.block([[share * own.real, -share * own.imag], [other * own.imag, other * own.real]])
-    parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_HELP)
+    parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_EFFECT)
     half = len(parts) // 2
     return parts[:half] + 1j * parts[half:], int(rank)
 
 
 def _direction(c: complex) -> float:
     """Its angle, rad; straight back it is pi, not -pi."""
-    return float(np.angle(c if abs(c.imag) > ALONG * abs(c) else complex(c.real)))
+    return float(np.angle(c if abs(c.imag) > NO_ANGLE * abs(c) else complex(c.real)))
 
 
-def _turning(motion: Motion, link: str) -> Vector:
+def _direction_acceleration(motion: Motion, link: str) -> Vector:
     """Second derivative by time of the direction of a link's x axis, 1/s2."""
     turning, z = motion.link(link), motion.poses[link].z
     found: Vector = (1j * turning.epsilon - turning.omega**2) * z
@@ -217,58 +222,58 @@ def _turning(motion: Motion, link: str) -> Vector:
 # Balancing of a mechanism: shaking over its cycle and at its positions, at the constant speed of the driver.
 
 
-STEPS = 720  # in a turn
+STEPS_PER_TURN = 720  # in a turn
 
 
 @dataclass(frozen=True)
-class Balancing:
+class BalancingResults:
     """What was asked, over the whole cycle at places q of the driver, and at the positions; pivot: what moments are
     about. corrections: of the shaft with masses, kg m.
     """
 
     task: BalancingTask
     q: Real
-    cycle: Balanced
-    before: Shaking
-    after: Shaking
+    cycle: BalancedCycle
+    before: ShakingLoads
+    after: ShakingLoads
     pivot: str
     corrections: Vector = field(default_factory=lambda: np.empty(0, complex))
 
-    def at(self, mechanism: Mechanism, q: Real) -> tuple[Shaking, Shaking]:
+    def at(self, mechanism: Mechanism, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
         """What shakes at other places of the driver, without counterweights and with them."""
-        return _shaken(mechanism, self.cycle, q)
+        return _shaking_at(mechanism, self.cycle, q)
 
 
-def balance_machine(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> Balancing:
+def balance_machine(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> BalancingResults:
     """Over the cycle from the driver's place `start` on, and at places. Raises NoCycleError, UnsettledError."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     driver = linkage.driver
     if driver.kind != "turn" or not whole.full or linkage.others:
         raise NoCycleError(("balancing",))
 
-    count = STEPS * whole.turns
+    count = STEPS_PER_TURN * whole.turns
     q = start + driver.sense * 2 * np.pi * whole.turns * np.arange(count) / count
-    pivot = _pivot(linkage)
+    pivot = _crank_pivot(linkage)
     about = complex(linkage.local(FRAME, pivot)) if pivot else 0j
-    cycle = balanced(steadily(mechanism, q), task, about)
+    cycle = balance_cycle(constant_speed_motion(mechanism, q), task, about)
     corrections = np.empty(0, complex) if task.rotor is None else task.rotor.corrections()
-    return Balancing(task, q, cycle, *_shaken(mechanism, cycle, places), pivot, corrections)
+    return BalancingResults(task, q, cycle, *_shaking_at(mechanism, cycle, places), pivot, corrections)
 
 
-def _shaken(mechanism: Mechanism, found: Balanced, q: Real) -> tuple[Shaking, Shaking]:
+def _shaking_at(mechanism: Mechanism, found: BalancedCycle, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
     """What shakes at places of the driver, without counterweights and with them."""
-    motion, about = steadily(mechanism, q), found.before.about
-    return shaking(motion, about), shaking(motion, about, found.counterweights)
+    motion, about = constant_speed_motion(mechanism, q), found.before.about
+    return compute_shaking(motion, about), compute_shaking(motion, about, found.counterweights)
 
 
-def steadily(mechanism: Mechanism, q: Real) -> Motion:
+def constant_speed_motion(mechanism: Mechanism, q: Real) -> Motion:
     """The motion at constant speed of the driver."""
     driver = mechanism.linkage.driver
     law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)
     return compute_motion(mechanism.linkage, mechanism.kernels, q, law)
 
 
-def _pivot(linkage: Linkage) -> str:
+def _crank_pivot(linkage: Linkage) -> str:
     """Where the crank turns on the frame; empty where it has no such point."""
     link = linkage.driver.link
     return next((h.point for h in linkage.hinges if {FRAME, link} <= set(h.links)), "")

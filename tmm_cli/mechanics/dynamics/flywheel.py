@@ -24,10 +24,10 @@ from functools import partial
 
 import numpy as np
 
-from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
+from tmm_cli.mechanics.dynamics.reduced_model import PanelCurve, ReducedMachine
 from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 
-NEAR = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
+REFINEMENT_WIDTH = 1e-4  # rad (or m): so near to the point of a tangent the least of many values is
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Tangent:
 
 
 @dataclass(frozen=True)
-class Flywheel:
+class FlywheelSolution:
     """A flywheel on the driver. inertia: kg m2, below zero where none is needed; energy: T0 at the beginning (J).
 
     upper, lower: tangents of the largest and of the least speed, for this inertia.
@@ -61,27 +61,29 @@ class Flywheel:
     lower: Tangent
 
 
-def exact(machine: Reduced, work: Curve, mean: float, delta: float) -> Flywheel:
+def exact_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
     """Speeds between w (1 - delta/2) and w (1 + delta/2), which are both come to; work: of all moments, J."""
-    return _between(machine, work, mean * (1 - delta / 2), mean * (1 + delta / 2))
+    return _flywheel_between(machine, work, mean * (1 - delta / 2), mean * (1 + delta / 2))
 
 
-def wittenbauer(machine: Reduced, work: Curve, mean: float, delta: float) -> Flywheel:
+def wittenbauer_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
     """By tangents of slopes w^2 (1 +- delta) / 2, as a course draws them."""
-    return _between(machine, work, mean * np.sqrt(max(1 - delta, 0.0)), mean * np.sqrt(1 + delta))
+    return _flywheel_between(machine, work, mean * np.sqrt(max(1 - delta, 0.0)), mean * np.sqrt(1 + delta))
 
 
-def mertsalov(machine: Reduced, work: Curve, mean: float, delta: float) -> float:
+def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> float:
     """Inertia J_I of the first group (kg m2), the flywheel with the links of constant speed ratio.
 
     The energy of the other links is taken at the mean speed; what is constant in the inertia cancels in the difference.
     """
     slope = mean**2 / 2
-    upper, lower = touching(machine, work, slope, top=True), touching(machine, work, slope, top=False)
+    upper, lower = find_tangent(machine, work, slope, top=True), find_tangent(machine, work, slope, top=False)
     return (upper.offset - lower.offset) / (delta * mean**2)
 
 
-def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -> tuple[float, float]:
+def energy_at_mean_speed(
+    machine: ReducedMachine, work: PanelCurve, mean: float, flywheel: float = 0.0
+) -> tuple[float, float]:
     """Energy at the beginning (J) at which the mean of largest and least speed is this, and the fluctuation delta then.
 
     nan where the machine does not come round at that mean speed, or has no inertia at some place.
@@ -93,8 +95,8 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
     def speeds(energy: Real) -> Real:
         """The least and the largest speed, of an energy at the beginning each."""
         square = [
-            (lowest(of, places)[1], -lowest(partial(_minus, of), places)[1])
-            for of in (partial(_square, machine, work, flywheel, float(e)) for e in np.ravel(energy))
+            (find_minimum(of, places)[1], -find_minimum(partial(_negated, of), places)[1])
+            for of in (partial(_squared_speed, machine, work, flywheel, float(e)) for e in np.ravel(energy))
         ]
         return np.asarray(np.sqrt(np.maximum(np.array(square), 0.0)))
 
@@ -107,51 +109,51 @@ def at_mean(machine: Reduced, work: Curve, mean: float, flywheel: float = 0.0) -
     return float(energy[0]), float((quickest - slowest) / mean)
 
 
-def _between(machine: Reduced, work: Curve, low: float, high: float) -> Flywheel:
-    upper = touching(machine, work, high**2 / 2, top=True)
-    lower = touching(machine, work, low**2 / 2, top=False)
+def _flywheel_between(machine: ReducedMachine, work: PanelCurve, low: float, high: float) -> FlywheelSolution:
+    upper = find_tangent(machine, work, high**2 / 2, top=True)
+    lower = find_tangent(machine, work, low**2 / 2, top=False)
     inertia = (upper.offset - lower.offset) / (upper.slope - lower.slope)
     # T0 + E <= slope (Jf + J) with equality where the upper tangent touches
-    return Flywheel(inertia, upper.slope * inertia - upper.offset, upper, lower)
+    return FlywheelSolution(inertia, upper.slope * inertia - upper.offset, upper, lower)
 
 
-def touching(machine: Reduced, work: Curve, slope: float, *, top: bool) -> Tangent:
+def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top: bool) -> Tangent:
     """The tangent of this slope above the diagram, or below it."""
     sign = -1.0 if top else 1.0
 
     def height(x: Real) -> Real:
         return sign * (work(x) - slope * machine.inertia(x))
 
-    x, __ = lowest(height, work.places())
+    x, __ = find_minimum(height, work.places())
     rate = work.slope()
 
     def steepness(x: Real) -> Real:
         return sign * (rate(x) - slope * machine.slope(x))
 
-    x = sharper(steepness, x, work.length)
+    x = refine_minimum(steepness, x, work.length)
     at = np.array([x])
     return Tangent(x, float(machine.inertia(at)[0]), float(work(at)[0]), slope)
 
 
-def _square(machine: Reduced, work: Curve, inertia: float, energy: float, x: Real) -> Real:
+def _squared_speed(machine: ReducedMachine, work: PanelCurve, inertia: float, energy: float, x: Real) -> Real:
     """Of the speed."""
     return 2 * (energy + work(x)) / (inertia + machine.inertia(x))
 
 
-def _minus(function: Callable[[Real], Real], x: Real) -> Real:
+def _negated(function: Callable[[Real], Real], x: Real) -> Real:
     return -function(x)
 
 
-def sharper(rate: Callable[[Real], Real], x: float, length: float) -> float:
+def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> float:
     """The place of a minimum that is near x, between 0 and a length, to all digits: where the rate changes its sign,
     as it does where a load jumps too. Values alone tell it to half the digits only.
     """
-    ends = np.clip([x - NEAR, x + NEAR], 0.0, np.nextafter(length, 0.0))
+    ends = np.clip([x - REFINEMENT_WIDTH, x + REFINEMENT_WIDTH], 0.0, np.nextafter(length, 0.0))
     below, above = rate(ends)
     return float(find_roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
 
 
-def lowest(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:
+def find_minimum(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:
     """Place and value of the least of a function whose minima are farther apart than these places."""
     values = function(places)
     best = int(np.argmin(values))

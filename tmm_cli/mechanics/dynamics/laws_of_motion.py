@@ -14,26 +14,34 @@ from math import isfinite
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.dynamics.reduced_model import FIT, NODES, SUMS, Curve, Reduced, fitted, nodes
+from tmm_cli.mechanics.dynamics.motors import MotorCharacteristic
+from tmm_cli.mechanics.dynamics.reduced_model import (
+    NODES,
+    VALUES_TO_COEFFICIENTS,
+    VALUES_TO_INTEGRALS,
+    PanelCurve,
+    ReducedMachine,
+    fit_curves,
+    panel_nodes,
+)
 from tmm_cli.mechanics.errors import LinkageError, LostDigitsError, RunawayError, StandstillError, WeakMotorError
 from tmm_cli.mechanics.linkage import SpeedTable
 from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, to_float
 
 
 @dataclass(frozen=True)
-class Law:
+class SteadyLaw:
     """Along the way x of a cycle (rad, or m of a slider). flywheel: its inertia on the driver (kg m2, or kg).
 
     energy: kinetic energy (J), that of the flywheel with it; driving: moment of what drives (N m, or N); time: since
     the beginning (s).
     """
 
-    machine: Reduced
+    machine: ReducedMachine
     flywheel: float
-    energy: Curve
-    driving: Curve
-    time: Curve
+    energy: PanelCurve
+    driving: PanelCurve
+    time: PanelCurve
 
     def speed(self, x: Real) -> Real:
         """rad/s, or m/s."""
@@ -51,9 +59,9 @@ class Law:
         return float(self.time(np.array([self.time.length]))[0])
 
 
-def under_constant_moment(machine: Reduced, flywheel: float, energy: float, moment: float) -> Law:
+def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float, moment: float) -> SteadyLaw:
     """From an energy (J) at the beginning of the cycle. Raises StandstillError."""
-    work = fitted(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
+    work = fit_curves(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
     places = work.places()
     values = work(places)
     if not np.all(values > 0):
@@ -62,8 +70,8 @@ def under_constant_moment(machine: Reduced, flywheel: float, energy: float, mome
     def parts(x: Real) -> Sequence[Real]:
         return np.sqrt((flywheel + machine.inertia(x)) / (2 * work(x))), np.full(np.shape(x), moment)
 
-    pace, driving = fitted(parts, work.edges)
-    return Law(machine, flywheel, work, driving, pace.summed())
+    pace, driving = fit_curves(parts, work.edges)
+    return SteadyLaw(machine, flywheel, work, driving, pace.summed())
 
 
 # Steady running of a machine that a motor drives by its characteristic: what it comes to, the same every cycle.
@@ -79,15 +87,17 @@ def under_constant_moment(machine: Reduced, flywheel: float, energy: float, mome
 # is strong.
 
 
-STEPS = 60  # of Newton's method, at most
+NEWTON_STEPS = 60  # of Newton's method, at most
 TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel begins where the one before ends
 SLIP_ROUNDED = 64 * 2.0**-53  # of the largest slip: a change over the cycle below that is rounding
-MOST_LOST = 1e-6  # of the slip: where rounding leaves more of it open there is no answer
+MOST_LOST_DIGITS = 1e-6  # of the slip: where rounding leaves more of it open there is no answer
 RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
-UNEVEN = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
+WORK_IMBALANCE = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
 NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
-EYE = np.eye(NODES)
-ENDS: Real = chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ FIT  # values at the nodes to both ends
+IDENTITY = np.eye(NODES)
+VALUES_TO_ENDS: Real = (
+    chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ VALUES_TO_COEFFICIENTS
+)  # values at the nodes to both ends
 
 
 @dataclass
@@ -105,26 +115,26 @@ class _Panel:
     slips: Real | None = None
 
     @classmethod
-    def of(cls, machine: Reduced, low: float, high: float) -> _Panel:
-        x = nodes(np.array([low, high]))
+    def of(cls, machine: ReducedMachine, low: float, high: float) -> _Panel:
+        x = panel_nodes(np.array([low, high]))
         return cls(low, high, machine.inertia(x), machine.slope(x), machine.moment(x))
 
 
 @dataclass
-class Cycle:
+class MotorCycle:
     """A cycle in panels, which are halved as it is run, for one flywheel after another.
 
     whole: before they are; slip: at the beginning of the cycle that was found last.
     """
 
-    machine: Reduced
-    motor: Motor
+    machine: ReducedMachine
+    motor: MotorCharacteristic
     whole: tuple[_Panel, ...]
     slip: float = 0.0
     panels: list[_Panel] = field(default_factory=list)
 
     @classmethod
-    def of(cls, machine: Reduced, motor: Motor) -> Cycle:
+    def of(cls, machine: ReducedMachine, motor: MotorCharacteristic) -> MotorCycle:
         """Raises WeakMotorError, RunawayError."""
         wanted = -machine.work_of_cycle / machine.length
         x = machine.moment.places()
@@ -135,10 +145,10 @@ class Cycle:
         edges = machine.moment.edges.tolist()
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
-    def law(self, flywheel: float) -> Law:
+    def law(self, flywheel: float) -> SteadyLaw:
         """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError, LostDigitsError."""
         slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
-        for _ in range(STEPS):
+        for _ in range(NEWTON_STEPS):
             end, slope, values = self._run(flywheel, slip)
             step = (slip - end) / (1 - slope) if slope < 1 else slip - end
             slip = min(slip - step, (slip + 1) / 2)
@@ -146,7 +156,7 @@ class Cycle:
             if slope < 1 and abs(step) <= LAST_STEP * largest:
                 break
             if slope < 1 and abs(step) * (1 - slope) <= SLIP_ROUNDED * largest:  # the rest of the step is rounding
-                if MOST_LOST * (1 - slope) < SLIP_ROUNDED:
+                if MOST_LOST_DIGITS * (1 - slope) < SLIP_ROUNDED:
                     raise self._lost(values, 1 - slope)
                 break
         else:
@@ -155,17 +165,18 @@ class Cycle:
         inertia = flywheel + np.stack([panel.inertia for panel in self.panels], axis=1)
         speed = idle * (1 - values)
         energy, driving, pace = (
-            Curve(self._edges, FIT @ own) for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
+            PanelCurve(self._edges, VALUES_TO_COEFFICIENTS @ own)
+            for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
         )
-        if abs(driving.total + self.machine.work_of_cycle) > UNEVEN * energy.length * self.motor.most:
+        if abs(driving.total + self.machine.work_of_cycle) > WORK_IMBALANCE * energy.length * self.motor.most:
             raise self._lost(values, 1 - slope)  # so heavy a flywheel that a cycle's change of its energy is rounding
         # on the rising branch of the characteristic it is a good beginning for the next flywheel
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
-        return Law(self.machine, flywheel, energy, driving, pace.summed())
+        return SteadyLaw(self.machine, flywheel, energy, driving, pace.summed())
 
     def _unsteady(self, values: Real) -> LinkageError:
         """A machine that runs away, or comes to rest where its slip is largest."""
-        x, slips = nodes(self._edges), values.T.ravel()
+        x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
             speed = self.motor.idle * (1 - float(slips[quickest]))
@@ -187,7 +198,7 @@ class Cycle:
             panel = left.pop()
             found = self._solved(panel, flywheel, begin)
             largest = size if found is None else max(size, float(np.abs(found[:, 0]).max()))
-            if found is None or _rough(found[:, 0], begin, largest):
+            if found is None or _is_rough(found[:, 0], begin, largest):
                 if panel.high - panel.low < NARROWEST * self.machine.length:
                     raise StandstillError(panel.low)
                 middle = (panel.low + panel.high) / 2
@@ -195,7 +206,7 @@ class Cycle:
                 left += [_Panel.of(self.machine, *ends) for ends in parts][::-1]
                 continue
             panel.slips = found[:, 0]
-            (begin, by_begin), size = (ENDS[1] @ found).tolist(), largest
+            (begin, by_begin), size = (VALUES_TO_ENDS[1] @ found).tolist(), largest
             slope *= by_begin
             done.append(panel)
         self.panels = done
@@ -204,17 +215,17 @@ class Cycle:
     @np.errstate(all="ignore")  # at rest the rate is not finite, and there is no solution
     def _solved(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
         """Slips at the nodes, and their slopes by that at the beginning, (nodes, 2); None where there are none."""
-        idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * SUMS[:-1]
+        idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * VALUES_TO_INTEGRALS[:-1]
         values = np.full(NODES, begin) if panel.slips is None else panel.slips
         inertia, right = idle * (flywheel + panel.inertia), np.ones((NODES, 2))
-        for _ in range(STEPS):
+        for _ in range(NEWTON_STEPS):
             speed = idle * (1 - values)
             driving, by_slip = self.motor.at_slip(values)
             under = inertia * speed
             rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
             by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
             right[:, 0] = begin - sums @ rate - values
-            found: Real = np.linalg.solve(EYE - sums * by_rate, right)
+            found: Real = np.linalg.solve(IDENTITY - sums * by_rate, right)
             last = float(np.abs(found[:, 0]).max())
             found[:, 0] += values
             own = found[:, 0]
@@ -227,9 +238,11 @@ class Cycle:
         return None
 
 
-def _rough(values: Real, begin: float, size: float) -> bool:
+def _is_rough(values: Real, begin: float, size: float) -> bool:
     """Whether slips are no polynomial that begins where it is to, beside the largest of all."""
-    tail = max(float(np.abs(FIT[-2:] @ values).max()), abs(float(ENDS[0] @ values) - begin))
+    tail = max(
+        float(np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max()), abs(float(VALUES_TO_ENDS[0] @ values) - begin)
+    )
     return tail > TAIL * size
 
 
@@ -239,11 +252,11 @@ def _rough(values: Real, begin: float, size: float) -> bool:
 # constant acceleration from row to row.
 
 
-STANDS = 1e-9  # of the largest square of the speed: with less somewhere the time of a way is not told
+LEAST_SQUARE = 1e-9  # of the largest square of the speed: with less somewhere the time of a way is not told
 
 
 @dataclass(frozen=True)
-class LawByTable:
+class SpeedTableLaw:
     """Of a crank in its sense; start: its angle at t = 0 (rad); cycle: after which all comes again (rad)."""
 
     table: SpeedTable
@@ -292,7 +305,7 @@ class LawByTable:
         return float(to_float(arguments[-1] - arguments[0]))
 
     @cached_property
-    def _times(self) -> Curve:
+    def _times(self) -> PanelCurve:
         """Time by the way from the first end of the table on, s."""
         squares = self.table.squares
         edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
@@ -301,9 +314,9 @@ class LawByTable:
             return (1 / np.sqrt(to_float(squares(self._first + self.sense * x))),)
 
         rows = np.array([float(to_float(value)) for value in squares.values])
-        if np.min(rows) <= STANDS * np.max(rows):
-            return Curve(np.array([0.0, self._length]), np.full((1, 1), np.nan))
-        return fitted(pace, edges)[0].summed()
+        if np.min(rows) <= LEAST_SQUARE * np.max(rows):
+            return PanelCurve(np.array([0.0, self._length]), np.full((1, 1), np.nan))
+        return fit_curves(pace, edges)[0].summed()
 
     def _passed(self, q: Real) -> tuple[Real, Real]:
         """Whole cycles since the first end of the table, and the time in the one that is under way, s."""

@@ -12,7 +12,7 @@ from typing import Protocol
 from tmm_cli.mechanics.numerics import Real
 
 
-class Motor(Protocol):
+class MotorCharacteristic(Protocol):
     """A characteristic, reduced to the driving link, by the slip s = 1 - w / w0 under its speed without load w0.
 
     Of a motor that is strong for its load the slip has all digits of the moment, the speed only a few.
@@ -43,7 +43,7 @@ class Motor(Protocol):
 
 
 @dataclass(frozen=True)
-class Linear(Motor):
+class LinearMotor(MotorCharacteristic):
     """Direct current, shunt wound: from `stall` at rest down to nothing at `free` speed (rad/s)."""
 
     stall: float
@@ -66,7 +66,7 @@ class Linear(Motor):
 
 
 @dataclass(frozen=True)
-class Kloss(Motor):
+class KlossMotor(MotorCharacteristic):
     """Asynchronous: M = 2 Mk / (s / sk + sk / s), s the slip under the synchronous speed (rad/s).
 
     M. Kloss, Archiv fuer Elektrotechnik 5 (1916). breakdown: Mk (N m) at the slip sk.
@@ -77,7 +77,7 @@ class Kloss(Motor):
     slip: float
 
     @classmethod
-    def rated(cls, synchronous: float, speed: float, moment: float, overload: float) -> Kloss:
+    def rated(cls, synchronous: float, speed: float, moment: float, overload: float) -> KlossMotor:
         """From rated speed and moment, and the breakdown moment over the rated one (at least 1)."""
         own = 1 - speed / synchronous
         return cls(synchronous, overload * moment, own * (overload + (overload**2 - 1) ** 0.5))

@@ -17,18 +17,22 @@ from numpy.polynomial import chebyshev
 from tmm_cli.mechanics.numerics import Real
 
 NODES = 16  # of a panel
-WIDEST = np.pi / 6  # rad, and of a slider's way this share of pi: a panel at the beginning
+WIDEST_PANEL = np.pi / 6  # rad, and of a slider's way this share of pi: a panel at the beginning
 TAIL = 1e-14  # of the largest value of a function: its last coefficients are less
-ROUNDS = 12  # of halving: what still has a tail then has a jump within a panel
+MOST_HALVINGS = 12  # of halving: what still has a tail then has a jump within a panel
 MOST_PANELS = 2000  # when so many still have tails, these are rounding errors
-PLACES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
-FIT: Real = np.linalg.inv(chebyshev.chebvander(PLACES, NODES - 1))  # values at the nodes to coefficients
-SUMS: Real = chebyshev.chebvander(np.append(PLACES, 1.0), NODES) @ chebyshev.chebint(FIT, lbnd=-1)
+NODE_POINTS: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
+VALUES_TO_COEFFICIENTS: Real = np.linalg.inv(
+    chebyshev.chebvander(NODE_POINTS, NODES - 1)
+)  # values at the nodes to coefficients
+VALUES_TO_INTEGRALS: Real = chebyshev.chebvander(np.append(NODE_POINTS, 1.0), NODES) @ chebyshev.chebint(
+    VALUES_TO_COEFFICIENTS, lbnd=-1
+)
 """Values at the nodes of -1..1 to integrals from -1 to each node and, in the last row, to 1."""
 
 
 @dataclass(frozen=True)
-class Curve:
+class PanelCurve:
     """A function on 0..length. edges: (panels + 1,); coefficients: (nodes, panels), of Chebyshev polynomials."""
 
     edges: Real
@@ -46,17 +50,17 @@ class Curve:
         found: Real = chebyshev.chebval((2 * x - low - high) / (high - low), self.coefficients[:, panel], tensor=False)
         return found
 
-    def slope(self) -> Curve:
+    def slope(self) -> PanelCurve:
         """Its derivative, panel by panel."""
-        return Curve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
+        return PanelCurve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
 
-    def summed(self) -> Curve:
+    def summed(self) -> PanelCurve:
         """Its integral from 0 on."""
         half = np.diff(self.edges) / 2
         own = chebyshev.chebint(self.coefficients, lbnd=-1) * half
         gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, own))])
         own[0] += gone[:-1]
-        return Curve(self.edges, own)
+        return PanelCurve(self.edges, own)
 
     @property
     def total(self) -> float:
@@ -66,57 +70,58 @@ class Curve:
 
     def places(self) -> Real:
         """Places close together: both ends of each panel, just inside it, and its nodes."""
-        return nodes(self.edges, ends=True)
+        return panel_nodes(self.edges, ends=True)
 
 
-def nodes(edges: Real, *, ends: bool = False) -> Real:
+def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
     """Places of the panels at which functions are fitted, in order; ends: with the ends of each, just inside it."""
-    own = np.concatenate([[-1 + 1e-15], PLACES, [1 - 1e-15]]) if ends else PLACES
+    own = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
     low, high = edges[:-1, None], edges[1:, None]
     found: Real = ((low + high) / 2 + (high - low) / 2 * own).ravel()
     return found
 
 
-def fitted(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[Curve, ...]:
+def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[PanelCurve, ...]:
     """Functions, computed together at many places x, on common panels; edges: where they may jump, both ends too.
 
     A value that is not finite stays so in its panel, which is not halved.
     """
-    at = _widths(np.unique(np.asarray(edges, float)))
-    values = _values(function, at)
-    for _ in range(ROUNDS):
-        rough = _rough(values)
+    at = _divide_wide_panels(np.unique(np.asarray(edges, float)))
+    values = _node_values(function, at)
+    for _ in range(MOST_HALVINGS):
+        rough = _rough_panels(values)
         if not rough.any() or len(rough) > MOST_PANELS:
             break
         middle = (at[:-1] + at[1:])[rough] / 2
         finer = np.sort(np.concatenate([at, middle]))
         kept = np.repeat(~rough, np.where(rough, 2, 1))
-        new = _values(function, finer, ~kept)
+        new = _node_values(function, finer, ~kept)
         full = np.empty((len(values), NODES, len(finer) - 1))
         full[:, :, kept] = values[:, :, ~rough]
         full[:, :, ~kept] = new
         at, values = finer, full
-    return tuple(Curve(at, FIT @ own) for own in values)
+    return tuple(PanelCurve(at, VALUES_TO_COEFFICIENTS @ own) for own in values)
 
 
-def _widths(edges: Real) -> Real:
+def _divide_wide_panels(edges: Real) -> Real:
     """The same with panels that are not too wide."""
     parts = [
-        np.linspace(low, high, int(np.ceil((high - low) / WIDEST - 1e-9)) + 1)[:-1] for low, high in pairwise(edges)
+        np.linspace(low, high, int(np.ceil((high - low) / WIDEST_PANEL - 1e-9)) + 1)[:-1]
+        for low, high in pairwise(edges)
     ]
     return np.concatenate([*parts, edges[-1:]])
 
 
-def _values(function: Callable[[Real], Sequence[Real]], edges: Real, wanted: Real | None = None) -> Real:
+def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, wanted: Real | None = None) -> Real:
     """(functions, nodes, panels), of all panels or of those wanted."""
-    x = nodes(edges).reshape(-1, NODES)
+    x = panel_nodes(edges).reshape(-1, NODES)
     x = x if wanted is None else x[wanted]
     return np.stack([np.asarray(part).reshape(x.shape).T for part in function(x.ravel())])
 
 
-def _rough(values: Real) -> Real:
+def _rough_panels(values: Real) -> Real:
     """Panels on which a function has a tail."""
-    tails = np.abs(FIT[-2:] @ values).max(axis=1)
+    tails = np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max(axis=1)
     sizes = np.nanmax(np.abs(values), axis=(1, 2), initial=0.0, where=np.isfinite(values))
     found: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)
     return found
@@ -131,7 +136,7 @@ Sample = Callable[[Real], tuple[Real, Real, Real]]  # at ways x: inertia, its sl
 
 
 @dataclass(frozen=True)
-class Reduced:
+class ReducedMachine:
     """Over a cycle, by the way x that the driver has gone in its sense (rad, or m of a slider).
 
     inertia (kg m2, or kg), slope of it by x, moment of all loads but inertia (N m, or N) along the sense, and work of
@@ -140,10 +145,10 @@ class Reduced:
     flywheel they are the first group of N. I. Mertsalov (kg m2).
     """
 
-    inertia: Curve
-    slope: Curve
-    moment: Curve
-    work: Curve
+    inertia: PanelCurve
+    slope: PanelCurve
+    moment: PanelCurve
+    work: PanelCurve
     constant: float = 0.0
 
     @property
@@ -156,7 +161,7 @@ class Reduced:
         return self.inertia.length
 
 
-def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> Reduced:
+def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> ReducedMachine:
     """Of a machine that can be computed at any place; edges: where loads may jump, the ends of the cycle too."""
-    inertia, slope, moment = fitted(sample, edges)
-    return Reduced(inertia, slope, moment, moment.summed(), constant)
+    inertia, slope, moment = fit_curves(sample, edges)
+    return ReducedMachine(inertia, slope, moment, moment.summed(), constant)

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from scipy.integrate import OdeSolution, solve_ivp
 
-from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced
-from tmm_cli.mechanics.dynamics.steady_running import reduced_between
+from tmm_cli.mechanics.dynamics.reduced_model import PanelCurve, ReducedMachine
+from tmm_cli.mechanics.dynamics.steady_running import reduce_between
 from tmm_cli.mechanics.dynamics.tasks import RunTask
 from tmm_cli.mechanics.errors import LongRunError, NoInertiaError, OutOfRangeError, StandstillError
 from tmm_cli.mechanics.numerics import ROUNDOFF, SAME_DRIVER_POSITION, SEAM, Real, find_roots, to_float
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 
 
 TOLERANCE = 1e-12  # of a step, relative
-STRONG = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
-MOST = 50_000  # evaluations of a run, some five seconds: those of the bank take 3 000 at the most
+STIFF_RATIO = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
+MOST_EVALUATIONS = 50_000  # evaluations of a run, some five seconds: those of the bank take 3 000 at the most
 NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
 
-INSIDE = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
-Ending = Literal["way", "standstill", "time"]
+END_OFFSET = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
+RunEnding = Literal["way", "standstill", "time"]
 
 
 @dataclass(frozen=True)
-class Run:
+class RunHistory:
     """By steps: time (s), way, speed and acceleration of the driver; kinetic energy (J), and works (J) of what drives,
     of the loads and of the brake. ending: what ended it; steps: what the integration gives between its times."""
 
@@ -49,7 +49,7 @@ class Run:
     driven: Real
     loaded: Real
     braked: Real
-    ending: Ending
+    ending: RunEnding
     steps: tuple[Any, ...] = ()
 
     @property
@@ -71,7 +71,7 @@ class Run:
             low, high = step.ts[0], step.ts[-1]
             here = (way >= step(low)[0]) & (way <= step(high)[0])
             if here.any():
-                missed = partial(_short_of, step, way[here])
+                missed = partial(_distance_past, step, way[here])
                 found = find_roots(missed, low + 0 * way[here], high + 0 * way[here])
                 time[here], speed[here] = found, step(found)[1]
         begins = way == self.way[0]  # where a search from rest would find what rounding leaves
@@ -81,11 +81,13 @@ class Run:
         """Times of each piece close together, just inside its ends, and there the way, the speed and the works of what
         drives, of the loads and of the brake, (5, count)."""
         ends = [(step.ts[0], step.ts[-1]) for step in self.steps]
-        inner = [np.linspace(low + INSIDE * (high - low), high - INSIDE * (high - low), count) for low, high in ends]
+        inner = [
+            np.linspace(low + END_OFFSET * (high - low), high - END_OFFSET * (high - low), count) for low, high in ends
+        ]
         return [(times, step(times)) for times, step in zip(inner, self.steps, strict=True)]
 
 
-def run(machine: Reduced, task: RunTask) -> Run:
+def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
     """From the beginning of the way to its end.
 
     Raises NoInertiaError, StandstillError where it does not start, and LongRunError.
@@ -97,11 +99,11 @@ def run(machine: Reduced, task: RunTask) -> Run:
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
-    times, states, steps, time, left = [], [], [], 0.0, count(MOST, -1)
-    ending: Ending = "time"
+    times, states, steps, time, left = [], [], [], 0.0, count(MOST_EVALUATIONS, -1)
+    ending: RunEnding = "time"
     for low, high in _pieces(machine.moment, task.way_edges):
         for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
-            done = _until(machine, task, (low, high), (time, end), state, left)
+            done = _integrate_piece(machine, task, (low, high), (time, end), state, left)
             times.append(done.t)
             states.append(done.y)
             steps.append(done.sol)
@@ -111,12 +113,12 @@ def run(machine: Reduced, task: RunTask) -> Run:
         ending = "time" if done.status == 0 else "standstill" if len(done.t_events[1]) else "way"
         if ending != "way":
             break
-    record = _record(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
+    record = _run_history(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
     return replace(record, steps=tuple(steps))
 
 
-def _until(
-    machine: Reduced,
+def _integrate_piece(
+    machine: ReducedMachine,
     task: RunTask,
     piece: tuple[float, float],
     times: tuple[float, float],
@@ -129,7 +131,7 @@ def _until(
 
     def rates(t: float, y: Real) -> list[float]:
         if not next(left):
-            raise LongRunError(t, float(y[0]), MOST)
+            raise LongRunError(t, float(y[0]), MOST_EVALUATIONS)
         return _rates(machine, task, piece, min(t, last), y)
 
     def gone(t: float, y: Real) -> float:
@@ -142,7 +144,7 @@ def _until(
     gone.direction, rests.direction = 1.0, -1.0  # type: ignore[attr-defined]
     scale = max(abs(state[1]), 1e-3)
     energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
-    method, error = ("LSODA", TOLERANCE / 10) if _stiff(machine, task) else ("DOP853", TOLERANCE)
+    method, error = ("LSODA", TOLERANCE / 10) if _is_stiff(machine, task) else ("DOP853", TOLERANCE)
     exact = {"rtol": error, "atol": [error * machine.length, error * scale, *[error * energy] * 3]}
     done = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
     return _with_last_step(done, partial(solve_ivp, rates, method=method, dense_output=True, **exact))
@@ -166,22 +168,22 @@ def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
     return done
 
 
-def _stiff(machine: Reduced, task: RunTask) -> bool:
+def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
     """Whether a motor changes the speed much more quickly than the machine goes its way."""
     if task.motor is None:
         return False
     inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.places())))
     steepest = float(task.motor.at_slip(np.zeros(1))[1][0]) / task.motor.idle
-    return steepest * machine.length > STRONG * inertia * task.motor.idle
+    return steepest * machine.length > STIFF_RATIO * inertia * task.motor.idle
 
 
-def _short_of(step: Any, way: Real, time: Real) -> Real:
+def _distance_past(step: Any, way: Real, time: Real) -> Real:
     """How much the way of a step of integration is beyond another one."""
     found: Real = step(time)[0] - way
     return found
 
 
-def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
+def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
     """Of the driver (rad/s2, or m/s2) at such times, ways and speeds."""
     states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
     return np.array(
@@ -192,23 +194,23 @@ def acceleration(machine: Reduced, task: RunTask, time: Real, way: Real, speed: 
     ).reshape(np.shape(way))
 
 
-def _rates(machine: Reduced, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
+def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
     """Of way, speed, and the works of what drives, of the loads, of the brake."""
     speed = float(state[1])
     x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
-    load, driving = float(machine.moment(x)[0]), _driving(task, t, x, speed)
+    load, driving = float(machine.moment(x)[0]), _driving_moment(task, t, x, speed)
     inertia = task.flywheel + float(machine.inertia(x)[0])
     squared = speed * speed  # not **: far beyond its end a trial step may be so quick that this is infinite
     own = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
     return [speed, own / inertia, driving * speed, load * speed, -task.brake * speed]
 
 
-def _driving(task: RunTask, t: float, x: Real, speed: float) -> float:
+def _driving_moment(task: RunTask, t: float, x: Real, speed: float) -> float:
     found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0])
     return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
 
 
-def _pieces(moment: Curve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
+def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
     """Pieces of the way between which the moment of the loads jumps, or what drives may bend or jump."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
@@ -217,12 +219,12 @@ def _pieces(moment: Curve, way_edges: Sequence[float]) -> Iterator[tuple[float, 
     yield from pairwise([0.0, *sorted(edges), moment.length])
 
 
-def _record(machine: Reduced, task: RunTask, time: Real, states: Real, ending: Ending) -> Run:
+def _run_history(machine: ReducedMachine, task: RunTask, time: Real, states: Real, ending: RunEnding) -> RunHistory:
     way, speed, driven, loaded, braked = states
     x = np.clip(way, 0.0, np.nextafter(machine.length, 0.0))
-    changes = acceleration(machine, task, time, way, speed)
+    changes = driver_acceleration(machine, task, time, way, speed)
     kinetic = (task.flywheel + machine.inertia(x)) * speed**2 / 2
-    return Run(time, way, speed, changes, kinetic, driven, loaded, braked, ending)
+    return RunHistory(time, way, speed, changes, kinetic, driven, loaded, braked, ending)
 
 
 # A single run of a mechanism with its loads: a press that works once, a cylinder that lifts, starting and stopping.
@@ -238,8 +240,8 @@ class SingleRun:
     """
 
     task: RunTask
-    machine: Reduced
-    run: Run
+    machine: ReducedMachine
+    run: RunHistory
     first: float
     sense: int
     turn: float | None
@@ -283,7 +285,7 @@ class SingleRun:
 
     def acceleration(self, time: Real, way: Real, speed: Real) -> Real:
         """Of the driver, at such times, ways and speeds in its sense."""
-        return acceleration(self.machine, self.task, time, way, speed)
+        return driver_acceleration(self.machine, self.task, time, way, speed)
 
     def accelerated(self, q: Real) -> Real:
         """rad/s2, or m/s2, with its sign; nan where the run does not come."""
@@ -304,7 +306,7 @@ def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> Sing
     ):
         raise OutOfRangeError(whole.start, whole.end)
     sense = 1 if last > first else -1
-    machine = reduced_between(mechanism, first, sense, abs(last - first))
+    machine = reduce_between(mechanism, first, sense, abs(last - first))
     task = task.along(sense)
     turn = 2 * np.pi if whole.full and mechanism.linkage.driver.kind == "turn" else None
-    return SingleRun(task, machine, run(machine, task), first, sense, turn)
+    return SingleRun(task, machine, integrate_run(machine, task), first, sense, turn)

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_cli.mechanics.dynamics.flywheel import (
-    Flywheel,
+    FlywheelSolution,
     Tangent,
-    at_mean,
-    exact,
-    lowest,
-    mertsalov,
-    sharper,
-    touching,
-    wittenbauer,
+    energy_at_mean_speed,
+    exact_flywheel,
+    find_minimum,
+    find_tangent,
+    mertsalov_inertia,
+    refine_minimum,
+    wittenbauer_flywheel,
 )
-from tmm_cli.mechanics.dynamics.laws_of_motion import Cycle, Law, under_constant_moment
-from tmm_cli.mechanics.dynamics.motors import Motor
-from tmm_cli.mechanics.dynamics.reduced_model import Curve, Reduced, fitted, reduce_machine
+from tmm_cli.mechanics.dynamics.laws_of_motion import MotorCycle, SteadyLaw, constant_moment_law
+from tmm_cli.mechanics.dynamics.motors import MotorCharacteristic
+from tmm_cli.mechanics.dynamics.reduced_model import PanelCurve, ReducedMachine, fit_curves, reduce_machine
 from tmm_cli.mechanics.dynamics.tasks import SteadyTask
 from tmm_cli.mechanics.errors import (
     NoCycleError,
@@ -31,7 +31,7 @@ from tmm_cli.mechanics.errors import (
     SpeedDependentForceError,
     StandstillError,
 )
-from tmm_cli.mechanics.forces import applied, compute_energy, find_load_jumps, inertias
+from tmm_cli.mechanics.forces import collect_loads, compute_energy, find_load_jumps, reduced_inertias
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import (
@@ -49,13 +49,13 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
 
 
-STANDS = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
+STANDSTILL_FLUCTUATION = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
 DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
-MET = 1e-12  # of a fluctuation: it is as wanted
+FLUCTUATION_TOLERANCE = 1e-12  # of a fluctuation: it is as wanted
 
 
 @dataclass(frozen=True)
-class Steady:
+class SteadySolution:
     """moment: mean of what drives over the cycle (N m, or N). own: fluctuation with the given flywheel alone, nan where
     the machine comes to rest then. work: of all moments from the beginning of the cycle (J).
 
@@ -65,12 +65,12 @@ class Steady:
     """
 
     task: SteadyTask
-    machine: Reduced
+    machine: ReducedMachine
     moment: float
-    work: Curve
-    law: Law
+    work: PanelCurve
+    law: SteadyLaw
     own: float
-    found: Flywheel | None = None
+    found: FlywheelSolution | None = None
     wittenbauer: float = float("nan")
     first_group: float = float("nan")
 
@@ -108,19 +108,19 @@ class Steady:
     @property
     def speeds(self) -> tuple[float, float]:
         """The least and the largest speed of the driver, rad/s or m/s."""
-        return extremes(self.law)
+        return speed_extremes(self.law)
 
     @property
     def delta(self) -> float:
         """The fluctuation that there is."""
-        return fluctuation(self.law)
+        return speed_fluctuation(self.law)
 
     @property
     def tangents(self) -> tuple[Tangent, Tangent]:
         """To the energy-mass diagram, from where the inertia is -Jf and the energy -T0: of the largest and the least
         speed, whatever drives."""
         start = float(self.law.energy(np.zeros(1))[0])
-        low, high = (self._touching(x, speed, start) for x, speed in extreme_places(self.law))
+        low, high = (self._touching(x, speed, start) for x, speed in speed_extreme_places(self.law))
         return high, low
 
     def _touching(self, x: float, speed: float, start: float) -> Tangent:
@@ -132,12 +132,12 @@ class Steady:
         """By Mertsalov: tangents of the mean speed above the diagram and below it; the inertia is that of the second
         group, the links without a constant speed ratio."""
         slope = self.task.mean**2 / 2
-        tangents = (touching(self.machine, self.work, slope, top=top) for top in (True, False))
+        tangents = (find_tangent(self.machine, self.work, slope, top=top) for top in (True, False))
         upper, lower = (replace(line, inertia=line.inertia - self.machine.constant) for line in tangents)
         return upper, lower
 
 
-def extremes(law: Law) -> tuple[float, float]:
+def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
     """The least and the largest speed over the cycle, both searched for at once."""
     places, signs = law.energy.places(), np.array([1.0, -1.0])
     values = law.speed(places)
@@ -148,47 +148,49 @@ def extremes(law: Law) -> tuple[float, float]:
     return float(slowest), float(quickest)
 
 
-def extreme_places(law: Law) -> tuple[tuple[float, float], tuple[float, float]]:
+def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
     """Where on the way the speed is least and largest, each with that speed."""
     places = law.energy.places()
-    (slowest, low), (quickest, high) = lowest(law.speed, places), lowest(lambda x: -law.speed(x), places)
+    (slowest, low), (quickest, high) = find_minimum(law.speed, places), find_minimum(lambda x: -law.speed(x), places)
     length = law.energy.length
     return (
-        (sharper(law.acceleration, slowest, length), low),
-        (sharper(lambda x: -law.acceleration(x), quickest, length), -high),
+        (refine_minimum(law.acceleration, slowest, length), low),
+        (refine_minimum(lambda x: -law.acceleration(x), quickest, length), -high),
     )
 
 
-def fluctuation(law: Law) -> float:
+def speed_fluctuation(law: SteadyLaw) -> float:
     """The largest speed less the least, over the mean of both."""
-    low, high = extremes(law)
+    low, high = speed_extremes(law)
     return 2 * (high - low) / (high + low)
 
 
-def find_steady_running(machine: Reduced, task: SteadyTask) -> Steady:
+def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolution:
     """Steady running of a machine. Raises StandstillError, NoFlywheelError, NoInertiaError."""
     if task.motor is not None:
-        return _driven(machine, task, task.motor)
+        return _steady_with_motor(machine, task, task.motor)
     moment = -machine.work_of_cycle / machine.length
-    work = fitted(lambda x: (machine.work(x) + moment * x,), machine.work.edges)[0]
-    energy, own = at_mean(machine, work, task.mean, task.flywheel)
+    work = fit_curves(lambda x: (machine.work(x) + moment * x,), machine.work.edges)[0]
+    energy, own = energy_at_mean_speed(machine, work, task.mean, task.flywheel)
     if task.delta is None:
         if np.isnan(energy):
-            raise StandstillError(lowest(work, work.places())[0])
-        law = under_constant_moment(machine, task.flywheel, energy, moment)
-        return Steady(task, machine, moment, work, law, own)
+            raise StandstillError(find_minimum(work, work.places())[0])
+        law = constant_moment_law(machine, task.flywheel, energy, moment)
+        return SteadySolution(task, machine, moment, work, law, own)
     given = (machine, work, task.mean, task.delta)
-    found = exact(*given)
+    found = exact_flywheel(*given)
     if found.inertia <= task.flywheel:
         raise NoFlywheelError(task.delta, own)
-    law = under_constant_moment(machine, found.inertia, found.energy, moment)
-    return Steady(task, machine, moment, work, law, own, found, wittenbauer(*given).inertia, mertsalov(*given))
+    law = constant_moment_law(machine, found.inertia, found.energy, moment)
+    return SteadySolution(
+        task, machine, moment, work, law, own, found, wittenbauer_flywheel(*given).inertia, mertsalov_inertia(*given)
+    )
 
 
-def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
+def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCharacteristic) -> SteadySolution:
     """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
 
-    cycle, places = Cycle.of(machine, motor), machine.inertia.places()
+    cycle, places = MotorCycle.of(machine, motor), machine.inertia.places()
     inertia = machine.inertia(places)
     heaviest, lightest = float(np.max(inertia)), float(np.min(inertia))
     if task.delta is None and not task.flywheel + lightest > ROUNDOFF * heaviest:
@@ -196,26 +198,33 @@ def _driven(machine: Reduced, task: SteadyTask, motor: Motor) -> Steady:
 
     def delta_of(flywheel: float) -> float:
         if not flywheel + lightest > ROUNDOFF * heaviest:  # all masses rest somewhere on the driver's way
-            return STANDS
+            return STANDSTILL_FLUCTUATION
         try:
-            return fluctuation(cycle.law(flywheel))
+            return speed_fluctuation(cycle.law(flywheel))
         except (StandstillError, RunawayError):
-            return STANDS
+            return STANDSTILL_FLUCTUATION
 
     own = delta_of(task.flywheel)
     flywheel = task.flywheel
     if task.delta is not None:
         if own <= task.delta:
             raise NoFlywheelError(task.delta, own)
-        flywheel = _searched(task.delta, delta_of, task.flywheel, heaviest)
+        flywheel = _search_flywheel(task.delta, delta_of, task.flywheel, heaviest)
     law = cycle.law(flywheel)
     gained = law.energy.coefficients.copy()
     gained[0] -= law.energy(np.zeros(1))[0]
-    work = Curve(law.energy.edges, gained)
-    return Steady(task, machine, law.driving.total / machine.length, work, law, own if own < STANDS else float("nan"))
+    work = PanelCurve(law.energy.edges, gained)
+    return SteadySolution(
+        task,
+        machine,
+        law.driving.total / machine.length,
+        work,
+        law,
+        own if own < STANDSTILL_FLUCTUATION else float("nan"),
+    )
 
 
-def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
+def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
     """The inertia with which the fluctuation is delta; with the least one, low, it is larger.
 
     One over the fluctuation grows with the flywheel nearly evenly, so that few trials are enough.
@@ -223,7 +232,7 @@ def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit
 
     def over(flywheel: Real) -> Real:
         found = delta / delta_of(float(flywheel[0])) - 1
-        return np.array([0.0 if abs(found) <= MET else found])
+        return np.array([0.0 if abs(found) <= FLUCTUATION_TOLERANCE else found])
 
     below, above = np.array([low]), np.array([low + unit])
     for _ in range(DOUBLINGS):
@@ -239,7 +248,7 @@ def _searched(delta: float, delta_of: Callable[[float], float], low: float, unit
 CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertia of a link is compared
 
 
-def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
+def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:
     """Over a cycle from the driver's place `start` on (rad), by the way in its sense.
 
     Raises NoCycleError, BySpeedError.
@@ -248,7 +257,7 @@ def reduced_machine(mechanism: Mechanism, start: float) -> Reduced:
     if linkage.driver.kind != "turn" or not whole.full:
         raise NoCycleError
     length = 2 * np.pi * whole.turns
-    machine = reduced_between(mechanism, start, linkage.driver.sense, length)
+    machine = reduce_between(mechanism, start, linkage.driver.sense, length)
     return replace(machine, constant=_constant_inertia(mechanism, start, length))
 
 
@@ -261,11 +270,11 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
     motion = compute_motion(
         mechanism.linkage, mechanism.kernels, q, DriverMotion(start, 1.0, 0.0, mechanism.linkage.driver.sense)
     )
-    inertia = [np.broadcast_to(to_float(own), q.shape) for own, _ in inertias(motion).values()]
+    inertia = [np.broadcast_to(to_float(own), q.shape) for own, _ in reduced_inertias(motion).values()]
     return float(sum(np.mean(own) for own in inertia if np.ptp(own) <= CONSTANT_INERTIA * np.max(own)))
 
 
-def reduced_between(mechanism: Mechanism, start: float, sense: int, length: float) -> Reduced:
+def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float) -> ReducedMachine:
     """Over a way of this length (rad, or m) of the driver from `start` on, in a sense.
 
     Raises NoCycleError, BySpeedError.
@@ -279,7 +288,7 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
         motion = compute_motion(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
-        found = compute_energy(motion, applied(motion, strokes), np.zeros(np.shape(x)))
+        found = compute_energy(motion, collect_loads(motion, strokes), np.zeros(np.shape(x)))
         return found.inertia, sense * found.slope, sense * found.moment
 
     places = np.array([*find_load_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
@@ -291,10 +300,10 @@ def reduced_between(mechanism: Mechanism, start: float, sense: int, length: floa
 
 
 @dataclass(frozen=True)
-class Running:
+class SteadyRunning:
     """Steady running of a mechanism, and the law of motion of its driver from the place `start` on (rad)."""
 
-    steady: Steady
+    steady: SteadySolution
     start: float
     sense: int
 
@@ -328,9 +337,11 @@ class Running:
         return self.steady.work(self.way(q))
 
 
-def running(mechanism: Mechanism, start: float, task: SteadyTask) -> Running:
+def find_running_law(mechanism: Mechanism, start: float, task: SteadyTask) -> SteadyRunning:
     """Of a mechanism with its loads, from the driver's place `start` on (rad).
 
     Raises NoCycleError, BySpeedError, StandstillError, NoFlywheelError.
     """
-    return Running(find_steady_running(reduced_machine(mechanism, start), task), start, mechanism.linkage.driver.sense)
+    return SteadyRunning(
+        find_steady_running(reduce_mechanism(mechanism, start), task), start, mechanism.linkage.driver.sense
+    )

@@ -14,12 +14,12 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.dynamics.motors import Motor
+from tmm_cli.mechanics.dynamics.motors import MotorCharacteristic
 from tmm_cli.mechanics.numerics import Real
 
 
 @dataclass(frozen=True)
-class Disk:
+class DiskFlywheel:
     """density: kg/m3; width over diameter. height is of rims alone."""
 
     shape: ClassVar[Literal["disk", "rim"]] = "disk"
@@ -37,7 +37,7 @@ class Disk:
 
 
 @dataclass(frozen=True)
-class Rim:
+class RimFlywheel:
     """density: kg/m3; width and height of its section over its mean diameter."""
 
     shape: ClassVar[Literal["disk", "rim"]] = "rim"
@@ -54,7 +54,7 @@ class Rim:
         return math.pi * self.density * self.width * self.height * diameter**3
 
 
-Size = Disk | Rim
+FlywheelForm = DiskFlywheel | RimFlywheel
 
 
 # What is asked of the law of motion: numbers alone, as a problem file gives them.
@@ -71,15 +71,15 @@ class SteadyTask:
 
     mean: float
     delta: float | None = None
-    motor: Motor | None = None
+    motor: MotorCharacteristic | None = None
     flywheel: float = 0.0
     ratio: float = 1.0
     cyclic: ClassVar[Literal[True]] = True
-    size: Size = field(default_factory=partial(Disk, 7800.0, 0.2))
+    size: FlywheelForm = field(default_factory=partial(DiskFlywheel, 7800.0, 0.2))
 
 
 @dataclass(frozen=True)
-class Profile:
+class DriveProfile:
     """A moment (N m), or a force (N), by the time (s) or the way of the driver, linear between its rows.
 
     Two equal arguments are a jump: the second value holds from there on.
@@ -105,7 +105,7 @@ class RunTask:
     """
 
     speed: float = 0.0
-    motor: Motor | None = None
+    motor: MotorCharacteristic | None = None
     drive: Callable[[Real, Real], Real] | None = None
     brake: float = 0.0
     flywheel: float = 0.0
@@ -119,16 +119,16 @@ class RunTask:
         drive = self.drive
         if sense > 0 or drive is None:
             return self
-        if isinstance(drive, Profile):
+        if isinstance(drive, DriveProfile):
             return replace(self, drive=replace(drive, values=tuple(-value for value in drive.values)))
         return replace(self, drive=lambda time, way: -drive(time, way))
 
     @property
     def edges(self) -> tuple[float, ...]:
         """Times at which what drives may bend."""
-        return self.drive.arguments if isinstance(self.drive, Profile) and self.drive.against == "time" else ()
+        return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "time" else ()
 
     @property
     def way_edges(self) -> tuple[float, ...]:
         """Distances that the driver has moved (rad, or m) at which what drives may bend or jump."""
-        return self.drive.arguments if isinstance(self.drive, Profile) and self.drive.against == "way" else ()
+        return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "way" else ()

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.loads import AppliedLoad
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import Real, dot, squared_length
 
@@ -38,11 +38,11 @@ class Energy:
     balance: Real
 
 
-def compute_energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) -> Energy:
+def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real) -> Energy:
     """From the motion, the loads, and what the drivers do per unit of the first one's motion (N m, N)."""
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still
-    for own, rate_of_own in inertias(motion).values():
+    for own, rate_of_own in reduced_inertias(motion).values():
         inertia, slope = inertia + own, slope + rate_of_own
     powers = dict.fromkeys(("weight", "load", "friction"), still)
     for load in loads:
@@ -60,7 +60,7 @@ def compute_energy(motion: Motion, loads: tuple[Applied, ...], drivers: Real) ->
     )
 
 
-def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
+def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
     """Of each moving link its inertia reduced to the first driver, and the derivative of it by q."""
     found = {}
     for name in motion.linkage.moving:
@@ -71,7 +71,7 @@ def inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
     return found
 
 
-def reduced_moment(motion: Motion, load: Applied) -> Real:
+def reduced_moment(motion: Motion, load: AppliedLoad) -> Real:
     """What a load does per unit of the first driver's motion, N m or N."""
     found: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
     return found

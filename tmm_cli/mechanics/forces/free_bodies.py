@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tmm_cli.language import printed, symbol
-from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.loads import AppliedLoad
 from tmm_cli.mechanics.forces.reactions import Balance, Reaction, Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_FORCE, cross, dot, unit
 from tmm_cli.mechanics.structure import Group, Pair
 
-Kind = Literal[
+VectorKind = Literal[
     "absolute", "relative", "normal", "tangential", "coriolis", "sliding", "load", "inertia", "reaction", "inner"
 ]
 
@@ -30,8 +30,8 @@ class Symbol:
     @property
     def name(self) -> str:
         """In one line: R₃₄ᵗ."""
-        below = f"({self.below})" if "," in self.below else self.below.translate(BELOW)
-        return self.letter + below + self.above.translate(_ABOVE)
+        below = f"({self.below})" if "," in self.below else self.below.translate(SUBSCRIPTS)
+        return self.letter + below + self.above.translate(_SUPERSCRIPTS)
 
     @property
     def plain(self) -> str:
@@ -44,7 +44,7 @@ class Symbol:
         return Symbol(f"{self.letter}′", self.below, self.above)
 
 
-class Lettered(Symbol):
+class CourseSymbol(Symbol):
     """A quantity by the letter that a course writes in the language that is spoken where it is read: M_d is M_д."""
 
     mark: str
@@ -61,13 +61,13 @@ class Lettered(Symbol):
         return symbol(self.mark).partition("_")[2]
 
 
-BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-_ABOVE = str.maketrans("τn", "ᵗⁿ")
+SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_SUPERSCRIPTS = str.maketrans("τn", "ᵗⁿ")
 
 
 def subscript(text: str) -> str:
     """Figures below the line where the name is a number, else in brackets."""
-    return text.translate(BELOW) if text.isdecimal() and text.isascii() else f"({text})"
+    return text.translate(SUBSCRIPTS) if text.isdecimal() and text.isascii() else f"({text})"
 
 
 def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
@@ -76,7 +76,7 @@ def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symb
     return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
 
 
-def lettered(mark: str, index: str = "") -> Symbol:
+def course_symbol(mark: str, index: str = "") -> Symbol:
     """A quantity with an index by the letter that the course of the language gives it: U₃ is Φ₃ in Russian."""
     letter, _, below = symbol(mark).partition("_")
     return Symbol(letter, below + index)
@@ -85,23 +85,23 @@ def lettered(mark: str, index: str = "") -> Symbol:
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
     """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
     index = link if several else ""
-    return lettered("M_b", index) if turns else lettered("F_b", index)
+    return course_symbol("M_b", index) if turns else course_symbol("F_b", index)
 
 
-FAR = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
+FARTHEST_ARM = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
 DRIVE = "drive"
-SHORT = 2  # letters after the first one of a name that is an index of it: Fc, Fcut is a word
+LONGEST_INDEX = 2  # letters after the first one of a name that is an index of it: Fc, Fcut is a word
 
 
 @dataclass(frozen=True)
-class Acting:
+class ForceOrCouple:
     """A force (N) at a place (m) of a link; or a couple (N m), which has no force.
 
     pair: the name of the pair, or DRIVE, that it comes from; empty of loads.
     """
 
     symbol: Symbol
-    kind: Kind
+    kind: VectorKind
     link: str
     at: complex
     force: complex
@@ -123,7 +123,7 @@ class Acting:
 
 
 @dataclass(frozen=True)
-class Loaded:
+class LoadedPosition:
     """A position under its forces; size of the linkage, m."""
 
     motion: Motion
@@ -132,7 +132,7 @@ class Loaded:
     size: float
 
     @classmethod
-    def at(cls, motion: Motion, reactions: Reactions, k: int) -> Loaded:
+    def at(cls, motion: Motion, reactions: Reactions, k: int) -> LoadedPosition:
         """A position by its index. Its size is that of the moving points, at least the longest link.
 
         In one position all moving points may coincide but for rounding.
@@ -163,7 +163,7 @@ class Loaded:
         turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
         return complex(turned * unit(pair.slide.direction))
 
-    def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[Acting, ...]:
+    def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
         """All that acts on these links from without; what is zero beside the largest is left out.
 
         axes: directions, by the names of hinges, along which and across which their reactions are parted.
@@ -173,23 +173,23 @@ class Loaded:
             if (reaction.on in links) != (reaction.by in links):
                 link = reaction.on if reaction.on in links else reaction.by
                 found += self._reaction(reaction, link, axes.get(reaction.pair.name))
-        return there(found, self.size)
+        return drop_negligible(found, self.size)
 
-    def given(self) -> tuple[Acting, ...]:
+    def given(self) -> tuple[ForceOrCouple, ...]:
         """The loads of all links, and what balances each driver, on the link that it drives."""
         drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
-        return there([*self._loads(self.motion.linkage.moving), *drives], self.size)
+        return drop_negligible([*self._loads(self.motion.linkage.moving), *drives], self.size)
 
-    def _loads(self, links: Collection[str]) -> Iterable[Acting]:
+    def _loads(self, links: Collection[str]) -> Iterable[ForceOrCouple]:
         for load in self.reactions.applied:
             if load.link in links:
-                kind = kind_of(load)
+                kind = vector_kind(load)
                 at = complex(self.motion.point(load.link, load.at).x[self.k])
                 force, couple = load_symbols(load)
-                yield Acting(force, kind, load.link, at, complex(load.force[self.k]))
-                yield Acting(couple, kind, load.link, at, 0j, float(load.moment[self.k]))
+                yield ForceOrCouple(force, kind, load.link, at, complex(load.force[self.k]))
+                yield ForceOrCouple(couple, kind, load.link, at, 0j, float(load.moment[self.k]))
 
-    def _drives(self, links: Collection[str]) -> Iterable[Acting]:
+    def _drives(self, links: Collection[str]) -> Iterable[ForceOrCouple]:
         for balance in self.reactions.balances:
             driver = balance.driver
             if driver.link in links and driver.base not in links:
@@ -197,18 +197,18 @@ class Loaded:
             elif driver.base in links and driver.link not in links:
                 yield self._drive(balance, driver.base, -1)
 
-    def _drive(self, balance: Balance, link: str, sense: int) -> Acting:
+    def _drive(self, balance: Balance, link: str, sense: int) -> ForceOrCouple:
         driver, k, turns = balance.driver, self.k, balance.kind == "moment"
         symbol = balance_symbol(driver.link, len(self.reactions.balances) > 1, turns=turns)
         if sense < 0:
             symbol = symbol.primed
         if turns:
             moment = sense * float(balance.generalized[k])
-            return Acting(symbol, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
+            return ForceOrCouple(symbol, "reaction", link, self.hinge(driver.joint), 0j, moment, DRIVE)
         force = sense * complex(balance.vector[k])
-        return Acting(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
+        return ForceOrCouple(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
 
-    def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[Acting]:
+    def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[ForceOrCouple]:
         """On one of its two links: a guide's where it acts, a hinge's in two parts where it has an axis."""
         k, pair, own = self.k, reaction.pair, link == reaction.on
         by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
@@ -218,52 +218,52 @@ class Loaded:
                 at = self.place(link, 0j)
             back = -reaction.couple if reaction.back is None else reaction.back
             couple = float((reaction.couple if own else back)[k])
-        if reaction.arm is not None and abs(reaction.arm[k]) < FAR * self.size:
+        if reaction.arm is not None and abs(reaction.arm[k]) < FARTHEST_ARM * self.size:
             at, couple = at + float(reaction.arm[k]) * self.guide(pair), 0.0
         if axis is None:
-            yield Acting(reaction_symbol(by, link), "reaction", link, at, force, pair=pair.name)
-            yield Acting(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
+            yield ForceOrCouple(reaction_symbol(by, link), "reaction", link, at, force, pair=pair.name)
+            yield ForceOrCouple(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
         else:
-            tangential = part_across(force, axis)
+            tangential = component_across(force, axis)
             if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
                 tangential = complex(reaction.tangential[k])
-            yield Acting(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
-            yield Acting(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
+            yield ForceOrCouple(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
+            yield ForceOrCouple(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
 
 
-def part_across(force: complex, axis: complex) -> complex:
+def component_across(force: complex, axis: complex) -> complex:
     """The part of a force that is across an axis."""
     across = axis * 1j / abs(axis)
     return across * float(dot(across, force))
 
 
-def there(acting: Iterable[Acting], size: float) -> tuple[Acting, ...]:
+def drop_negligible(acting: Iterable[ForceOrCouple], size: float) -> tuple[ForceOrCouple, ...]:
     """Without what is zero but for rounding beside the largest; size: of the linkage, m."""
     acting = tuple(acting)
     largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
     return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
 
 
-def kind_of(load: Applied) -> Kind:
+def vector_kind(load: AppliedLoad) -> VectorKind:
     """As vectors of plans have it."""
     return "inertia" if load.kind == "inertia" else "load"
 
 
-def load_symbols(load: Applied) -> tuple[Symbol, Symbol]:
+def load_symbols(load: AppliedLoad) -> tuple[Symbol, Symbol]:
     """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
     if load.kind == "weight":
-        return lettered("G", load.link), lettered("G", load.link)
+        return course_symbol("G", load.link), course_symbol("G", load.link)
     if load.kind == "inertia":
-        return lettered("U", load.link), lettered("M", load.link)
+        return course_symbol("U", load.link), course_symbol("M", load.link)
     names = load.name, load.couple_name or load.name
     if load.kind == "friction":
         return Symbol(names[0][:1], names[0][1:]), Symbol(names[1][:1], names[1][1:])
     if load.ambiguous:
         return Symbol("P", load.name), Symbol("M", load.name)
-    return named(names[0], "P"), named(names[1], "M")
+    return symbol_of_name(names[0], "P"), symbol_of_name(names[1], "M")
 
 
-def load_names(load: Applied) -> tuple[str, str]:
+def load_names(load: AppliedLoad) -> tuple[str, str]:
     """The same on one line, as tables of the results have them; one that is given has its name of the file."""
     if load.kind == "load":
         return load.name, load.couple_name or load.name
@@ -271,11 +271,11 @@ def load_names(load: Applied) -> tuple[str, str]:
     return force.plain, couple.plain
 
 
-def named(name: str, letter: str) -> Symbol:
+def symbol_of_name(name: str, letter: str) -> Symbol:
     """F of F, F₅ of F5, F_c of Fc or F_c; of a word this letter with the word below it: P_press of press."""
     base = name.rstrip("'")
     first, rest = base[:1], base[1:].removeprefix("_")
-    short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= SHORT)
+    short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= LONGEST_INDEX)
     symbol = Symbol(first, rest) if first.isalpha() and short else Symbol(letter, base)
     return symbol.primed if name != base else symbol
 
@@ -283,11 +283,11 @@ def named(name: str, letter: str) -> Symbol:
 # Leads of a group: the outer hinges and guides by which it hangs on other links; the point of Assur of three leads.
 
 
-STEEP = 0.02  # sine: lines that meet under less have their special point off any paper
+LEAST_SINE = 0.02  # sine: lines that meet under less have their special point off any paper
 
 
 @dataclass(frozen=True)
-class Lead:
+class ExternalPair:
     """An outer pair with all links that turn as one with its own (they slide on one another).
 
     axis: along which the normal part of a hinge's reaction is, if it is parted. about: the point about which moments of
@@ -301,45 +301,45 @@ class Lead:
     rest: tuple[complex, complex] | None = None
 
     @property
-    def open_part(self) -> Kind:
+    def open_part(self) -> VectorKind:
         """Which part of the reaction has its line in `rest`."""
         if self.pair.slide is not None:
             return "reaction"
         return "tangential" if self.about is None else "normal"
 
 
-def leads_of(here: Loaded, group: Group) -> tuple[Lead, ...]:
+def external_pairs(here: LoadedPosition, group: Group) -> tuple[ExternalPair, ...]:
     """Its outer lower pairs, in its own order."""
-    return tuple(_lead(here, group, pair) for pair in group.outer if pair.lower)
+    return tuple(_external_pair(here, group, pair) for pair in group.outer if pair.lower)
 
 
-def hinges_of(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
+def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
     """Points in which these links are hinged to others."""
     return list(dict.fromkeys(p.point for p in pairs if p.kind == "R" and len({p.i, p.j} & {*links}) == 1))
 
 
-def _lead(here: Loaded, group: Group, pair: Pair) -> Lead:
+def _external_pair(here: LoadedPosition, group: Group, pair: Pair) -> ExternalPair:
     own = group.own(pair)
     links = _sliding_together(group, own)
-    inner = hinges_of(group.inner, links)
+    inner = hinge_names(group.inner, links)
     if pair.slide is not None:
-        hinges = hinges_of(group.inner, (own,))
+        hinges = hinge_names(group.inner, (own,))
         rest = (here.hinge(hinges[0]), 1j * here.guide(pair)) if len(hinges) == 1 else None
-        return Lead(pair, links, rest=rest)
+        return ExternalPair(pair, links, rest=rest)
     at = here.hinge(pair.point)
     outer = [p for p in group.outer if group.own(p) in links]
     if len(inner) == 1 and len(outer) == 1:
         axis = here.hinge(inner[0]) - at
-        return Lead(pair, links, axis, inner[0], (at, axis)) if axis else Lead(pair, links)
+        return ExternalPair(pair, links, axis, inner[0], (at, axis)) if axis else ExternalPair(pair, links)
     driven = {link for driver in group.drivers for link in (driver.base, driver.link)}
     slides = [p for p in group.inner if own in (p.i, p.j)]
     if len(slides) == 1 and slides[0].slide is not None and own not in driven:
         axis = here.guide(slides[0])  # nothing else holds the link along its guide
         others = [p.point for p in outer if p != pair and p.kind == "R"]
         if not inner and len(others) == len(outer) - 1 == 1:
-            return Lead(pair, links, axis, others[0])
-        return Lead(pair, links, axis if len(group.outer) > 2 else None, rest=(at, 1j * axis))
-    return Lead(pair, links)
+            return ExternalPair(pair, links, axis, others[0])
+        return ExternalPair(pair, links, axis if len(group.outer) > 2 else None, rest=(at, 1j * axis))
+    return ExternalPair(pair, links)
 
 
 def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
@@ -352,15 +352,17 @@ def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
     return tuple(n for n in group.links if n in found)
 
 
-def assur_point(here: Loaded, group: Group, leads: Sequence[Lead]) -> tuple[Lead, complex] | None:
+def find_assur_point(
+    here: LoadedPosition, group: Group, leads: Sequence[ExternalPair]
+) -> tuple[ExternalPair, complex] | None:
     """The lead that moments of a group with three leads give next, and where what is open of the other two meets."""
     if len(leads) != 3 or len(group.outer) != 3 or group.drivers or any(lead.rest is None for lead in leads):
         return None
     for lead in sorted(leads, key=lambda lead: lead.open_part == "normal"):
         (p, u), (q, v) = (other.rest for other in leads if other is not lead and other.rest is not None)
         sine = cross(u, v) / (abs(u) * abs(v))
-        if abs(sine) > STEEP:
+        if abs(sine) > LEAST_SINE:
             centre = p + u * cross(q - p, v) / cross(u, v)
-            if abs(centre - here.pair(lead.pair)) < FAR * here.size:
+            if abs(centre - here.pair(lead.pair)) < FARTHEST_ARM * here.size:
                 return lead, complex(centre)
     return None

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.loads import Applied
-from tmm_cli.mechanics.forces.reactions import Reaction, Reactions, power, react
+from tmm_cli.mechanics.forces.loads import AppliedLoad
+from tmm_cli.mechanics.forces.reactions import Reaction, Reactions, reduced_driving_moment, solve_reactions
 from tmm_cli.mechanics.kinematics import Motion, zero_at_rest
 from tmm_cli.mechanics.linkage import FRAME, Friction
 from tmm_cli.mechanics.numerics import (
@@ -30,9 +30,9 @@ from tmm_cli.mechanics.numerics import (
 from tmm_cli.mechanics.structure import Structure
 
 STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
-ROUNDS = 40  # of Newton's method in each
+NEWTON_STEPS = 40  # of Newton's method in each
 HALVINGS = 16  # of the distance between two positions, in which a locked range ends
-OUTER = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
+OUTER_ROUNDS = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class FrictionSolution:
     """
 
     reactions: Reactions
-    loads: tuple[Applied, ...]
+    loads: tuple[AppliedLoad, ...]
     locked: Real
     pair: tuple[str, ...]
     work: dict[str, Real]
@@ -62,7 +62,7 @@ class LockedRange:
 
 
 @dataclass(frozen=True)
-class Losses:
+class FrictionLosses:
     """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
 
     Where the mechanism locks itself there is no work to be summed up, and no efficiency.
@@ -82,14 +82,14 @@ class Losses:
         return float(useful / self.drivers)
 
 
-def losses(rubbed: FrictionSolution, motion: Motion) -> Losses:
+def compute_losses(rubbed: FrictionSolution, motion: Motion) -> FrictionLosses:
     """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
-    pairs = {pair: _over(work, motion) for pair, work in rubbed.work.items()}
-    drivers = without_rounding(_over(rubbed.drivers, motion), _over(np.abs(rubbed.drivers), motion))
-    return Losses(float(drivers), pairs, bool(np.any(rubbed.locked)))
+    pairs = {pair: _integrate(work, motion) for pair, work in rubbed.work.items()}
+    drivers = without_rounding(_integrate(rubbed.drivers, motion), _integrate(np.abs(rubbed.drivers), motion))
+    return FrictionLosses(float(drivers), pairs, bool(np.any(rubbed.locked)))
 
 
-def _over(work: Real, motion: Motion) -> float:
+def _integrate(work: Real, motion: Motion) -> float:
     """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
     values = np.where(motion.moving & np.isfinite(work), work, 0.0)
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
@@ -126,7 +126,7 @@ def find_locked_ranges(
 
 
 def solve_friction(
-    motion: Motion, structure: Structure, loads: tuple[Applied, ...], free: Reactions
+    motion: Motion, structure: Structure, loads: tuple[AppliedLoad, ...], free: Reactions
 ) -> FrictionSolution:
     """The force plan whose friction is that of its own reactions.
 
@@ -136,39 +136,45 @@ def solve_friction(
     given = motion.linkage.friction
     names = [f.pair for f in given]
     ones = np.ones(np.shape(motion.q))
-    units = [tuple(_loads(f, motion, free, ones)) for f in given]
-    response = array([_forces(react(motion, structure, unit), names) for unit in units])  # friction, pair, position
-    start = _forces(free, names)
+    units = [tuple(_friction_loads(f, motion, free, ones)) for f in given]
+    response = array(
+        [_pair_forces(solve_reactions(motion, structure, unit), names) for unit in units]
+    )  # friction, pair, position
+    start = _pair_forces(free, names)
     reactions, locked = free, np.zeros(np.shape(motion.q), dtype=bool)
-    rubbed: tuple[Applied, ...] = ()
-    for _ in range(OUTER):
-        sizes, locked = _solved(start, response)
-        rubbed = tuple(load for f, size in zip(given, sizes, strict=True) for load in _loads(f, motion, free, size))
-        reactions = react(motion, structure, (*loads, *rubbed))
-        new = _forces(reactions, names)
+    rubbed: tuple[AppliedLoad, ...] = ()
+    for _ in range(OUTER_ROUNDS):
+        sizes, locked = _solve_magnitudes(start, response)
+        rubbed = tuple(
+            load for f, size in zip(given, sizes, strict=True) for load in _friction_loads(f, motion, free, size)
+        )
+        reactions = solve_reactions(motion, structure, (*loads, *rubbed))
+        new = _pair_forces(reactions, names)
         with np.errstate(invalid="ignore"):
             off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
         if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
             break
         start = new - np.sum(response * sizes[:, None], axis=0)
-    work = {f.pair: _work(f, motion, reactions) for f in given}
+    work = {f.pair: _friction_work(f, motion, reactions) for f in given}
     stacked = np.nan_to_num(np.abs(array(list(work.values()))))
     worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
     locked = locked & motion.moving
     if bool(np.any(locked)):
-        rubbed = tuple(_nowhere(load, locked) for load in rubbed)
-        reactions = react(motion, structure, (*loads, *rubbed))
+        rubbed = tuple(_blank_locked(load, locked) for load in rubbed)
+        reactions = solve_reactions(motion, structure, (*loads, *rubbed))
         work = {name: np.where(locked, np.nan, value) for name, value in work.items()}
-    return FrictionSolution(reactions, (*loads, *rubbed), locked, worst, work, power(motion, reactions))
+    return FrictionSolution(
+        reactions, (*loads, *rubbed), locked, worst, work, reduced_driving_moment(motion, reactions)
+    )
 
 
-def _forces(reactions: Reactions, names: list[str]) -> Vector:
+def _pair_forces(reactions: Reactions, names: list[str]) -> Vector:
     """Forces in the given pairs, (pair, position)."""
     found: Vector = array([reactions.of(name).force for name in names])
     return found
 
 
-def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
+def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
     """Sizes f of f = |start + sum f_k response_k| (pair, position), and positions where there are none: it locks.
 
     Friction is let in little by little, and each time Newton's method starts from the last answer.
@@ -180,7 +186,7 @@ def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
         for stage in range(1, STAGES + 1):
             part = response * (stage / STAGES)
             last = np.full(count, np.inf)
-            for _ in range(ROUNDS):
+            for _ in range(NEWTON_STEPS):
                 force = start + np.sum(part * sizes[:, None], axis=0)
                 along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
                 slope = (np.conj(along)[None] * part).real  # of |force j| by f_k
@@ -195,12 +201,12 @@ def _solved(start: Vector, response: Vector) -> tuple[Real, Real]:
     return np.where(locked, np.abs(start), sizes), locked
 
 
-def _nowhere(load: Applied, lost: Real) -> Applied:
+def _blank_locked(load: AppliedLoad, lost: Real) -> AppliedLoad:
     """A load that is nothing where the mechanism does not move."""
     return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
 
 
-def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
+def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     """Direction of the relative motion (+1, 0, -1) and its size per unit of the driver, of link `on` against `by`."""
     largest = motion.largest
     if pair.pair.slide is not None:
@@ -212,10 +218,10 @@ def _slip(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
     return np.sign(moving * motion.rate), np.abs(moving)
 
 
-def _loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[Applied]:
+def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[AppliedLoad]:
     """Friction on both links of a pair."""
     pair = reactions.of(friction.pair)
-    sign, _ = _slip(pair, motion)
+    sign, _ = _relative_motion(pair, motion)
     still = np.zeros(np.shape(motion.q))
     for link, sense in ((pair.on, -1.0), (pair.by, 1.0)):
         if link == FRAME:
@@ -223,7 +229,9 @@ def _loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real
         name = f"T{friction.pair}{link}"  # as v_A3 is the velocity at A of link 3
         if pair.pair.slide is None:
             moment = sense * friction.coefficient * friction.radius * force * sign
-            yield Applied(name, "friction", link, motion.linkage.local(link, pair.pair.point), still + 0j, moment, name)
+            yield AppliedLoad(
+                name, "friction", link, motion.linkage.local(link, pair.pair.point), still + 0j, moment, name
+            )
         else:
             slide = pair.pair.slide
             u = motion.poses[slide.carrier].z * unit(slide.direction)
@@ -231,11 +239,11 @@ def _loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real
             # at the running point; seen from the carrier that wanders, so its moment is given apart
             arm = pair.at - motion.poses[link].x
             moment = arm.real * push.imag - arm.imag * push.real
-            yield Applied(name, "friction", link, 0j, push, moment, f"M{name}")
+            yield AppliedLoad(name, "friction", link, 0j, push, moment, f"M{name}")
 
 
-def _work(friction: Friction, motion: Motion, reactions: Reactions) -> Real:
+def _friction_work(friction: Friction, motion: Motion, reactions: Reactions) -> Real:
     pair = reactions.of(friction.pair)
-    _, slip = _slip(pair, motion)
+    _, slip = _relative_motion(pair, motion)
     arm = friction.radius if pair.pair.slide is None else 1.0
     return -friction.coefficient * np.abs(pair.force) * arm * slip

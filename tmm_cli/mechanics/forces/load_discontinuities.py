@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.loads import motion_on_base, setting_off
+from tmm_cli.mechanics.forces.loads import motion_direction, motion_on_base
 from tmm_cli.mechanics.groups import DriverMotion, solvers_towards
 from tmm_cli.mechanics.kinematics import SCAN, Motion, OutputCurve, compute_motion
 from tmm_cli.mechanics.linkage import Load, LoadTable
@@ -27,40 +27,40 @@ def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
             yield from (stroke.start, stroke.start + sense * stroke.length)
     for load in linkage.loads:
         if load.window is not None:
-            yield from (place + cycle * k for place in load.window for k in _cycles(mechanism))
+            yield from (place + cycle * k for place in load.window for k in _load_cycles(mechanism))
         if load.table is not None:
-            yield from _reached(mechanism, load.table, (*load.table.arguments, 0.0))
+            yield from _coordinates_of_arguments(mechanism, load.table, (*load.table.arguments, 0.0))
         if load.resists:
-            yield from _turns_back(mechanism, load)
+            yield from _find_reversals(mechanism, load)
 
 
-def table_jumps(mechanism: Mechanism) -> Iterable[float]:
+def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
     """Driver coordinates (rad) at which tables of loads jump, in any order and turn."""
     for load in mechanism.linkage.loads:
         if load.table is not None and load.table.jumps:
             rows = [load.table.arguments[k] for k in load.table.jumps]
-            yield from _reached(mechanism, load.table, rows)
+            yield from _coordinates_of_arguments(mechanism, load.table, rows)
 
 
-def _cycles(mechanism: Mechanism) -> range:
+def _load_cycles(mechanism: Mechanism) -> range:
     """Numbers of the cycles of the loads in the cycle of the motion."""
     return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
 
 
-def _reached(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+def _coordinates_of_arguments(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
     """Driver coordinates (rad) at which these arguments of a table are reached."""
     if table.against == "stroke":
-        yield from _reached_in_strokes(mechanism, table, arguments)
+        yield from _coordinates_in_strokes(mechanism, table, arguments)
         return
     linkage = mechanism.linkage
     begin, sense, cycle = 0.0, 1, 2 * np.pi * linkage.turns
     if table.against == "crank turn":
         strokes = mechanism.strokes.strokes if mechanism.strokes else ()
         begin, sense = strokes[0].start if strokes else linkage.sketch.at, linkage.driver.sense
-    yield from (begin + sense * argument + cycle * k for argument in arguments for k in _cycles(mechanism))
+    yield from (begin + sense * argument + cycle * k for argument in arguments for k in _load_cycles(mechanism))
 
 
-def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
+def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
     """Driver coordinates (rad) at which a link reaches arguments of a table against its stroke, within strokes."""
     linkage, strokes = mechanism.linkage, mechanism.strokes
     strokes = strokes and strokes.of_link(table.stroke_link)
@@ -77,10 +77,12 @@ def _reached_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Itera
             # at the ends themselves the output rests: rounding would put the row a little beside them
             if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_DRIVER_POSITION):
                 end = stroke.start + linkage.driver.sense * stroke.length
-                yield float(find_roots(_missed(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0])
+                yield float(
+                    find_roots(_distance_from_run(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0]
+                )
 
 
-def _missed(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
+def _distance_from_run(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
     """How far the output is from a place; an angle is counted about the middle of its stroke."""
 
     def missed(q: Real) -> Real:
@@ -92,7 +94,7 @@ def _missed(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real]
     return missed
 
 
-def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
+def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
     """Where what a friction resists turns back."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
@@ -102,7 +104,7 @@ def _turns_back(mechanism: Mechanism, load: Load) -> Iterable[float]:
 
     q = np.linspace(whole.start, whole.end, SCAN * whole.turns + 1)
     half = (q[1] - q[0]) / 2  # a place of the scan may be the end itself: a little beyond it there is no doubt
-    along, turning = setting_off(load, moved(q, 2))
+    along, turning = motion_direction(load, moved(q, 2))
     if load.force:
         back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)
         before = along[back]

@@ -14,7 +14,7 @@ from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector,
 
 
 @dataclass(frozen=True)
-class Applied:
+class AppliedLoad:
     """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position.
 
     ambiguous: the name of a load of the task is also the symbol of another quantity, such as M3, the couple of inertia
@@ -43,13 +43,13 @@ class Applied:
 # What springs, and cylinders that only push, do to the two links that they join.
 
 
-def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
     """The equal and opposite loads of each spring; on the frame they are left out."""
     still = np.zeros(np.shape(motion.q))
     moving = motion.linkage.moving
     for spring in motion.linkage.springs:
         if spring.turns:
-            pull = _twist(spring, motion)
+            pull = _torsion_moment(spring, motion)
             pairs = ((spring.j, spring.at_j, still + 0j, -pull), (spring.i, spring.at_i, still + 0j, pull))
         else:
             i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
@@ -62,20 +62,20 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
         for link, at, force, moment in pairs:
             if link in moving:
                 name = spring.name if link == spring.j or spring.j not in moving else f"{spring.name}'"
-                yield Applied(name, "load", link, at, force, moment, name)
+                yield AppliedLoad(name, "load", link, at, force, moment, name)
 
 
-def twisted(spring: Spring, motion: Motion) -> Real:
+def twist_angle(spring: Spring, motion: Motion) -> Real:
     """Angle by which a torsion spring is turned from its free angle, within half a turn (rad)."""
     turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
     found: Real = np.angle(turned)
     return found
 
 
-def _twist(spring: Spring, motion: Motion) -> Real:
+def _torsion_moment(spring: Spring, motion: Motion) -> Real:
     """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
     speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
-    return spring.preload + spring.rate * twisted(spring, motion) + spring.damping * speed
+    return spring.preload + spring.rate * twist_angle(spring, motion) + spring.damping * speed
 
 
 # The loads of the task: what they are tabulated against, where they act, and what resists a motion.
@@ -85,59 +85,61 @@ BEFORE_END = 1e-3  # of the stroke: a table that ends before its end by less is 
 BEYOND_END = 0.02  # of the stroke: likewise beyond it
 
 
-def given_loads(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
     """The loads of the task, each with its opposite on the other link if that moves.
 
     Those of working strokes act always where there are none.
     """
     for load in motion.linkage.loads:
-        size = _size(load, motion, strokes)
+        size = _load_factor(load, motion, strokes)
         along: Vector | float = motion.poses[load.link].z if load.follows else 1.0
         turning: Real | float = 1.0
         if load.resists:
-            velocity, turned = setting_off(load, motion)
+            velocity, turned = motion_direction(load, motion)
             along, turning = -velocity, -turned
         force, moment = load.force * size * along, load.moment * size * turning
-        yield Applied(load.name, "load", load.link, load.at, force, moment, load.name)
+        yield AppliedLoad(load.name, "load", load.link, load.at, force, moment, load.name)
         if load.base != FRAME:
-            yield _opposite(load, motion, force, moment)
+            yield _opposite_load(load, motion, force, moment)
 
 
-def _size(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
+def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
     """What its force and moment are multiplied by."""
     size = np.ones(np.shape(motion.q))
     if load.table is not None:
         size = load.table(table_argument(load.table, motion, strokes))
-    return size if acts_always(load, strokes) else np.where(acts(load, motion.q, motion.linkage, strokes), size, 0.0)
+    return (
+        size if always_acts(load, strokes) else np.where(is_acting(load, motion.q, motion.linkage, strokes), size, 0.0)
+    )
 
 
-def acts(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
+def is_acting(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
     """True at the positions of the driver in which a load acts, which is always if there are no strokes."""
     if load.window is not None:
         return in_window(load.window, q, linkage)
-    if acts_always(load, strokes):
+    if always_acts(load, strokes):
         return np.ones(np.shape(q), dtype=bool)
     assert strokes is not None
     return strokes.of_link(load.stroke_link).share(q, linkage.driver.sense)
 
 
-def acts_always(load: Load, strokes: Strokes | None) -> bool:
+def always_acts(load: Load, strokes: Strokes | None) -> bool:
     """True if a load acts at all positions: it is limited neither to a window nor to working strokes that there are."""
     if load.window is not None:
         return False
     return not load.working_stroke_only or strokes is None or not strokes.of_link(load.stroke_link).strokes
 
 
-def _opposite(load: Load, motion: Motion, force: Vector, moment: Real) -> Applied:
+def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> AppliedLoad:
     """What the other link has of it: at the point that both share, or along the same line."""
     name, points = f"{load.name}'", motion.linkage.links[load.base].points
     if load.point in points:
-        return Applied(name, "load", load.base, points[load.point], -force, -moment, name)
+        return AppliedLoad(name, "load", load.base, points[load.point], -force, -moment, name)
     arm = motion.poses[load.link].at(load.at) - motion.poses[load.base].x
-    return Applied(name, "load", load.base, 0j, -force, -moment - cross(arm, force), name)
+    return AppliedLoad(name, "load", load.base, 0j, -force, -moment - cross(arm, force), name)
 
 
-def setting_off(load: Load, motion: Motion) -> tuple[Vector, Real]:
+def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
     """Direction in which the point of a load moves, and the sense in which its link turns, as its base sees them.
 
     In an end of its way a thing has the direction in which it sets off from there; what stays at rest has none: 0.
@@ -182,12 +184,12 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
     """
     driver = motion.linkage.driver
     if table.against == "crank angle":
-        return _turned(motion.q, 2 * motion.linkage.turns * pi(motion.q))
+        return _angle_in_cycle(motion.q, 2 * motion.linkage.turns * pi(motion.q))
     first = strokes.strokes[0] if strokes and strokes.strokes else None
     if table.against == "crank turn":
         start = first.start if first else motion.linkage.sketch.at
         cycle = strokes.cycle if strokes else 2 * np.pi * motion.linkage.turns
-        return _turned(driver.sense * (motion.q - start), cycle)
+        return _angle_in_cycle(driver.sense * (motion.q - start), cycle)
     assert strokes is not None
     strokes = strokes.of_link(table.stroke_link)
     first = strokes.strokes[0]
@@ -199,7 +201,7 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
     return worked
 
 
-def reach_of_tables(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
+def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
     """Each load tabulated against the stroke in lengths or angles, its last row and the stroke (m or rad).
 
     Both are arrays (variants, 1) where the linkage is one of many variants.
@@ -216,7 +218,7 @@ def ends_with_stroke(last: Any, stroke: Any) -> Any:
     return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
 
 
-def _turned(angle: Real, cycle: Real | float) -> Real:
+def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
     """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
     to the other side."""
     seam = SEAM * (1 + np.abs(angle))
@@ -229,27 +231,31 @@ def _turned(angle: Real, cycle: Real | float) -> Real:
 BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are written
 
 
-def applied(motion: Motion, strokes: Strokes | None) -> tuple[Applied, ...]:
+def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:
     """All that acts on each moving link but friction, in the order of the links."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
-    found = [load for kind in KINDS for load in kind(motion, strokes)]
+    found = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
     symbols = {*BALANCING, *(name for load in found if load.kind != "load" for name in (load.name, load.couple_name))}
     found = [replace(a, ambiguous=True) if a.kind == "load" and a.name.rstrip("'") in symbols else a for a in found]
     return tuple(sorted(found, key=lambda a: order[a.link]))
 
 
-def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[Applied]:
+def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
     """Weights in the centres of mass, and inertia about them. Massless links carry nothing."""
     still = np.zeros(np.shape(motion.q))
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
         if np.any(link.mass != 0):
             weight = link.mass * motion.linkage.gravity + still
-            yield Applied(f"G{name}", "weight", name, link.centre, weight, still)
+            yield AppliedLoad(f"G{name}", "weight", name, link.centre, weight, still)
         if np.any(link.mass != 0) or np.any(link.inertia != 0):
             inertia = -link.mass * motion.centre(name).a
             moment = -link.inertia * motion.link(name).epsilon
-            yield Applied(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}")
+            yield AppliedLoad(f"U{name}", "inertia", name, link.centre, inertia, moment, f"M{name}")
 
 
-KINDS = (weights_and_inertia, given_loads, spring_loads)  # what acts on links, each from a motion and its strokes
+LOAD_SOURCES = (
+    weights_and_inertia,
+    problem_loads,
+    spring_loads,
+)  # what acts on links, each from a motion and its strokes

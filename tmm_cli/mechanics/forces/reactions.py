@@ -12,7 +12,7 @@ from functools import cached_property, reduce
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.loads import AppliedLoad
 from tmm_cli.mechanics.groups import PairReaction, Wrench
 from tmm_cli.mechanics.kinematics import DrivenLink, Motion, driven_links
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage
@@ -94,7 +94,7 @@ class Balance:
 class Reactions:
     """The whole force plan. frames: of the pairs in which cranks stand on the frame; balances: of all drivers."""
 
-    applied: tuple[Applied, ...]
+    applied: tuple[AppliedLoad, ...]
     groups: tuple[GroupForces, ...]
     frames: tuple[Reaction, ...]
     balances: tuple[Balance, ...]
@@ -151,13 +151,13 @@ class Reactions:
         return [r for r in self.all if r.pair.kind == "R" and r.pair.point == point and link in (r.on, r.by)]
 
 
-def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> Reactions:
+def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLoad, ...]) -> Reactions:
     """Reactions in all pairs and what balances the drivers, at every position of the motion."""
     linkage = motion.linkage
     applied = {
         name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links
     }
-    for acting in _by_place(loads):
+    for acting in _loads_by_point(loads):
         link, arm = acting[0].link, acting[0].at * motion.poses[acting[0].link].z
         force = reduce(np.add, [load.force for load in acting])
         applied[link] += Wrench(force, cross(arm, force) + reduce(np.add, [load.moment for load in acting]))
@@ -175,15 +175,15 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
             inner = tuple(_reaction(motion, pair, kernel.inner_on(pair), part) for pair, part in parts)
             groups.append(GroupForces(group, outer, inner, tuple(r for link in group.links for r in borne[link])))
             for reaction in outer:
-                applied[reaction.by] += _opposite(reaction, motion)
+                applied[reaction.by] += _opposite_wrench(reaction, motion)
                 borne[reaction.by].append(reaction)
             for driver in group.drivers:
-                balance = balances[driver.link] = _driven(motion, driver, found.drives[driver.link])
+                balance = balances[driver.link] = _moving_driver_balance(motion, driver, found.drives[driver.link])
                 for link, sense in ((driver.base, -1), (driver.link, 1)):
                     if link not in group.links:
-                        applied[link] += _driving(motion, balance, link, sense)
+                        applied[link] += _driver_wrench(motion, balance, link, sense)
         for driver in linkage.cranks:
-            frame, balances[driver.link] = _drive(motion, structure, driver, applied[driver.link])
+            frame, balances[driver.link] = _frame_driver(motion, structure, driver, applied[driver.link])
             frames.append(frame)
     return Reactions(
         loads,
@@ -194,15 +194,15 @@ def react(motion: Motion, structure: Structure, loads: tuple[Applied, ...]) -> R
     )
 
 
-def _by_place(loads: tuple[Applied, ...]) -> list[list[Applied]]:
+def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
     """Loads that act at the same point of a link, such as weight and inertia, together."""
-    found: dict[tuple[str, int], list[Applied]] = {}
+    found: dict[tuple[str, int], list[AppliedLoad]] = {}
     for load in loads:
         found.setdefault((load.link, id(load.at)), []).append(load)
     return list(found.values())
 
 
-def power(motion: Motion, reactions: Reactions) -> Real:
+def reduced_driving_moment(motion: Motion, reactions: Reactions) -> Real:
     """What all drivers do per unit of the first one's motion; with one driver its balancing moment or force."""
     total = np.zeros(np.shape(motion.q))
     for balance in reactions.balances:
@@ -224,18 +224,18 @@ def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reac
     u = motion.poses[slide.carrier].z * unit(slide.direction)
     signed = dot(1j * u, found.force)
     # on the carrier both force and couple change sign, and the arm stays
-    arm = _arm(motion, found.couple, signed)
+    arm = _guide_reaction_arm(motion, found.couple, signed)
     return Reaction(pair, own, other, at, found.force, found.couple, signed=signed, arm=arm)
 
 
-def _arm(motion: Motion, couple: Real, signed: Real) -> Real:
+def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
     """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
     far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
-def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
+def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
     """The same reaction on the other link, reduced to that link's origin."""
     by, pair = motion.poses[reaction.by], reaction.pair
     own = pair.slide is None and pair.mesh is None
@@ -248,24 +248,24 @@ def _opposite(reaction: Reaction, motion: Motion) -> Wrench:
     return Wrench(-reaction.force, moment)
 
 
-def _driven(motion: Motion, driver: Driver, size: Real) -> Balance:
+def _moving_driver_balance(motion: Motion, driver: Driver, size: Real) -> Balance:
     """A driver between two moving links, from its row in their group."""
     linkage = motion.linkage
     if driver.kind == "turn":
         at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
         return Balance(driver, "moment", size, size * np.nan, size * 0j, at, float("nan"))
-    u, at = _guide(motion, driver)
+    u, at = _cylinder_axis(motion, driver)
     return Balance(driver, "force", None, size, size * u, at, 1.0)
 
 
-def _guide(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
+def _cylinder_axis(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
     """Along which direction a cylinder drives its link, and at which point (m)."""
     slide = motion.linkage.slide(driver.joint)
     u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
     return u, motion.poses[slide.runner].at(slide.at)
 
 
-def _driving(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
+def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
     """What a driver does to its link (sense 1) or to its base (-1), reduced to that link's origin."""
     if balance.moment is not None:
         return Wrench(balance.moment * 0j, sense * balance.moment)
@@ -273,7 +273,7 @@ def _driving(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
     return Wrench(force, cross(balance.at - motion.poses[link].x, force))
 
 
-def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
+def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
     """A link driven from the frame, under all that acts on it."""
     linkage = motion.linkage
     pair = structure.driving_pair(driver)
@@ -281,7 +281,7 @@ def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) 
     if driver.kind == "turn":
         pivot = pose.at(linkage.local(driver.link, driver.joint))
         moment = -total.about(pivot - pose.x)
-        end = _end(linkage, driver)
+        end = _crank_end(linkage, driver)
         radius = pose.at(end) - pivot
         arm = np.abs(end - linkage.local(driver.link, driver.joint))
         size = moment / arm
@@ -291,19 +291,21 @@ def _drive(motion: Motion, structure: Structure, driver: Driver, total: Wrench) 
             Reaction(pair, driver.link, FRAME, pivot, force),
             Balance(driver, driver.balance, moment, size, vector, pivot + radius, arm),
         )
-    u, at = _guide(motion, driver)
+    u, at = _cylinder_axis(motion, driver)
     size = -dot(total.force, u)
     guide = -1j * u * dot(total.force, 1j * u)
     # the balancing force acts in the line of the running point, so moments about it leave the guide's couple
     couple = -total.about(at - pose.x)
     signed = dot(1j * u, guide)
     return (
-        Reaction(pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=_arm(motion, couple, signed)),
+        Reaction(
+            pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=_guide_reaction_arm(motion, couple, signed)
+        ),
         Balance(driver, "force", None, size, size * u, at, 1.0),
     )
 
 
-def _end(linkage: Linkage, driver: Driver) -> complex:
+def _crank_end(linkage: Linkage, driver: Driver) -> complex:
     """The crank's end in its axes: the point named for it, or the first that is not its pivot."""
     points = linkage.links[driver.link].points
     if driver.end:

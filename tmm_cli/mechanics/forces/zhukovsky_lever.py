@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.mechanics.forces.loads import Applied
+from tmm_cli.mechanics.forces.loads import AppliedLoad
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_MOMENT, Real, Vector, dot
 
 
 @dataclass(frozen=True)
-class Item:
+class LeverItem:
     """A force or couple on the lever. arm: of the force about the pole (m per unit of the driver's motion; nan where
     there is no force), or the ratio omega_link / omega_driver for a couple; moment = size * arm (N m, or N for a
     cylinder)."""
@@ -38,33 +38,33 @@ class Item:
 
 
 @dataclass(frozen=True)
-class Lever:
+class ZhukovskyLever:
     """Moments about the pole, what balances them, and how far the force plan's answer is from it.
 
     balancing: N m for a crank, N for a cylinder. difference: relative to the largest balancing value of all positions.
     """
 
-    items: tuple[Item, ...]
+    items: tuple[LeverItem, ...]
     balancing: Real
     difference: Real
 
-    def with_rows_of(self, other: Lever, motion: Motion) -> Lever:
+    def with_rows_of(self, other: ZhukovskyLever, motion: Motion) -> ZhukovskyLever:
         """The same lever, computed from this motion, with the items of another one, each in its place.
 
         With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more. A force that is
         zero here has no arm; a couple has its ratio of speeds all the same.
         """
-        own, zero = dict(zip(_numbered(self.items), self.items, strict=True)), 0 * self.balancing
+        own, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
-        def zero_item(item: Item) -> Item:
+        def zero_item(item: LeverItem) -> LeverItem:
             arm = motion.link(item.link).first if item.end is None else zero
-            return Item(item.name, item.link, zero, arm, zero)
+            return LeverItem(item.name, item.link, zero, arm, zero)
 
-        keys = zip(_numbered(other.items), other.items, strict=True)
+        keys = zip(_numbered_keys(other.items), other.items, strict=True)
         return replace(self, items=tuple(own.get(key) or zero_item(item) for key, item in keys))
 
 
-def _numbered(items: tuple[Item, ...]) -> list[tuple[tuple[str, str, bool], int]]:
+def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
     """Keys of items, each with its number among those of one key: a load may have the name of an inertia couple."""
     seen: Counter[tuple[str, str, bool]] = Counter()
     keys = []
@@ -74,7 +74,7 @@ def _numbered(items: tuple[Item, ...]) -> list[tuple[tuple[str, str, bool], int]
     return keys
 
 
-def compute_lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lever:
+def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) -> ZhukovskyLever:
     """The lever at every position, compared with the force plan's balancing moment (or force)."""
     items = []
     for load in loads:
@@ -84,11 +84,11 @@ def compute_lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lev
             moment = dot(load.force, end)
             with np.errstate(invalid="ignore", divide="ignore"):
                 arm = np.where(size > 0, moment / size, np.nan)
-            items.append(Item(load.name, load.link, size, arm, moment, end, load.force))
+            items.append(LeverItem(load.name, load.link, size, arm, moment, end, load.force))
         if load.has_moment:
             ratio = motion.link(load.link).first
             name = load.couple_name or load.name
-            items.append(Item(name, load.link, load.moment, ratio, load.moment * ratio))
+            items.append(LeverItem(name, load.link, load.moment, ratio, load.moment * ratio))
     total = np.zeros(np.shape(motion.q))
     for item in items:
         total = total + item.moment
@@ -104,4 +104,4 @@ def compute_lever(motion: Motion, loads: tuple[Applied, ...], plan: Real) -> Lev
     plan_size = np.where(known, np.abs(plan), 0.0)
     largest = float(np.max(np.where(known, np.maximum(plan_size, NO_MOMENT * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
-    return Lever(tuple(items), balancing, difference)
+    return ZhukovskyLever(tuple(items), balancing, difference)

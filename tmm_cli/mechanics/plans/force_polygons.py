@@ -7,22 +7,22 @@ from dataclasses import dataclass
 
 from tmm_cli.mechanics.forces import (
     GroupForces,
-    Kind,
-    Loaded,
+    LoadedPosition,
     Reaction,
     Reactions,
     Symbol,
+    VectorKind,
     balance_symbol,
-    kind_of,
-    leads_of,
+    component_across,
+    external_pairs,
     load_symbols,
-    part_across,
     reaction_symbol,
+    vector_kind,
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.plans.named_vectors import NamedVector, Plan
 
-Part = tuple[Symbol, complex, Kind]
+PolygonPart = tuple[Symbol, complex, VectorKind]
 
 
 @dataclass(frozen=True)
@@ -43,44 +43,44 @@ def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> t
 
     motion: where leads of groups of any class stand, so that their reactions are parted as those of dyads are.
     """
-    here = None if motion is None else Loaded.at(motion, reactions, k)
-    groups = [_group(group, reactions, k, here) for group in reversed(reactions.groups)]
-    return (*groups, *(_driver(frame, reactions, k) for frame in reactions.frames))
+    here = None if motion is None else LoadedPosition.at(motion, reactions, k)
+    groups = [_group_plan(group, reactions, k, here) for group in reversed(reactions.groups)]
+    return (*groups, *(_driving_link_plan(frame, reactions, k) for frame in reactions.frames))
 
 
-def _group(group: GroupForces, reactions: Reactions, k: int, here: Loaded | None) -> ForcePlan:
+def _group_plan(group: GroupForces, reactions: Reactions, k: int, here: LoadedPosition | None) -> ForcePlan:
     """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
-        return _dyad(group, reactions, k)
-    axes = {} if here is None else {lead.pair.name: lead.axis for lead in leads_of(here, group.group)}
-    parts: list[Part] = []
+        return _dyad_plan(group, reactions, k)
+    axes = {} if here is None else {lead.pair.name: lead.axis for lead in external_pairs(here, group.group)}
+    parts: list[PolygonPart] = []
     parted: list[tuple[Reaction, int]] = []
     for link in group.group.links:
-        parts += _borne(group.borne, reactions, group.group.links, link, k)
+        parts += _borne_forces(group.borne, reactions, group.group.links, link, k)
         for r in (r for r in group.outer if r.on == link):
             force, axis = complex(r.force[k]), axes.get(r.pair.name)
             if axis is None:
                 parts.append((reaction_symbol(r.by, r.on), force, "reaction"))
                 continue
-            across = part_across(force, axis)
+            across = component_across(force, axis)
             parted.append((r, len(parts)))
             parts.append((reaction_symbol(r.by, r.on, "τ"), across, "tangential"))
             parts.append((reaction_symbol(r.by, r.on, "n"), force - across, "normal"))
     plan = _polygon(parts)
-    full = tuple(_full(r, plan.vectors[at : at + 2]) for r, at in parted)
+    full = tuple(_whole_reaction(r, plan.vectors[at : at + 2]) for r, at in parted)
     return ForcePlan(group.group.links, plan, full=full)
 
 
-def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
+def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     """Tangential parts, what the links bear, then normal parts and guides; the inner reaction joins two corners.
 
     Link a's forces stand together and so do link b's: the inner reaction on b is the vector that closes b's part.
     """
     first, last = group.outer
     a, b = group.group.links
-    parts_a = [*_part(first, "τ", k), *_borne(group.borne, reactions, (a, b), a, k)]
-    parts_b = [*_borne(group.borne, reactions, (a, b), b, k), *_part(last, "τ", k)]
-    closing_b, closing_a = list(_rest(last, k)), list(_rest(first, k))
+    parts_a = [*_tangential_part(first, "τ", k), *_borne_forces(group.borne, reactions, (a, b), a, k)]
+    parts_b = [*_borne_forces(group.borne, reactions, (a, b), b, k), *_tangential_part(last, "τ", k)]
+    closing_b, closing_a = list(_closing_part(last, k)), list(_closing_part(first, k))
     plan = _polygon([*closing_a, *parts_a, *parts_b, *closing_b])
     corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
     inner = group.inner[0]
@@ -89,28 +89,28 @@ def _dyad(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     symbol = reaction_symbol(inner.pair.other(b), b)
     joined = NamedVector(symbol.name, corner - force, corner, "inner", symbol)
     ends = ((first, plan.vectors[:2]), (last, plan.vectors[-2:]))
-    full = tuple(_full(reaction, parts) for reaction, parts in ends if reaction.tangential is not None)
+    full = tuple(_whole_reaction(reaction, parts) for reaction, parts in ends if reaction.tangential is not None)
     return ForcePlan((a, b), Plan((*plan.vectors, joined)), full=full)
 
 
-def _full(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
+def _whole_reaction(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
     """A reaction of which these are the parts."""
     symbol = reaction_symbol(reaction.by, reaction.on)
     return NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
 
-def _driver(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
+def _driving_link_plan(frame: Reaction, reactions: Reactions, k: int) -> ForcePlan:
     link = frame.on
-    parts = [*_borne(reactions.borne[link], reactions, (link,), link, k), *_rest(frame, k)]
+    parts = [*_borne_forces(reactions.borne[link], reactions, (link,), link, k), *_closing_part(frame, k)]
     return ForcePlan((link,), _polygon(parts), driving=True)
 
 
-def _part(reaction: Reaction, mark: str, k: int) -> Iterable[Part]:
+def _tangential_part(reaction: Reaction, mark: str, k: int) -> Iterable[PolygonPart]:
     if reaction.tangential is not None:
         yield reaction_symbol(reaction.by, reaction.on, mark), complex(reaction.tangential[k]), "tangential"
 
 
-def _rest(reaction: Reaction, k: int) -> Iterable[Part]:
+def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
     """What closes the polygon: the normal part of a hinge's reaction, or all of a guide's."""
     if reaction.normal is not None:
         yield reaction_symbol(reaction.by, reaction.on, "n"), complex(reaction.normal[k]), "normal"
@@ -118,9 +118,9 @@ def _rest(reaction: Reaction, k: int) -> Iterable[Part]:
         yield reaction_symbol(reaction.by, reaction.on), complex(reaction.force[k]), "reaction"
 
 
-def _borne(
+def _borne_forces(
     borne: tuple[Reaction, ...], reactions: Reactions, links: tuple[str, ...], link: str, k: int
-) -> Iterable[Part]:
+) -> Iterable[PolygonPart]:
     """What a link bears besides its group's reactions: later groups first, then loads, then drivers.
 
     links: all of the plan; a driver between two of them acts within it.
@@ -130,7 +130,7 @@ def _borne(
             yield reaction_symbol(reaction.on, link), complex(reaction.onto(link)[k]), "reaction"
     for load in reactions.applied:
         if load.link == link and load.has_force:
-            yield load_symbols(load)[0], complex(load.force[k]), kind_of(load)
+            yield load_symbols(load)[0], complex(load.force[k]), vector_kind(load)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
         own, base = balance.driver.link, balance.driver.base
@@ -141,7 +141,7 @@ def _borne(
             yield symbol, vector, "load"
 
 
-def _polygon(parts: Iterable[Part]) -> Plan:
+def _polygon(parts: Iterable[PolygonPart]) -> Plan:
     at, vectors = 0j, []
     for symbol, value, kind in parts:
         vectors.append(NamedVector(symbol.name, at, at + value, kind, symbol))

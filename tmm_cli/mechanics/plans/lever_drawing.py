@@ -10,38 +10,38 @@ import numpy as np
 
 from tmm_cli.mechanics.forces import (
     DRIVE,
-    Acting,
-    Applied,
+    AppliedLoad,
     Balance,
-    Lever,
-    LoadedPart,
+    EquationUnknown,
+    ForceOrCouple,
+    FreeBody,
     MomentEquation,
+    MomentTerm,
     Reactions,
-    Sought,
     Symbol,
-    Term,
+    ZhukovskyLever,
     balance_symbol,
-    kind_of,
+    distinct_letter,
+    drop_negligible,
+    list_free_bodies,
     load_symbols,
-    loaded_parts,
-    numbered,
-    other_than,
-    terms,
-    there,
+    moment_terms,
+    number_arms,
+    vector_kind,
 )
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.plans.force_polygons import ForcePlan, force_plans
-from tmm_cli.mechanics.plans.motion_plans import absolute, ends_of, massive, relative
+from tmm_cli.mechanics.plans.motion_plans import absolute_vectors, links_with_mass, plan_ends, relative_vectors
 from tmm_cli.mechanics.plans.named_vectors import NamedVector, sheet_scale
 
 LEVER_POLE = "p"
-TURNED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense
-MOST = 22  # forces on a lever, those of couples among them; with more of them couples stay couples
+ROTATED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense
+MOST_FORCES = 22  # forces on a lever, those of couples among them; with more of them couples stay couples
 
 
 @dataclass(frozen=True)
-class Pair:
+class CoupleAsForces:
     """A couple M (N m) on a link as two forces, P and P′, M over the distance (m) of two of its points, each."""
 
     symbol: Symbol
@@ -67,64 +67,64 @@ class LeverPlan:
 
     ends: dict[str, complex]
     bars: tuple[NamedVector, ...]
-    acting: tuple[Acting, ...]
-    pairs: tuple[Pair, ...]
-    couples: tuple[tuple[Applied, Acting], ...]
+    acting: tuple[ForceOrCouple, ...]
+    pairs: tuple[CoupleAsForces, ...]
+    couples: tuple[tuple[AppliedLoad, ForceOrCouple], ...]
     equation: MomentEquation
 
 
-def lever_plan(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> LeverPlan:
+def lever_plan(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> LeverPlan:
     """Velocities per unit of the driver's motion, turned clockwise; forces keep their directions.
 
     One driver is found from the moments of the loads; of several the force plan says what they do.
     """
     linkage = motion.linkage
-    ends = ends_of(linkage, LEVER_POLE, lambda point: TURNED * complex(motion.named(point).first[k]))
-    bars = (*absolute(ends, LEVER_POLE), *relative(motion, ends))
-    for link in massive(linkage):
-        ends[other_than(ends, f"s{link}")] = TURNED * complex(motion.centre(link).first[k])
-    acting: list[Acting] = []
-    pairs: list[Pair] = []
-    couples: list[tuple[Applied, Acting]] = []
+    ends = plan_ends(linkage, LEVER_POLE, lambda point: ROTATED * complex(motion.named(point).first[k]))
+    bars = (*absolute_vectors(ends, LEVER_POLE), *relative_vectors(motion, ends))
+    for link in links_with_mass(linkage):
+        ends[distinct_letter(ends, f"s{link}")] = ROTATED * complex(motion.centre(link).first[k])
+    acting: list[ForceOrCouple] = []
+    pairs: list[CoupleAsForces] = []
+    couples: list[tuple[AppliedLoad, ForceOrCouple]] = []
     taken = {load_symbols(load)[0] for load in reactions.applied if load.has_force}
-    crowded = sum(1 + 2 * (load.moment[k] != 0) for load in reactions.applied) > MOST
+    crowded = sum(1 + 2 * (load.moment[k] != 0) for load in reactions.applied) > MOST_FORCES
     for load in reactions.applied:
-        acting += _force(motion, load, k)
-        pair = None if crowded else _pair(motion, load, k, taken)
+        acting += _lever_force(motion, load, k)
+        pair = None if crowded else _couple_as_forces(motion, load, k, taken)
         if pair is None:
-            couples.append((load, _couple(motion, load, k)))
+            couples.append((load, _lever_couple(motion, load, k)))
             acting.append(couples[-1][1])
         else:
             pairs.append(pair)
             taken.add(pair.symbol)
-            acting += _forces_of(motion, load, pair, k)
+            acting += _forces_of_couple(motion, load, pair, k)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
-        acting += _balance(motion, balance, k, None if several else float(lever.balancing[k]), several=several)
+        acting += _balancing_forces(motion, balance, k, None if several else float(lever.balancing[k]), several=several)
     first = reactions.balance
     turns = first.kind == "moment"
-    sought = None if several else Sought(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
+    sought = None if several else EquationUnknown(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
     size = max((abs(end) for end in ends.values()), default=0.0)
-    found = there(acting, size or 1.0)
+    found = drop_negligible(acting, size or 1.0)
     symbols = {a.symbol for a in found}
     kept = tuple((load, couple) for load, couple in couples if any(couple is a for a in found))
-    (equation,) = numbered([MomentEquation((), LEVER_POLE, 0j, terms(found, 0j, size), sought)])
+    (equation,) = number_arms([MomentEquation((), LEVER_POLE, 0j, moment_terms(found, 0j, size), sought)])
     return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in symbols), kept, equation)
 
 
-def _force(motion: Motion, load: Applied, k: int) -> Iterable[Acting]:
-    end = TURNED * complex(motion.point(load.link, load.at).first[k])
-    yield Acting(load_symbols(load)[0], kind_of(load), load.link, end, complex(load.force[k]))
+def _lever_force(motion: Motion, load: AppliedLoad, k: int) -> Iterable[ForceOrCouple]:
+    end = ROTATED * complex(motion.point(load.link, load.at).first[k])
+    yield ForceOrCouple(load_symbols(load)[0], vector_kind(load), load.link, end, complex(load.force[k]))
 
 
-def _couple(motion: Motion, load: Applied, k: int) -> Acting:
+def _lever_couple(motion: Motion, load: AppliedLoad, k: int) -> ForceOrCouple:
     """M′, with the ratio of the link's speed to the driver's in it."""
-    ratio, at = float(motion.link(load.link).first[k]), TURNED * complex(motion.point(load.link, load.at).first[k])
+    ratio, at = float(motion.link(load.link).first[k]), ROTATED * complex(motion.point(load.link, load.at).first[k])
     symbol = load_symbols(load)[1].primed
-    return Acting(symbol, kind_of(load), load.link, at, 0j, float(load.moment[k]) * ratio)
+    return ForceOrCouple(symbol, vector_kind(load), load.link, at, 0j, float(load.moment[k]) * ratio)
 
 
-def _pair(motion: Motion, load: Applied, k: int, taken: Container[Symbol]) -> Pair | None:
+def _couple_as_forces(motion: Motion, load: AppliedLoad, k: int, taken: Container[Symbol]) -> CoupleAsForces | None:
     """The two forces that replace the couple on a link, at its first two points; None if the link has one point.
 
     taken: symbols of other forces. P₃ replaces M₃; if that is taken, P with the whole symbol of the couple.
@@ -137,38 +137,42 @@ def _pair(motion: Motion, load: Applied, k: int, taken: Container[Symbol]) -> Pa
     if symbol in taken:
         symbol = Symbol("P", couple.plain)
     distance = abs(complex(points[1][1] - points[0][1]))
-    return Pair(symbol, couple, float(load.moment[k]), (points[0][0], points[1][0]), distance)
+    return CoupleAsForces(symbol, couple, float(load.moment[k]), (points[0][0], points[1][0]), distance)
 
 
-def _forces_of(motion: Motion, load: Applied, pair: Pair, k: int) -> Iterable[Acting]:
+def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k: int) -> Iterable[ForceOrCouple]:
     """Across the line of the two points, at the ends of their velocities."""
     one, other = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
     arm = (other - one) * complex(motion.poses[load.link].z[k])
     force = 1j * arm * (pair.moment / abs(arm) ** 2)
     for local, symbol, sense in ((one, pair.symbol.primed, -1), (other, pair.symbol, 1)):
-        end = TURNED * complex(motion.point(load.link, local).first[k])
-        yield Acting(symbol, kind_of(load), load.link, end, sense * force)
+        end = ROTATED * complex(motion.point(load.link, local).first[k])
+        yield ForceOrCouple(symbol, vector_kind(load), load.link, end, sense * force)
 
 
-def _balance(motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool) -> Iterable[Acting]:
+def _balancing_forces(
+    motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool
+) -> Iterable[ForceOrCouple]:
     """What balances a driver; moment: what the lever gives for a single one (N m, or N), else the force plan's."""
     driver, turns = balance.driver, balance.kind == "moment"
     symbol = balance_symbol(driver.link, several, turns=turns)
     ratio = float(np.broadcast_to(motion.drives[driver.link].first, motion.q.shape)[k])
     total = float(balance.generalized[k]) * ratio if moment is None else moment
     if turns:
-        yield Acting(symbol, "reaction", driver.link, 0j, 0j, total, DRIVE)
+        yield ForceOrCouple(symbol, "reaction", driver.link, 0j, 0j, total, DRIVE)
         return
-    own, base = (_first(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base))
+    own, base = (
+        _point_transfer_function(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base)
+    )
     if own == base:  # of several drivers one may be at rest: what holds it acts in the pole
         return
     force = (own - base) * (total / abs(own - base) ** 2)
-    yield Acting(symbol, "reaction", driver.link, TURNED * own, force, pair=DRIVE)
+    yield ForceOrCouple(symbol, "reaction", driver.link, ROTATED * own, force, pair=DRIVE)
     if driver.base != FRAME:
-        yield Acting(symbol.primed, "reaction", driver.base, TURNED * base, -force)
+        yield ForceOrCouple(symbol.primed, "reaction", driver.base, ROTATED * base, -force)
 
 
-def _first(motion: Motion, link: str, place: complex, k: int) -> complex:
+def _point_transfer_function(motion: Motion, link: str, place: complex, k: int) -> complex:
     """Velocity of a point of a link per unit of the driver's motion."""
     if link == FRAME:
         return 0j
@@ -182,11 +186,11 @@ def _first(motion: Motion, link: str, place: complex, k: int) -> complex:
 # ways is then one of drawing, some 0.1 to 2 %, while the one of `forces.lever` is exact.
 
 
-FINEST = 0.5  # mm: what can be read off paper
+READING_STEP = 0.5  # mm: what can be read off paper
 
 
 @dataclass(frozen=True)
-class Scales:
+class DrawingScales:
     """SI a millimetre: of the driving link's drawing, of its force plan, of the lever."""
 
     link: float
@@ -204,61 +208,61 @@ class DrawnCheck:
 
 
 @dataclass(frozen=True)
-class Sheets:
+class BalanceDrawings:
     """The three drawings of a position from which the driver's balance is read."""
 
-    link: LoadedPart
+    link: FreeBody
     forces: ForcePlan
     lever: LeverPlan
 
-    def scales(self) -> Scales:
+    def scales(self) -> DrawingScales:
         """Those at which each fills a sheet A4."""
         terms = [term for equation in self.link.equations for term in equation.terms]
         places = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
         polygon = [p for vector in self.forces.plan.vectors for p in (vector.start, vector.end)]
         ends = [*self.lever.ends.values(), *(term.foot for term in self.lever.equation.terms)]
-        return Scales(*(sheet_scale(points)[1] for points in (places, polygon, ends)))
+        return DrawingScales(*(sheet_scale(points)[1] for points in (places, polygon, ends)))
 
 
-def sheets(motion: Motion, reactions: Reactions, lever: Lever, k: int) -> Sheets | None:
+def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> BalanceDrawings | None:
     """The drawings of position k; None where several drivers share the balance, or the driver is not on the frame."""
-    own = [part for part in loaded_parts(motion, reactions, k) if part.links == (reactions.balance.driver.link,)]
+    own = [part for part in list_free_bodies(motion, reactions, k) if part.links == (reactions.balance.driver.link,)]
     plans = [plan for plan in force_plans(reactions, k, motion) if plan.driving]
     if len(reactions.balances) > 1 or not own or not own[-1].driving or not plans:
         return None
-    return Sheets(own[-1], plans[0], lever_plan(motion, reactions, lever, k))
+    return BalanceDrawings(own[-1], plans[0], lever_plan(motion, reactions, lever, k))
 
 
-def drawn_check(motion: Motion, reactions: Reactions, drawn: Sheets, scales: Scales) -> DrawnCheck:
+def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, scales: DrawingScales) -> DrawnCheck:
     """Both ways on drawings of these scales."""
     balance = reactions.balance
     symbol = balance_symbol(balance.driver.link, False, turns=balance.kind == "moment")
-    segments = {v.symbol: _read(abs(v.value), scales.forces) for v in drawn.forces.plan.vectors}
+    segments = {v.symbol: _read_off(abs(v.value), scales.forces) for v in drawn.forces.plan.vectors}
     equation = next((e for e in drawn.link.equations if e.found is not None and e.found.acting.pair == DRIVE), None)
-    plan = segments.get(symbol, 0.0) if equation is None else _measured(equation, scales.link, segments)
-    lever = _measured(drawn.lever.equation, scales.lever, {})
+    plan = segments.get(symbol, 0.0) if equation is None else _measured_unknown(equation, scales.link, segments)
+    lever = _measured_unknown(drawn.lever.equation, scales.lever, {})
     arm = 1.0 if balance.kind == "moment" or balance.moment is None else balance.arm
     largest = float(np.nanmax(np.abs(np.where(motion.moving, balance.generalized, 0.0)))) / arm
     return DrawnCheck(plan, lever, abs(abs(plan) - abs(lever)) / largest if largest else math.nan)
 
 
-def _read(length: float, mu: float) -> float:
+def _read_off(length: float, mu: float) -> float:
     """A length (SI) as it is read off a drawing of this scale."""
-    return round(length / mu / FINEST) * FINEST * mu
+    return round(length / mu / READING_STEP) * READING_STEP * mu
 
 
-def _measured(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
+def _measured_unknown(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
     """What an equation of moments gives with arms that are measured; segments: forces that are measured too, N."""
     found = equation.found
     if found is None:
         return 0.0
 
-    def moment(term: Term) -> float:
+    def moment(term: MomentTerm) -> float:
         if not term.number:
             return term.moment
         size = segments.get(term.acting.symbol, term.acting.size) if term.acting.pair else term.acting.size
-        return math.copysign(size * _read(term.arm, mu), term.moment)
+        return math.copysign(size * _read_off(term.arm, mu), term.moment)
 
     value = -math.copysign(1.0, found.moment) * math.fsum(moment(t) for t in equation.terms if t is not found)
-    arm = 1.0 if found.acting.couple else _read(found.arm, mu)
+    arm = 1.0 if found.acting.couple else _read_off(found.arm, mu)
     return value / arm if arm else math.nan

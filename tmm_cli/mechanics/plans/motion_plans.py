@@ -8,17 +8,23 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.forces import Symbol, other_than, subscript
+from tmm_cli.mechanics.forces import Symbol, distinct_letter, subscript
 from tmm_cli.mechanics.groups import GearConstraint, RackConstraint, carrier_axis
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.mechanics.plans.named_vectors import NamedVector, Plan
-from tmm_cli.mechanics.plans.vector_equations import About, Along, found_first, hinge_points, steps
+from tmm_cli.mechanics.plans.vector_equations import (
+    MovingGuideEquation,
+    SameLinkEquation,
+    motion_points,
+    solution_rank,
+    solution_steps,
+)
 from tmm_cli.mechanics.structure import Group
 
 
-def letters(linkage: Linkage) -> dict[str, str]:
+def plan_letters(linkage: Linkage) -> dict[str, str]:
     """What each point is called on a plan: in small letters; P is not the pole p, nor A the same as a."""
     fixed = linkage.links[FRAME].points
     found = {point: point.lower() for point in fixed}
@@ -26,25 +32,27 @@ def letters(linkage: Linkage) -> dict[str, str]:
     for link in linkage.moving:
         for point in linkage.links[link].points:
             if point not in found:
-                found[point] = other_than(taken, point.lower())
+                found[point] = distinct_letter(taken, point.lower())
                 taken.add(found[point])
     return found
 
 
-def ends_of(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
+def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
     """The pole, and the ends of the vectors of all moving points, by their letters; value: of a point by its name."""
-    letter_of = letters(linkage)
+    letter_of = plan_letters(linkage)
     return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in linkage.moving_points}
 
 
-def relative(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
+def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
     """Vectors ab, ac, ... along each link, from the end of its point that is found first to those of the others."""
     linkage = motion.linkage
-    fixed, letter_of = linkage.links[FRAME].points, letters(linkage)
-    rank = found_first(linkage, groups_of(motion))
+    fixed, letter_of = linkage.links[FRAME].points, plan_letters(linkage)
+    rank = solution_rank(linkage, groups_of(motion))
     vectors = []
     for link in linkage.moving:
-        base, *others = sorted((p for p in hinge_points(linkage, link) if p not in fixed), key=rank.__getitem__) or [""]
+        base, *others = sorted((p for p in motion_points(linkage, link) if p not in fixed), key=rank.__getitem__) or [
+            ""
+        ]
         for point in others:
             a, b = letter_of[base], letter_of[point]
             vectors.append(NamedVector(a + b, ends[a], ends[b], "relative", Symbol("v", point + base)))
@@ -56,7 +64,7 @@ def groups_of(motion: Motion) -> list[Group]:
     return [kernel.group for kernel in motion.kernels]
 
 
-def absolute(
+def absolute_vectors(
     ends: Mapping[str, complex], pole: str, letter: str = "v", names: Mapping[str, str] | None = None
 ) -> list[NamedVector]:
     """Vectors pa, pb, ... from the pole to every end. letter: of their values; names: of points by their letters."""
@@ -69,7 +77,7 @@ def absolute(
 
 
 @dataclass(frozen=True)
-class Stone:
+class SlidingBlock:
     """A stone on a moving guide and the point of the guide under it, at `local` in the axes of the guide's link.
 
     letter, under: letters of both on the plan; name, below: names of both.
@@ -83,40 +91,40 @@ class Stone:
     local: complex
 
 
-def stones(motion: Motion, ends: Collection[str], k: int) -> Iterable[Stone]:
+def sliding_blocks(motion: Motion, ends: Collection[str], k: int) -> Iterable[SlidingBlock]:
     """Stones on moving guides; ends: letters that are taken."""
-    letter_of = letters(motion.linkage)
+    letter_of = plan_letters(motion.linkage)
     for slide in motion.linkage.slides:
         if FRAME not in (slide.carrier, slide.runner):
             letter, point = letter_of.get(slide.point, slide.point.lower()), slide.point
             carrier, runner = motion.poses[slide.carrier], motion.point(slide.runner, slide.at)
             local = complex((runner.x[k] - carrier.x[k]) / carrier.z[k])
-            under = other_than(ends, f"{letter}{slide.carrier}")
-            yield Stone(slide, letter, under, point, f"{point}{slide.carrier}", local)
+            under = distinct_letter(ends, f"{letter}{slide.carrier}")
+            yield SlidingBlock(slide, letter, under, point, f"{point}{slide.carrier}", local)
 
 
 def velocity_plan(motion: Motion, k: int) -> Plan:
     """Vectors pa, ab, ... in m/s at position k."""
     linkage = motion.linkage
-    ends = ends_of(linkage, "p", lambda point: motion.named(point).v[k])
-    vectors, names = relative(motion, ends), {letter: point for point, letter in letters(linkage).items()}
-    for stone in stones(motion, ends, k):
+    ends = plan_ends(linkage, "p", lambda point: motion.named(point).v[k])
+    vectors, names = relative_vectors(motion, ends), {letter: point for point, letter in plan_letters(linkage).items()}
+    for stone in sliding_blocks(motion, ends, k):
         slide, under = stone.slide, stone.under
         ends[under], names[under] = complex(motion.point(slide.carrier, stone.local).v[k]), stone.below
         runner, symbol = complex(motion.point(slide.runner, slide.at).v[k]), Symbol("v", stone.name + stone.below)
         segment = under + (stone.letter if stone.letter in ends else "p")  # a pivot of the frame is the pole
         vectors.append(NamedVector(segment, ends[under], runner, "sliding", symbol))
     for name, wheel, place in pitch_points(motion, k):
-        pose, letter = motion.poses[wheel], other_than(ends, name.lower())
+        pose, letter = motion.poses[wheel], distinct_letter(ends, name.lower())
         ends[letter] = complex(motion.point(wheel, (place - pose.x[k]) / pose.z[k]).v[k])
         names[letter] = name
-    for link in massive(linkage):
-        letter = other_than(ends, f"s{link}")
+    for link in links_with_mass(linkage):
+        letter = distinct_letter(ends, f"s{link}")
         ends[letter], names[letter] = complex(motion.centre(link).v[k]), f"S{link}"
-    return Plan((*absolute(ends, "p", "v", names), *vectors), ends)
+    return Plan((*absolute_vectors(ends, "p", "v", names), *vectors), ends)
 
 
-def massive(linkage: Linkage) -> list[str]:
+def links_with_mass(linkage: Linkage) -> list[str]:
     """Moving links that have a mass, and so a centre of mass."""
     return [link for link in linkage.moving if np.any(linkage.links[link].mass != 0)]
 
@@ -142,39 +150,41 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
 
 ACCELERATION_POLE = "π"
 
-Pair = tuple[NamedVector, NamedVector]
+VectorPair = tuple[NamedVector, NamedVector]
 
 
 def acceleration_plan(motion: Motion, k: int) -> Plan:
     """Vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2 at position k. Each pair of parts leads from one end to another."""
     linkage = motion.linkage
-    ends = ends_of(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
-    names = {letter: point for point, letter in letters(linkage).items()}
-    found = {stone.slide.name: stone for stone in stones(motion, ends, k)}
+    ends = plan_ends(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
+    names = {letter: point for point, letter in plan_letters(linkage).items()}
+    found = {stone.slide.name: stone for stone in sliding_blocks(motion, ends, k)}
     for stone in found.values():
         ends[stone.under] = complex(motion.point(stone.slide.carrier, stone.local).a[k])
         names[stone.under] = stone.below
     ended = {name: ends[letter] for letter, name in names.items() if letter in ends}
     local = {stone.below: stone.local for stone in found.values()}
-    pairs: list[Pair] = []
-    for step in steps(linkage, groups_of(motion)):
+    pairs: list[VectorPair] = []
+    for step in solution_steps(linkage, groups_of(motion)):
         for equation in (*step.equations, *step.after):
-            if isinstance(equation, Along):
+            if isinstance(equation, MovingGuideEquation):
                 stone = found[equation.slide.name]
-                pairs.append(_sliding(motion, k, stone, ends[stone.under]))
-            elif isinstance(equation, About) and not equation.idle:
-                pairs.append(_turning(motion, k, equation, local, ended.get(equation.base.name, 0j)))
-    for link in massive(linkage):
-        letter = other_than(ends, f"s{link}")
+                pairs.append(_sliding_parts(motion, k, stone, ends[stone.under]))
+            elif isinstance(equation, SameLinkEquation) and not equation.idle:
+                pairs.append(_rotation_parts(motion, k, equation, local, ended.get(equation.base.name, 0j)))
+    for link in links_with_mass(linkage):
+        letter = distinct_letter(ends, f"s{link}")
         ends[letter], names[letter] = complex(motion.centre(link).a[k]), f"S{link}"
     vectors = [part for pair in pairs for part in pair]
     least = NO_VECTOR * Plan(tuple(vectors), ends).size
     corners = _corners(pairs, ends, least)
-    segments = [replace(v, name=_segment(v, {**ends, **corners}, least)) for v in vectors]
-    return Plan((*absolute(ends, ACCELERATION_POLE, "a", names), *segments), ends, corners)
+    segments = [replace(v, name=_segment_letters(v, {**ends, **corners}, least)) for v in vectors]
+    return Plan((*absolute_vectors(ends, ACCELERATION_POLE, "a", names), *segments), ends, corners)
 
 
-def _turning(motion: Motion, k: int, about: About, local: Mapping[str, complex], start: complex) -> Pair:
+def _rotation_parts(
+    motion: Motion, k: int, about: SameLinkEquation, local: Mapping[str, complex], start: complex
+) -> VectorPair:
     """Normal part (towards the base) and tangential part of a point's acceleration about another of its link.
 
     local: of the points under stones, in the axes of their links.
@@ -190,7 +200,7 @@ def _turning(motion: Motion, k: int, about: About, local: Mapping[str, complex],
     )
 
 
-def _sliding(motion: Motion, k: int, stone: Stone, start: complex) -> Pair:
+def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) -> VectorPair:
     """Coriolis part and sliding part of a stone's acceleration about the point of its guide under it."""
     sliding, index = motion.slide(stone.slide), stone.name + stone.below
     bend = start + complex(sliding.coriolis[k])
@@ -201,7 +211,7 @@ def _sliding(motion: Motion, k: int, stone: Stone, start: complex) -> Pair:
     )
 
 
-def _corners(pairs: Sequence[Pair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
+def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
     """Letters of the points in which two parts meet: n₁, n₂, ..., k; none where one of the parts is zero."""
     found: dict[str, complex] = {}
     for letter, kind in (("n", "normal"), ("k", "coriolis")):
@@ -211,11 +221,11 @@ def _corners(pairs: Sequence[Pair], ends: Mapping[str, complex], least: float) -
             if first.kind == kind and min(map(abs, (first.value, last.value))) > least
         ]
         for number, bend in enumerate(bends, 1):
-            found[other_than(ends, letter + (subscript(str(number)) if len(bends) > 1 else ""))] = bend
+            found[distinct_letter(ends, letter + (subscript(str(number)) if len(bends) > 1 else ""))] = bend
     return found
 
 
-def _segment(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
+def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
     """The letters of a vector's ends, of the nearest places: near a dead position rounding parts them; nothing where
     it is zero."""
     if abs(vector.value) <= least:
@@ -228,11 +238,11 @@ def _segment(vector: NamedVector, lettered: Mapping[str, complex], least: float)
 # What is read off a plan: each vector once with its segment and size, and what links turn with.
 
 
-PARTS = ("normal", "tangential")
+PART_KINDS = ("normal", "tangential")
 
 
 @dataclass(frozen=True)
-class Reading:
+class PlanReading:
     """symbols: of all vectors that are the same one; segment: its letters on the plan; size: SI, zero of a point."""
 
     symbols: tuple[Symbol, ...]
@@ -241,24 +251,24 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Turn:
+class AngularValue:
     """What a link turns with, omega (rad/s) or epsilon (rad/s2): positive counter-clockwise."""
 
     symbol: Symbol
     value: float
 
 
-def readings(plan: Plan) -> list[Reading]:
+def plan_readings(plan: Plan) -> list[PlanReading]:
     """Vectors in the order of the plan; absolute ones that are the same vector stand together.
 
     Of a link that does not turn there are no parts.
     """
     least = NO_VECTOR * plan.size
-    turning = {v.symbol.below for v in plan.vectors if v.kind in PARTS and abs(v.value) > least}
-    found: dict[complex | int, Reading] = {}
+    turning = {v.symbol.below for v in plan.vectors if v.kind in PART_KINDS and abs(v.value) > least}
+    found: dict[complex | int, PlanReading] = {}
     for number, vector in enumerate(plan.vectors):
         size = abs(vector.value)
-        if vector.kind in PARTS and vector.symbol.below not in turning:
+        if vector.kind in PART_KINDS and vector.symbol.below not in turning:
             continue
         key: complex | int = number
         if vector.kind == "absolute":
@@ -266,13 +276,15 @@ def readings(plan: Plan) -> list[Reading]:
                 (end for end in found if isinstance(end, complex) and abs(end - vector.end) <= least), vector.end
             )
         if key in found:
-            found[key] = Reading((*found[key].symbols, vector.symbol), found[key].segment, found[key].size)
+            found[key] = PlanReading((*found[key].symbols, vector.symbol), found[key].segment, found[key].size)
         else:
-            found[key] = Reading((vector.symbol,), vector.name if size > least else "", size if size > least else 0.0)
+            found[key] = PlanReading(
+                (vector.symbol,), vector.name if size > least else "", size if size > least else 0.0
+            )
     return list(found.values())
 
 
-def turns(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[Turn]:
+def angular_values(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[AngularValue]:
     """Of all links that turn in any of the positions."""
     letter = {"omega": "ω", "epsilon": "ε"}[what]
     links = {link: motion.link(link) for link in motion.linkage.moving}
@@ -283,4 +295,4 @@ def turns(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable
     for link, rate in rates.items():
         if np.nanmax(np.abs(rate)) > NO_VECTOR * largest:
             value = float(rate[k])
-            yield Turn(Symbol(letter, link), value if abs(value) > NO_VECTOR * largest else 0.0)
+            yield AngularValue(Symbol(letter, link), value if abs(value) > NO_VECTOR * largest else 0.0)

@@ -6,10 +6,17 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from tmm_cli.mechanics.forces import BELOW, Kind, Symbol
+from tmm_cli.mechanics.forces import SUBSCRIPTS, Symbol, VectorKind
 from tmm_cli.mechanics.numerics import NO_VECTOR
 
-ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
+ROUND_SCALES = (
+    1.0,
+    2.0,
+    2.5,
+    4.0,
+    5.0,
+    10.0,
+)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm about the figure, for labels
@@ -25,7 +32,7 @@ class NamedVector:
     name: str
     start: complex
     end: complex
-    kind: Kind
+    kind: VectorKind
     symbol: Symbol = Symbol("")  # noqa: RUF009  frozen
 
     @property
@@ -61,7 +68,7 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
     return max(width, height), width, height, complex((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
 
 
-def ground_of(paper: tuple[float, float]) -> tuple[complex, complex]:
+def drawing_area(paper: tuple[float, float]) -> tuple[complex, complex]:
     """Corners of what may be drawn on below the title strip, mm."""
     return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
@@ -73,7 +80,7 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
         return 1.0
     power = 10.0 ** math.floor(math.log10(least))
     # the tolerance keeps a figure that fits exactly from jumping to the next factor by rounding
-    return next((f * power for f in ROUND if f * power >= least * (1 - 1e-9)), 10 * power)
+    return next((f * power for f in ROUND_SCALES if f * power >= least * (1 - 1e-9)), 10 * power)
 
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
@@ -87,6 +94,6 @@ def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[floa
     return best, scales[best]
 
 
-def in_letters(segment: str) -> str:
+def with_subscripts(segment: str) -> str:
     """A segment of a plan, or a lettered point of it, with the figures of its letters below the line: pa₃, s₁."""
-    return segment.translate(BELOW)
+    return segment.translate(SUBSCRIPTS)

@@ -9,17 +9,17 @@ import numpy as np
 
 from tmm_cli.language import _, symbol
 from tmm_cli.mechanics.dynamics import Tangent
-from tmm_cli.mechanics.forces import Lettered, Symbol
+from tmm_cli.mechanics.forces import CourseSymbol, Symbol
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.dynamics.reduced_model import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
 from tmm_cli.note.expression import Constant, Found, Leaf, Raised, letters
 from tmm_cli.note.formula_tree import Letter, row
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
-FIRST_GROUP, CONSTANT = Lettered("J_I"), Lettered("J_c")
-GAIN, ON_SHAFT, RATIO = Symbol("ΔT"), Lettered("J_s"), Symbol("u")
+FIRST_GROUP, CONSTANT = CourseSymbol("J_I"), CourseSymbol("J_c")
+GAIN, ON_SHAFT, RATIO = Symbol("ΔT"), CourseSymbol("J_s"), Symbol("u")
 DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
-DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), Lettered("m_f")
+DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
 def write_extreme_speeds(here: Here) -> Iterable[Block]:

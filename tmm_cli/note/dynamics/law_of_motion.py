@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.dynamics import SingleRun
-from tmm_cli.mechanics.forces import Lettered, Symbol
+from tmm_cli.mechanics.forces import CourseSymbol, Symbol
 from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, said, tabled
 from tmm_cli.note.dynamics import flywheel, reduced_model
 from tmm_cli.note.dynamics.flywheel import OFFSETS, tangent_speed
@@ -120,7 +120,7 @@ def _time(here: Here) -> Iterable[Block]:
     yield said(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
 
 
-DRIVEN, LOADED, BRAKED, END = Lettered("A_d"), Lettered("A_l"), Lettered("A_b"), Symbol("T", "1")
+DRIVEN, LOADED, BRAKED, END = CourseSymbol("A_d"), CourseSymbol("A_l"), CourseSymbol("A_b"), Symbol("T", "1")
 
 
 def write_single_run(subject: Subject) -> Iterable[Block]:

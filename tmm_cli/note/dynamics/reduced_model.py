@@ -10,16 +10,16 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.dynamics import Curve, Kloss, Linear, Running, Steady, Tangent
-from tmm_cli.mechanics.forces import Applied, Lettered, Symbol, load_symbols
+from tmm_cli.mechanics.dynamics import KlossMotor, LinearMotor, PanelCurve, SteadyRunning, SteadySolution, Tangent
+from tmm_cli.mechanics.forces import AppliedLoad, CourseSymbol, Symbol, load_symbols
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, said
 from tmm_cli.note.expression import EXACT, Constant, Expression, Found, Function, Leaf, Sum, added, evaluate, signed
 from tmm_cli.note.subject import Subject
 
-INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), Lettered("M_d"), Symbol("A")
-FLYWHEEL, START, MEAN, DELTA = Lettered("J_f"), Symbol("T", "0"), Lettered("ω_m"), Symbol("δ")
+INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), CourseSymbol("M_d"), Symbol("A")
+FLYWHEEL, START, MEAN, DELTA = CourseSymbol("J_f"), Symbol("T", "0"), CourseSymbol("ω_m"), Symbol("δ")
 LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 
@@ -31,12 +31,12 @@ class Here:
     k: int
 
     @property
-    def running(self) -> Running:
+    def running(self) -> SteadyRunning:
         assert self.subject.results.steady is not None
         return self.subject.results.steady
 
     @property
-    def steady(self) -> Steady:
+    def steady(self) -> SteadySolution:
         return self.running.steady
 
     @property
@@ -62,7 +62,7 @@ class Here:
         upper, __ = self.tangents
         return upper.slope * self.steady.law.flywheel - upper.offset
 
-    def of(self, curve: Curve) -> float:
+    def of(self, curve: PanelCurve) -> float:
         """A function of the way, here."""
         return float(curve(self.running.way(self.motion.q))[self.k])
 
@@ -131,7 +131,7 @@ def write_reduced_moment(here: Here) -> Iterable[Block]:
     yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
 
 
-def _of_load(here: Here, load: Applied) -> Iterable[Expression]:
+def _of_load(here: Here, load: AppliedLoad) -> Iterable[Expression]:
     k, motion = here.k, here.motion
     force, couple = load_symbols(load)
     pull, turned = complex(load.force[k]), float(load.moment[k])
@@ -160,9 +160,9 @@ def _sum(terms: list[Expression]) -> Sum:
 # What drives: a moment from zero work over the cycle, or a motor by its characteristic.
 
 
-CYCLE, WHOLE = Lettered("A_c"), Lettered("φ_c")
-STALL, FREE = Lettered("M_s"), Symbol("ω", "0")
-BREAKDOWN, SLIP, CRITICAL = Lettered("M_k"), Symbol("s"), Lettered("s_k")
+CYCLE, WHOLE = CourseSymbol("A_c"), CourseSymbol("φ_c")
+STALL, FREE = CourseSymbol("M_s"), Symbol("ω", "0")
+BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k")
 
 
 def write_mean_driving_moment(here: Here) -> Iterable[Block]:
@@ -194,7 +194,7 @@ def write_mean_driving_moment(here: Here) -> Iterable[Block]:
 def write_motor_moment(here: Here) -> Iterable[Block]:
     """The moment in a position, by the speed there."""
     match here.steady.task.motor:
-        case Linear() as found:
+        case LinearMotor() as found:
             yield said(
                 _(
                     "The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
@@ -206,11 +206,11 @@ def write_motor_moment(here: Here) -> Iterable[Block]:
             )
             moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
             yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
-        case Kloss() as found:
+        case KlossMotor() as found:
             yield from _asynchronous(here, found)
 
 
-def _asynchronous(here: Here, motor: Kloss) -> Iterable[Block]:
+def _asynchronous(here: Here, motor: KlossMotor) -> Iterable[Block]:
     yield said(
         _(
             "The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. "

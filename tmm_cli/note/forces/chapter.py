@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tmm_cli.language import _, filled
-from tmm_cli.mechanics.forces import Lettered, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
+from tmm_cli.mechanics.forces import CourseSymbol, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest_magnitude, without_rounding
 from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
 from tmm_cli.note.forces import lever, loads, sections
@@ -250,11 +250,11 @@ def balancing(subject: Subject) -> Iterable[Block]:
             _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
             balance=of_all,
             whole=row(
-                Letter(Lettered("M_d")),
+                Letter(CourseSymbol("M_d")),
                 "=",
                 Letter(of_all),
                 "+",
-                Letter(Lettered("J_f")),
+                Letter(CourseSymbol("J_f")),
                 "·",
                 Letter(Symbol("ε")),
             ),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces import ForceSum, MomentEquation, Part, Symbol, Term
+from tmm_cli.mechanics.forces import ForceSum, GuideComponent, MomentEquation, MomentTerm, Symbol
 from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
 from tmm_cli.note.formula_tree import Letter, Node, Number, chain_of_equalities, row
 
@@ -66,19 +66,19 @@ def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     return chain_of_equalities((row(*parts[1:]), Number("0")))
 
 
-def _moment(term: Term, mu: float | None = None) -> Expression:
+def _moment(term: MomentTerm, mu: float | None = None) -> Expression:
     force = Leaf(term.acting.symbol, term.acting.size)
     if term.number:
         return signed(term.moment, force * _arm(term, mu))
     return signed(term.moment, force if mu is None else force / Leaf(MU, mu))
 
 
-def _arm(term: Term, mu: float | None) -> Leaf:
+def _arm(term: MomentTerm, mu: float | None) -> Leaf:
     """Of a force: in metres, or in millimetres of a drawing of this scale."""
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 
-def _projection(part: Part, number: int) -> Expression:
+def _projection(part: GuideComponent, number: int) -> Expression:
     force = Leaf(part.acting.symbol, part.acting.size)
     if math.isclose(part.cosine, 1.0, rel_tol=ALONG):
         return force

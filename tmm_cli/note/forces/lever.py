@@ -8,9 +8,9 @@ import numpy as np
 
 from tmm_cli.drawing.paper import file_safe_name
 from tmm_cli.language import _
-from tmm_cli.mechanics.forces import Applied, Symbol, balance_symbol, load_symbols
+from tmm_cli.mechanics.forces import AppliedLoad, Symbol, balance_symbol, load_symbols
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
-from tmm_cli.mechanics.plans import LeverPlan, Scales, drawn_check, lever_plan, sheets
+from tmm_cli.mechanics.plans import DrawingScales, LeverPlan, balance_drawings, drawn_check, lever_plan
 from tmm_cli.note.blocks import Block, Equation, Heading, said
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
 from tmm_cli.note.forces.equations import by_moments, moments
@@ -94,7 +94,7 @@ def turns_of(subject: Subject) -> bool:
     return subject.results.linkage.driver.kind == "turn"
 
 
-def _ratio(subject: Subject, load: Applied, k: int) -> tuple[Expression, ...]:
+def _ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
     """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
     motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(subject.rate(k))
@@ -156,7 +156,7 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
 
 def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
     """What both ways give with arms and segments that are read off the drawings of the note."""
-    drawn = sheets(subject.motion, subject.reactions, subject.lever, k)
+    drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
         return
     here, link = subject.position(k), f"link-{drawn.link.links[0]}"
@@ -164,7 +164,7 @@ def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
     stems = [file_safe_name(here.stem(name) if name == "lever" else f"{here.stem(name)}-{link}") for name in names]
     scales = drawn.scales()
     if subject.drawn:
-        scales = Scales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))
+        scales = DrawingScales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))
     check = drawn_check(subject.motion, subject.reactions, drawn, scales)
     moment = subject.reactions.balance.kind == "moment"
     yield said(

@@ -9,14 +9,14 @@ import numpy as np
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import (
-    Applied,
+    AppliedLoad,
     Symbol,
     balance_symbol,
-    lettered,
+    course_symbol,
     load_symbols,
-    react,
     reaction_symbol,
-    twisted,
+    solve_reactions,
+    twist_angle,
 )
 from tmm_cli.mechanics.linkage import Friction, Spring
 from tmm_cli.mechanics.numerics import NO_FORCE, dot
@@ -40,7 +40,7 @@ def weights(subject: Subject) -> Iterable[Block]:
             "acts in the "
             "centre of mass of the link:"
         ),
-        G=lettered("G"),
+        G=course_symbol("G"),
         m=Symbol("m"),
         g=gravity.symbol,
     )
@@ -64,7 +64,7 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         if explained
         else _("Forces and couples of inertia:")
     )
-    yield said(explanation, U=lettered("U"), M=lettered("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
+    yield said(explanation, U=course_symbol("U"), M=course_symbol("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
     units = {one.unit for one in found}
     largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
     there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
@@ -77,7 +77,7 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         yield said(text, names=listed(nothing))
 
 
-def _of_inertia(subject: Subject, load: Applied, k: int) -> Iterable[Found]:
+def _of_inertia(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Found]:
     motion, link = subject.motion, subject.results.linkage.links[load.link]
     force, couple = load_symbols(load)
     if np.any(link.mass != 0):
@@ -98,10 +98,10 @@ def springs(subject: Subject, k: int) -> Iterable[Block]:
             yield from _spring(subject, spring, load, k)
 
 
-def _spring(subject: Subject, spring: Spring, load: Applied, k: int) -> Iterable[Block]:
+def _spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iterable[Block]:
     motion = subject.motion
     if spring.turns:
-        now, free = Leaf(Symbol("θ"), float(twisted(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
+        now, free = Leaf(Symbol("θ"), float(twist_angle(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
         letter = "M"
         omegas = [float(motion.link(n).omega[k]) if n in motion.linkage.moving else 0.0 for n in (spring.j, spring.i)]
         rate, size, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
@@ -169,7 +169,7 @@ def without_friction(subject: Subject, k: int) -> Iterable[Block]:
     if not subject.results.linkage.friction:
         return
     loads = tuple(load for load in subject.results.loads if load.kind != "friction")
-    free = react(subject.motion, subject.results.structure, loads)
+    free = solve_reactions(subject.motion, subject.results.structure, loads)
     yield said(_("Without friction it would be:"))
     for balance in free.balances:
         turns = balance.moment is not None

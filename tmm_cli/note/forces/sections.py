@@ -11,17 +11,17 @@ from tmm_cli.drawing.sheets import split_equations
 from tmm_cli.language import _, filled
 from tmm_cli.mechanics.forces import (
     DRIVE,
-    Acting,
+    ExternalPair,
+    ForceOrCouple,
     ForceSum,
+    FreeBody,
     GroupForces,
-    Lead,
-    Loaded,
-    LoadedPart,
+    LoadedPosition,
     MomentEquation,
     Reaction,
     Symbol,
-    leads_of,
-    loaded_parts,
+    external_pairs,
+    list_free_bodies,
     reaction_symbol,
 )
 from tmm_cli.mechanics.numerics import NO_FORCE
@@ -38,8 +38,8 @@ class Part:
     """Of a position: a group or a driving link with its outer reactions (a driving link's is the frame's)."""
 
     subject: Subject
-    here: Loaded
-    loaded: LoadedPart
+    here: LoadedPosition
+    loaded: FreeBody
     plan: ForcePlan
     outer: tuple[Reaction, ...]
     forces: GroupForces | None
@@ -57,7 +57,7 @@ class Part:
         )
 
     @property
-    def given(self) -> list[Acting]:
+    def given(self) -> list[ForceOrCouple]:
         """What is known when the part is taken apart."""
         return [one for one in self.loaded.acting if one.symbol not in self.sought and one.pair != DRIVE]
 
@@ -139,8 +139,8 @@ class Part:
 def parts_of(subject: Subject, k: int) -> Iterable[Part]:
     """Last group first, the driving links at the end."""
     motion, reactions = subject.motion, subject.reactions
-    here = Loaded.at(motion, reactions, k)
-    loaded, plans = loaded_parts(motion, reactions, k), force_plans(reactions, k, motion)
+    here = LoadedPosition.at(motion, reactions, k)
+    loaded, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
     owners: list[tuple[tuple[Reaction, ...], GroupForces | None]] = [(g.outer, g) for g in reversed(reactions.groups)]
     owners += [((frame,), None) for frame in reactions.frames]
     for part, plan, (outer, forces) in zip(loaded, plans, owners, strict=True):
@@ -214,7 +214,7 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     if group and not given:
         text = _("The group {group} is separated from the mechanism. It is required to find:")
     yield said(text, group=group, given=given or _("nothing"))
-    leads = [] if part.forces is None else leads_of(part.here, part.forces.group)
+    leads = [] if part.forces is None else external_pairs(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
     moment, force = _("the balancing moment {symbol}"), _("the balancing force {symbol}")
     balances = [one for one in part.loaded.acting if one.pair == DRIVE]
@@ -241,7 +241,7 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     )
 
 
-def _unknown(reaction: Reaction, lead: Lead | None) -> Line:
+def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
     """Of an outer reaction; lead: of the hinge or guide."""
     pair, line = reaction.pair, ""
     if not pair.lower:

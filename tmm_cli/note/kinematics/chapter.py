@@ -12,7 +12,7 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.kinematics import OutputTravel, Strokes
 from tmm_cli.mechanics.linkage import FRAME, Driver
 from tmm_cli.mechanics.numerics import NO_VECTOR, Real, largest_magnitude, without_rounding
-from tmm_cli.mechanics.plans import Along, Step, steps
+from tmm_cli.mechanics.plans import MovingGuideEquation, SolutionStep, solution_steps
 from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Ref, Rows, listed, said, tabled
 from tmm_cli.note.expression import Constant, Found, Function, Leaf
 from tmm_cli.note.formula_tree import Letter, Number, Words, row
@@ -315,14 +315,14 @@ def write_kinematics(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Driving links and positions"), 2)
     yield from drivers(subject)
     yield from positions(subject)
-    every = steps(results.linkage, results.structure.all_groups)
+    every = solution_steps(results.linkage, results.structure.all_groups)
     for k in subject.detail:
         yield from _position(Here(subject, k, k == subject.detail[0]), every)
     yield Heading(_("Kinematics of all positions"), 2)
     yield from tables(subject)
 
 
-def _position(here: Here, every: list[Step]) -> Iterable[Block]:
+def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
     subject, number = here.subject, here.subject.called(here.k)
     yield Heading(_("Velocities, position {number}").format(number=number), 2)
     if here.first:
@@ -334,7 +334,7 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
                 "in direction only."
             )
         )
-        slid = next((e for step in every for e in step.equations if isinstance(e, Along)), None)
+        slid = next((e for step in every for e in step.equations if isinstance(e, MovingGuideEquation)), None)
         if slid is not None:
             yield said(
                 _(
@@ -365,7 +365,7 @@ def _position(here: Here, every: list[Step]) -> Iterable[Block]:
                 "towards that other point, and a tangential one, perpendicular to the line between them."
             )
         )
-        if any(isinstance(e, Along) for step in every for e in step.equations):
+        if any(isinstance(e, MovingGuideEquation) for step in every for e in step.equations):
             yield said(
                 _(
                     "The acceleration of a stone relative to the coincident point of the guide has a component "

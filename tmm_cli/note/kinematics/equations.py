@@ -7,7 +7,15 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Slide
-from tmm_cli.mechanics.plans import About, Along, OnGuide, Spot, Step, VectorEquation, massive
+from tmm_cli.mechanics.plans import (
+    FixedGuideEquation,
+    MovingGuideEquation,
+    PlanPoint,
+    SameLinkEquation,
+    SolutionStep,
+    VectorEquation,
+    links_with_mass,
+)
 from tmm_cli.note.blocks import Block, Equation, listed, said
 from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.formula_tree import LINE, Letter, Node, Number, Words, row, width
@@ -19,48 +27,50 @@ def sense(value: float) -> str:
     return _("counterclockwise") if value > 0 else _("clockwise")
 
 
-def name_of(spot: Spot) -> Symbol:
+def name_of(spot: PlanPoint) -> Symbol:
     """The name of a point; of one under a stone with the number of its link below the line."""
     return Symbol(spot.at, spot.name[len(spot.at) :])
 
 
-def direct(step: Step) -> list[About]:
+def direct(step: SolutionStep) -> list[SameLinkEquation]:
     """Points that follow from what is known before the equations of a group."""
-    return [e for e in step.equations if isinstance(e, About) and e.known and not e.idle]
+    return [e for e in step.equations if isinstance(e, SameLinkEquation) and e.known and not e.idle]
 
 
-def solved(step: Step) -> list[VectorEquation]:
+def solved(step: SolutionStep) -> list[VectorEquation]:
     """What is solved together; not what a higher pair gives, nor what follows by itself."""
     alone = direct(step)
-    return [e for e in step.equations if e not in alone and not (isinstance(e, OnGuide) and e.known)]
+    return [e for e in step.equations if e not in alone and not (isinstance(e, FixedGuideEquation) and e.known)]
 
 
-def sought(step: Step, known: Collection[str]) -> list[Spot]:
+def sought(step: SolutionStep, known: Collection[str]) -> list[PlanPoint]:
     """Points that the equations give, but for those that move as others."""
     together = solved(step)
-    others = [e for e in step.equations if e not in together or (isinstance(e, About) and e.idle)]
-    spots = [s for e in together for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])]
+    others = [e for e in step.equations if e not in together or (isinstance(e, SameLinkEquation) and e.idle)]
+    spots = [s for e in together for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])]
     taken = {*known, *(e.point.name for e in others)}
     return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
 
 
-def once_a_link(together: Iterable[VectorEquation]) -> list[About]:
+def once_a_link(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
     """The equation of each link whose rotation is sought, by which it is found."""
-    found: dict[str, About] = {}
+    found: dict[str, SameLinkEquation] = {}
     for one in together:
-        if isinstance(one, About) and not one.known:
+        if isinstance(one, SameLinkEquation) and not one.known:
             found.setdefault(one.link, one)
     return list(found.values())
 
 
-def further(step: Step) -> list[About]:
+def further(step: SolutionStep) -> list[SameLinkEquation]:
     """Further points of links that turn."""
     return [about for about in step.after if not about.idle]
 
 
-def points_of(step: Step) -> set[str]:
+def points_of(step: SolutionStep) -> set[str]:
     """Points that are told in a step."""
-    found = {s.name for e in step.equations for s in ([e.point] if isinstance(e, OnGuide) else [e.point, e.base])}
+    found = {
+        s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
+    }
     return found | {about.point.name for about in further(step)}
 
 
@@ -70,7 +80,7 @@ def equal(*symbols: Symbol) -> Block:
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
 
 
-def introduced(step: Step, points: Sequence[Spot], one: str, several: str) -> Block:
+def introduced(step: SolutionStep, points: Sequence[PlanPoint], one: str, several: str) -> Block:
     """What the equations of a group are for: one point, several ones, or none."""
     assert step.group is not None
     text = one if len(points) == 1 else several if points else _("Group {group}: what is not known yet is found from")
@@ -91,7 +101,7 @@ def turning(
     here: Here,
     together: Iterable[VectorEquation],
     letter: str,
-    vector_of: Callable[[About], Vector],
+    vector_of: Callable[[SameLinkEquation], Vector],
     carried: str,
     told: str,
 ) -> Iterable[Block]:
@@ -114,7 +124,7 @@ def turning(
         )
 
 
-def turning_as_one(here: Here, step: Step, letter: str) -> Iterable[Block]:
+def turning_as_one(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
     """Links that turn as others do, which is said where the method is explained."""
     for links in step.same:
         if links[0] in here.rates(letter):
@@ -126,7 +136,7 @@ def turning_as_one(here: Here, step: Step, letter: str) -> Iterable[Block]:
 def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Block]:
     """Points that no equation needed, and centres of mass: by similarity."""
     linkage = here.motion.linkage
-    names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in massive(linkage)]
+    names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in links_with_mass(linkage)]
     if not names:
         return
     if here.first:
@@ -162,7 +172,7 @@ WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
 
 
 def equations(
-    here: Here, step: Step, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
+    here: Here, step: SolutionStep, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
 ) -> Iterable[Block]:
     """Those of a step, and a line with the directions in them.
 
@@ -171,11 +181,11 @@ def equations(
     lined = {
         e.point.name
         for e in step.equations
-        if isinstance(e, OnGuide) or (isinstance(e, About) and e.base.fixed and letter == "v")
+        if isinstance(e, FixedGuideEquation) or (isinstance(e, SameLinkEquation) and e.base.fixed and letter == "v")
     }
     told: dict[Node, None] = {}
     for equation in chosen:
-        if isinstance(equation, OnGuide):
+        if isinstance(equation, FixedGuideEquation):
             told[row(vector(Symbol(letter, equation.point.name)), "∥", guide(equation.slide))] = None
             continue
         terms = list(_parts(equation, letter, here.omega))
@@ -189,13 +199,13 @@ def equations(
     yield from _in_lines(list(told))
 
 
-def of_known_link(here: Here, about: About, letter: str, known: Collection[str]) -> Iterable[Block]:
+def of_known_link(here: Here, about: SameLinkEquation, letter: str, known: Collection[str]) -> Iterable[Block]:
     """Where the method is explained: that a point belongs to a link whose rotation is known, and its equation."""
     if here.first:
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield said(text, point=name_of(about.point), link=about.link)
         if not about.base.fixed:
-            yield from equations(here, Step((), ()), [about], letter, known)
+            yield from equations(here, SolutionStep((), ()), [about], letter, known)
 
 
 def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
@@ -211,17 +221,19 @@ def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
         yield Equation(shown)
 
 
-def _lines(spot: Spot, known: Collection[str], lined: Collection[str]) -> int:
+def _lines(spot: PlanPoint, known: Collection[str], lined: Collection[str]) -> int:
     if spot.fixed or spot.name in known:
         return WHOLE
     return DIRECTION if spot.name in lined else UNKNOWN
 
 
-def _parts(equation: About | Along, letter: str, turning: Collection[str]) -> Iterable[tuple[Node, Node]]:
+def _parts(
+    equation: SameLinkEquation | MovingGuideEquation, letter: str, turning: Collection[str]
+) -> Iterable[tuple[Node, Node]]:
     """Relative vectors with their lines, and with what they are along or across."""
     index = equation.point.name + equation.base.name
     sought = WHOLE if equation.known else DIRECTION
-    if isinstance(equation, Along):
+    if isinstance(equation, MovingGuideEquation):
         way = guide(equation.slide)
         if letter == "v":
             yield _part(Symbol("v", index), sought, "∥", way)

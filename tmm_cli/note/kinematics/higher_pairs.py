@@ -8,7 +8,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.groups import carrier_axis
 from tmm_cli.mechanics.linkage import FRAME, Mesh
-from tmm_cli.mechanics.plans import Along, OnGuide, Ratio, Step
+from tmm_cli.mechanics.plans import FixedGuideEquation, HigherPairRatio, MovingGuideEquation, SolutionStep
 from tmm_cli.note.blocks import Block, Equation, said
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
 from tmm_cli.note.formula_tree import Letter, row
@@ -16,7 +16,7 @@ from tmm_cli.note.kinematics.equations import sense
 from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
 
 
-def begun(here: Here, step: Step, letter: str) -> Iterable[Block]:
+def begun(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
     """How a group begins: what its higher pairs give of ω, or of ε."""
     assert step.group is not None
     if step.ratios:
@@ -27,7 +27,7 @@ def begun(here: Here, step: Step, letter: str) -> Iterable[Block]:
         yield from _by_ratio(here, step, ratio, letter)
 
 
-def _by_ratio(here: Here, step: Step, ratio: Ratio, letter: str) -> Iterable[Block]:
+def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
     """Of a link, or in a sliding pair, from a higher pair."""
     mesh, first = ratio.mesh, here.first and letter == "ω"
     if mesh.kind == "gear":
@@ -112,16 +112,23 @@ def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
     return Found(found.symbol, expression, found.value, unit(letter))
 
 
-def _sliding(here: Here, step: Step, ratio: Ratio, letter: str) -> Vector:
+def _sliding(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Vector:
     """The velocity, or acceleration, in the sliding pair of a rack or a follower."""
     slide, plan = here.motion.linkage.slide(ratio.mesh.slide), here.plan_of(letter)
-    own = next((e for e in step.equations if isinstance(e, Along | OnGuide) and e.slide.name == slide.name), None)
-    if isinstance(own, Along):
+    own = next(
+        (
+            e
+            for e in step.equations
+            if isinstance(e, MovingGuideEquation | FixedGuideEquation) and e.slide.name == slide.name
+        ),
+        None,
+    )
+    if isinstance(own, MovingGuideEquation):
         return plan.relative(own.point, own.base) if letter == "ω" else plan.part(own.point, own.base, "r")
     return plan.of(own.point if own is not None else slide.point)
 
 
-def _rolls(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
+def _rolls(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
     mesh = ratio.mesh
     run, radius = _sliding(here, step, ratio, letter), Leaf(Symbol("r", mesh.i), abs(mesh.ratio))
     wheel, carrier = (_turning(here, link, letter) for link in (mesh.i, mesh.carrier))
@@ -154,7 +161,7 @@ def _derivative(mesh: Mesh, order: int) -> Symbol:
     return Symbol(("s" if mesh.slide else "ψ") + ("′" if order == 1 else "″"))
 
 
-def _follower(here: Here, step: Step, ratio: Ratio, letter: str) -> Block:
+def _follower(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
     mesh = ratio.mesh
     assert mesh.law is not None
     poses, cam, carrier = here.motion.poses, mesh.i, mesh.carrier

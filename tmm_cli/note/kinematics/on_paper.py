@@ -13,7 +13,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
-from tmm_cli.mechanics.plans import NamedVector, Plan, Spot, extent, in_letters, round_scale, turns
+from tmm_cli.mechanics.plans import NamedVector, Plan, PlanPoint, angular_values, extent, round_scale, with_subscripts
 from tmm_cli.note.blocks import Block, Equation
 from tmm_cli.note.expression import Expression, Found, Leaf
 from tmm_cli.note.formula_tree import Letter, Number, row
@@ -70,12 +70,12 @@ class OnPaper:
         """Vectors of points and centres of mass, by their names."""
         return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
 
-    def of(self, spot: Spot | str) -> Vector:
+    def of(self, spot: PlanPoint | str) -> Vector:
         """The vector of a point, or of a centre of mass by its name."""
         name = spot if isinstance(spot, str) else spot.name
         return self._vector(Symbol(self.sort.letter, name), self._end(name), self.sort.pole + self._letter(name))
 
-    def relative(self, point: Spot, base: Spot) -> Vector:
+    def relative(self, point: PlanPoint, base: PlanPoint) -> Vector:
         """The velocity of a point about another one; about one of the frame it is the whole one."""
         if base.fixed:
             return self.of(point)
@@ -83,7 +83,7 @@ class OnPaper:
         letters = [self._letter(spot.name) or self.sort.pole for spot in (base, point)]
         return self._vector(symbol, self._end(point.name) - self._end(base.name), "".join(letters))
 
-    def part(self, point: Spot, base: Spot, above: str) -> Vector:
+    def part(self, point: PlanPoint, base: PlanPoint, above: str) -> Vector:
         """A part of an acceleration: n, τ, k or r."""
         symbol = Symbol(self.sort.letter, point.name + base.name, above)
         found = next(v for v in self.plan.vectors if v.symbol == symbol)
@@ -150,12 +150,12 @@ class Here:
     @cached_property
     def omega(self) -> Mapping[str, float]:
         """Of the links that turn in some position, rad/s."""
-        return {turn.symbol.below: turn.value for turn in turns(self.motion, self.k, "omega")}
+        return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "omega")}
 
     @cached_property
     def epsilon(self) -> Mapping[str, float]:
         """Of the links that turn unevenly, rad/s2."""
-        return {turn.symbol.below: turn.value for turn in turns(self.motion, self.k, "epsilon")}
+        return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "epsilon")}
 
     def rates(self, letter: str) -> Mapping[str, float]:
         """What links turn with: ω, or ε."""
@@ -169,7 +169,7 @@ class Here:
         """Of what belongs to ω, or to ε."""
         return self.v if letter == "ω" else self.a
 
-    def length(self, point: Spot, base: Spot) -> Leaf:
+    def length(self, point: PlanPoint, base: PlanPoint) -> Leaf:
         """Between two points of a link, m."""
         places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
         return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
@@ -193,7 +193,7 @@ def vector(symbol: Symbol) -> Letter:
 
 def drawn(vector: Vector) -> Symbol:
     """Its segment."""
-    return Symbol(in_letters(vector.segment))
+    return Symbol(with_subscripts(vector.segment))
 
 
 def zero(symbol: Symbol) -> Block:

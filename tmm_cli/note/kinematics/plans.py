@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.plans import About, Along, OnGuide, Step, VectorEquation
+from tmm_cli.mechanics.plans import (
+    FixedGuideEquation,
+    MovingGuideEquation,
+    SameLinkEquation,
+    SolutionStep,
+    VectorEquation,
+)
 from tmm_cli.note.blocks import Block, listed, said
 from tmm_cli.note.kinematics import equations as words
 from tmm_cli.note.kinematics.equations import equations, of_known_link
@@ -13,7 +19,7 @@ from tmm_cli.note.kinematics.higher_pairs import begun
 from tmm_cli.note.kinematics.on_paper import Here, Vector
 
 
-def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+def velocities(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     """All that the plan gives, in the order in which it is drawn."""
     known: set[str] = set()
     for step in steps:
@@ -36,7 +42,7 @@ def velocities(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     yield from words.remaining(here, here.v, known)
 
 
-def _driving(here: Here, step: Step) -> Iterable[Block]:
+def _driving(here: Here, step: SolutionStep) -> Iterable[Block]:
     """Points of a driving link."""
     turned = words.further(step)
     if here.first and turned:
@@ -58,22 +64,22 @@ def _driving(here: Here, step: Step) -> Iterable[Block]:
         yield _turned(here, about)
 
 
-def _turned(here: Here, about: About) -> Block:
+def _turned(here: Here, about: SameLinkEquation) -> Block:
     """v = ω l of a point about another one of its link."""
     found = here.v.relative(about.point, about.base)
     return here.v.found(found, here.rate("ω", about.link) * here.length(about.point, about.base))
 
 
-def _known(here: Here, step: Step) -> Iterable[Vector]:
+def _known(here: Here, step: SolutionStep) -> Iterable[Vector]:
     """Vectors that are known before the plan is drawn."""
     for equation in (*step.equations, *(step.after if step.group is None else ())):
-        if equation.known and isinstance(equation, OnGuide):
+        if equation.known and isinstance(equation, FixedGuideEquation):
             yield here.v.of(equation.point)
-        elif equation.known and not isinstance(equation, OnGuide):
+        elif equation.known and not isinstance(equation, FixedGuideEquation):
             yield here.v.relative(equation.point, equation.base)
 
 
-def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
     """Ratios, equations, what they give, further points."""
     points, together, found = words.sought(step, known), words.solved(step), {*known}
     yield from begun(here, step, "ω")
@@ -85,13 +91,13 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         several = _("Group {group}: the velocities of points {points} are found from")
         yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "v", found)
-        for link in dict.fromkeys(e.link for e in together if isinstance(e, About) and e.idle):
+        for link in dict.fromkeys(e.link for e in together if isinstance(e, SameLinkEquation) and e.idle):
             yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
         yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))
     for equation in together:
-        if not isinstance(equation, OnGuide) and not equation.known and not equation.base.fixed:
+        if not isinstance(equation, FixedGuideEquation) and not equation.known and not equation.base.fixed:
             yield here.v.read(here.v.relative(equation.point, equation.base))
     yield from words.turning(
         here,
@@ -106,7 +112,7 @@ def _group(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         yield from _known_about(here, about, found)
 
 
-def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[Block]:
+def _known_about(here: Here, about: SameLinkEquation, found: Collection[str]) -> Iterable[Block]:
     """A point of a link whose rotation is known."""
     yield from of_known_link(here, about, "v", found)
     yield _turned(here, about)
@@ -117,7 +123,7 @@ def _known_about(here: Here, about: About, found: Collection[str]) -> Iterable[B
 # Accelerations of a position: normal and Coriolis parts from velocities, the rest by vector equations and the plan.
 
 
-def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+def accelerations(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     """All that the plan gives, in the order in which it is drawn."""
     known: set[str] = set()
     driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
@@ -135,7 +141,7 @@ def accelerations(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     yield from words.remaining(here, here.a, known)
 
 
-def _driving_accelerations(here: Here, step: Step) -> Iterable[Block]:
+def _driving_accelerations(here: Here, step: SolutionStep) -> Iterable[Block]:
     """Points of a driving link."""
     for equation in step.equations:
         a = here.a.of(equation.point)
@@ -158,7 +164,7 @@ def _driving_accelerations(here: Here, step: Step) -> Iterable[Block]:
         yield from _whole(here, about)
 
 
-def _parts(here: Here, about: About) -> Iterable[Block]:
+def _parts(here: Here, about: SameLinkEquation) -> Iterable[Block]:
     """Normal and tangential part of a point's acceleration about another of a link whose rotation is known."""
     yield _normal(here, about)
     tangential = _part(here, about, "τ")
@@ -166,16 +172,16 @@ def _parts(here: Here, about: About) -> Iterable[Block]:
         yield here.a.found(tangential, here.rate("ε", about.link) * here.length(about.point, about.base))
 
 
-def _normal(here: Here, about: About) -> Block:
+def _normal(here: Here, about: SameLinkEquation) -> Block:
     length = here.length(about.point, about.base)
     return here.a.found(_part(here, about, "n"), here.rate("ω", about.link) ** 2 * length)
 
 
-def _part(here: Here, equation: About | Along, above: str) -> Vector:
+def _part(here: Here, equation: SameLinkEquation | MovingGuideEquation, above: str) -> Vector:
     return here.a.part(equation.point, equation.base, above)
 
 
-def _whole(here: Here, about: About) -> Iterable[Block]:
+def _whole(here: Here, about: SameLinkEquation) -> Iterable[Block]:
     """The acceleration of a point both of whose parts are known."""
     a = here.a.of(about.point)
     if about.base.fixed and not _part(here, about, "τ").segment:
@@ -184,13 +190,13 @@ def _whole(here: Here, about: About) -> Iterable[Block]:
         yield here.a.read(a)
 
 
-def _coriolis(here: Here, along: Along) -> Block:
+def _coriolis(here: Here, along: MovingGuideEquation) -> Block:
     """2 ω v."""
     sliding = here.v.relative(along.point, along.base)
     return here.a.found(_part(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
 
 
-def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
+def _scale(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     return words.scale(
         here.a,
         [vector for step in steps for vector in _known_accelerations(here, step)],
@@ -202,7 +208,7 @@ def _scale(here: Here, steps: Sequence[Step]) -> Iterable[Block]:
     )
 
 
-def _known_accelerations(here: Here, step: Step) -> Iterable[Vector]:
+def _known_accelerations(here: Here, step: SolutionStep) -> Iterable[Vector]:
     """Vectors that are known before the plan is drawn."""
     if step.group is None:
         yield from (here.a.of(equation.point) for equation in step.equations)
@@ -210,13 +216,13 @@ def _known_accelerations(here: Here, step: Step) -> Iterable[Vector]:
         if not about.idle:
             yield here.a.of(about.point) if about.link not in here.epsilon else _part(here, about, "n")
     for equation in step.equations:
-        if isinstance(equation, Along):
+        if isinstance(equation, MovingGuideEquation):
             yield _part(here, equation, "k")
-        elif isinstance(equation, About) and not equation.idle:
+        elif isinstance(equation, SameLinkEquation) and not equation.idle:
             yield _part(here, equation, "n")
 
 
-def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+def _before(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
     """What is known from velocities and from higher pairs, and the equations."""
     points, together = words.sought(step, known), words.solved(step)
     yield from begun(here, step, "ε")
@@ -231,18 +237,18 @@ def _before(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
         yield from _parts(here, about)
     for equation in together:
         if _has_known_part(here, equation):
-            assert not isinstance(equation, OnGuide)
-            yield _normal(here, equation) if isinstance(equation, About) else _coriolis(here, equation)
+            assert not isinstance(equation, FixedGuideEquation)
+            yield _normal(here, equation) if isinstance(equation, SameLinkEquation) else _coriolis(here, equation)
 
 
 def _has_known_part(here: Here, equation: VectorEquation) -> bool:
     """A normal part, or that of Coriolis."""
-    if isinstance(equation, Along):
+    if isinstance(equation, MovingGuideEquation):
         return equation.slide.carrier in here.omega
-    return isinstance(equation, About) and not equation.idle
+    return isinstance(equation, SameLinkEquation) and not equation.idle
 
 
-def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
+def _solved(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
     """What the plan gives."""
     points, together = words.sought(step, known), words.solved(step)
     for about in words.direct(step):
@@ -250,8 +256,8 @@ def _solved(here: Here, step: Step, known: Collection[str]) -> Iterable[Block]:
     if here.first and together:
         yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for equation in together:
-        if not isinstance(equation, OnGuide) and not equation.known:
-            yield here.a.read(_part(here, equation, "τ" if isinstance(equation, About) else "r"))
+        if not isinstance(equation, FixedGuideEquation) and not equation.known:
+            yield here.a.read(_part(here, equation, "τ" if isinstance(equation, SameLinkEquation) else "r"))
     for spot in points:
         yield here.a.read(here.a.of(spot))
     yield from words.turning(

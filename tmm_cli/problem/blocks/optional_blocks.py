@@ -8,20 +8,20 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.analysis import Setting, WheelTask
+from tmm_cli.mechanics.analysis import WheelSetting, WheelTask
 from tmm_cli.mechanics.dynamics import (
     BalancingTask,
-    Disk,
-    Kloss,
-    Linear,
-    Motor,
-    Place,
-    Plane,
-    Profile,
-    Rim,
-    Rotor,
+    CorrectionPlane,
+    CounterweightPlace,
+    DiskFlywheel,
+    DriveProfile,
+    KlossMotor,
+    LinearMotor,
+    MotorCharacteristic,
+    RimFlywheel,
     RunTask,
     SteadyTask,
+    UnbalancedShaft,
 )
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage
 from tmm_cli.mechanics.quantities import (
@@ -67,9 +67,9 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
     wheel = FileSection(keys.flywheel, ("dynamics", "flywheel"), values)
     ratio = wheel.positive("ratio", NUMBER)
     own = 0.0 if keys.flywheel.inertia is None else wheel.positive("inertia", INERTIA)
-    form = Disk if keys.flywheel.shape == "disk" else Rim
+    form = DiskFlywheel if keys.flywheel.shape == "disk" else RimFlywheel
     size = form(wheel.positive("density", DENSITY), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
-    if form is Rim and size.height >= 1:
+    if form is RimFlywheel and size.height >= 1:
         raise wheel.refusal(
             "height",
             _("a rim as high as that has no hole"),
@@ -85,7 +85,7 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
 
 
 def _build_run(
-    whole: FileSection, section: FileSection, driver: Driver, motor: Motor | None, flywheel: float
+    whole: FileSection, section: FileSection, driver: Driver, motor: MotorCharacteristic | None, flywheel: float
 ) -> RunTask:
     keys: optional_keys.RunKeys = section.keys
     for key in ("mean_speed", "delta"):
@@ -108,12 +108,12 @@ def _build_run(
     if isinstance(keys.drive, optional_keys.ProfileKeys):
         drive = _build_profile(FileSection(keys.drive, (*section.path, "drive"), section.values), place, size)
     elif keys.drive is not None:
-        drive = Profile("time", (0.0,), (section.number("drive", size),))
+        drive = DriveProfile("time", (0.0,), (section.number("drive", size),))
     speed = section.positive("speed", ANGULAR_SPEED if turns else SPEED, zero=True)
     return RunTask(speed, motor, drive, section.positive("brake", size, zero=True), flywheel, first, last)
 
 
-def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> Profile:
+def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> DriveProfile:
     keys: optional_keys.ProfileKeys = section.keys
     area = 1.0
     if keys.area is not None and size == MOMENT:
@@ -127,7 +127,7 @@ def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> P
     if keys.area is not None:
         size, area = PRESSURE, section.positive("area", AREA)
     arguments, sizes = section.columns("table", NUMBER if keys.against == "time" else place, size)
-    return Profile(keys.against, arguments, tuple(area * one for one in sizes))
+    return DriveProfile(keys.against, arguments, tuple(area * one for one in sizes))
 
 
 def _format_speed(speed: float) -> str:
@@ -135,7 +135,7 @@ def _format_speed(speed: float) -> str:
     return f"{speed:.6g} rad/s = {speed * 30 / math.pi:.6g} rpm"
 
 
-def _build_motor(section: FileSection) -> Motor:
+def _build_motor(section: FileSection) -> MotorCharacteristic:
     """Reduced to the driver."""
     keys: optional_keys.MotorKeys = section.keys
     ratio = section.positive("ratio", NUMBER)
@@ -146,7 +146,7 @@ def _build_motor(section: FileSection) -> Motor:
     for key in keys.model_fields_set - {"kind", "ratio", *wanted}:
         raise section.refusal(key, _("this motor is told by other numbers"), quote(key), ", ".join(wanted), at_key=True)
     if keys.kind == "linear":
-        return Linear(ratio * section.positive("stall", MOMENT), section.positive("free", ANGULAR_SPEED) / ratio)
+        return LinearMotor(ratio * section.positive("stall", MOMENT), section.positive("free", ANGULAR_SPEED) / ratio)
     synchronous, speed = section.positive("synchronous", ANGULAR_SPEED), section.positive("speed", ANGULAR_SPEED)
     if speed >= synchronous:
         raise section.refusal(
@@ -160,7 +160,7 @@ def _build_motor(section: FileSection) -> Motor:
         raise section.refusal(
             "overload", _("the breakdown moment is not below the rated one"), quote(keys.overload), _("1 or more")
         )
-    return Kloss.rated(synchronous / ratio, speed / ratio, ratio * section.positive("moment", MOMENT), overload)
+    return KlossMotor.rated(synchronous / ratio, speed / ratio, ratio * section.positive("moment", MOMENT), overload)
 
 
 def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
@@ -192,7 +192,7 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
 
 def _build_counterweight_place(
     name: str, keys: optional_keys.CounterweightKeys, linkage: Linkage, values: ValueReader
-) -> Place:
+) -> CounterweightPlace:
     section = FileSection(keys, ("balancing", "counterweights", name), values)
     values.known_name(name, linkage.moving, section.path, "link", key=True)
     if linkage.slides_on_frame(name):
@@ -207,10 +207,10 @@ def _build_counterweight_place(
             _("this counterweight moves with its link: its mass counts, and so its radius is wanted"),
             allowed=_("radius: 80 mm, or about: a hinge of this link on the frame"),
         )
-    return Place(name, about, radius)
+    return CounterweightPlace(name, about, radius)
 
 
-def _build_rotor(keys: optional_keys.RotorKeys, values: ValueReader) -> Rotor:
+def _build_rotor(keys: optional_keys.RotorKeys, values: ValueReader) -> UnbalancedShaft:
     path = ("balancing", "rotor")
     sizes, at = [], []
     for k, one in enumerate(keys.masses):
@@ -222,13 +222,15 @@ def _build_rotor(keys: optional_keys.RotorKeys, values: ValueReader) -> Rotor:
     for k, own in enumerate(keys.planes):
         section = FileSection(own, (*path, "planes", k), values)
         planes.append(
-            Plane(section.number("at", LENGTH), 0.0 if own.radius is None else section.positive("radius", LENGTH))
+            CorrectionPlane(
+                section.number("at", LENGTH), 0.0 if own.radius is None else section.positive("radius", LENGTH)
+            )
         )
     if len(planes) > 1 and planes[0].at == planes[1].at:
         raise FileSection(keys, path, values).refusal(
             "planes", _("two different planes are wanted"), str(keys.planes[1].at)
         )
-    return Rotor(np.array(sizes), np.array(at), tuple(planes))
+    return UnbalancedShaft(np.array(sizes), np.array(at), tuple(planes))
 
 
 LinkageWith = Callable[[Mapping[str, object]], Linkage]  # the linkage with other values of parameters
@@ -264,7 +266,9 @@ def _build_wheel(
     return WheelTask(name, link, keys.when, tuple(settings))
 
 
-def _build_setting(keys: Mapping[str, object], path: Path, known: Mapping[str, object], other: LinkageWith) -> Setting:
+def _build_setting(
+    keys: Mapping[str, object], path: Path, known: Mapping[str, object], other: LinkageWith
+) -> WheelSetting:
     for name in keys:
         if name not in known:
             raise ProblemError(
@@ -276,9 +280,9 @@ def _build_setting(keys: Mapping[str, object], path: Path, known: Mapping[str, o
                 near=nearest_name(name, known),
             )
     if not keys:
-        return Setting()
+        return WheelSetting()
     try:
-        return Setting({name: str(value) for name, value in keys.items()}, other(keys))
+        return WheelSetting({name: str(value) for name, value in keys.items()}, other(keys))
     except ProblemError as error:  # somewhere in the file, but it is this setting that does not fit there
         own = [name for name in keys if error.path == ("parameters", name)]
         path = (*path, *own)

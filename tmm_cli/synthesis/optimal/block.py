@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from tmm_cli.batch import Range, TracedNumber, Two, Variant, two
+from tmm_cli.batch import Range, TracedNumber, Two, Variant, bounds_text
 from tmm_cli.language import _
 from tmm_cli.mechanics.assembly import analyse_mobile_structure
 from tmm_cli.mechanics.errors import MobilityError
@@ -246,7 +246,7 @@ def _read_constraint(
         )
     least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
     if least is not None and most is not None and least > most:
-        raise ProblemError(_("the least is more than the most"), path=path, found=two(given.least, given.most))
+        raise ProblemError(_("the least is more than the most"), path=path, found=bounds_text(given.least, given.most))
     return task.QuantityConstraint(quantity, least, most, (*path, list(sides)[-1]))
 
 

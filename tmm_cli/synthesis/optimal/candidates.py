@@ -9,7 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import WANTED, OneByOne, Places, Taped, alike, sketch_of, variants_of
+from tmm_cli.batch import (
+    WANTED,
+    DriverSamples,
+    SequentialVariants,
+    TracedVariants,
+    compute_sketch,
+    make_variants,
+    same_assembly,
+)
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.forces import Reactions
@@ -60,14 +68,14 @@ class Candidates:
 
     def _program(self) -> None:
         """What gives all quantities of candidates at places of the driver."""
-        self.program: Taped | OneByOne = variants_of(
+        self.program: TracedVariants | SequentialVariants = make_variants(
             self.task.make,
             self.first,
             self.outputs,
             forces=any(quantity.forces for quantity in self.quantities),
             one_sense=has_one_sense(self.task, self.first),
         )
-        self.taped = isinstance(self.program, Taped)
+        self.taped = isinstance(self.program, TracedVariants)
         self.coarse = self.program.without(CLOSELY)
         kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
         self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
@@ -94,7 +102,7 @@ class Candidates:
         )
         own = self.own_places(self.count + self.jumps)
         self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
-        self.places = Places(self.over(self.count), self.with_sketch(np.zeros(0)), asked=True)
+        self.places = DriverSamples(self.over(self.count), self.with_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -148,13 +156,13 @@ class Candidates:
         """Places of the driver, and that of the sketch, where it counts."""
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
-    def run(self, x: Real, places: Places) -> Mapping[str, Real]:
+    def run(self, x: Real, places: DriverSamples) -> Mapping[str, Real]:
         """All outputs."""
         return self.program(self.numbers(x), places)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
-        block = FOLLOWED if isinstance(self.program, Taped) and self.program.marches else BLOCK
+        block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.marches else BLOCK
         blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
 
@@ -202,10 +210,10 @@ class Candidates:
         own = self.program.sketch(numbers)
         try:
             linkage = self.task.make(numbers.tolist()).linkage
-            shown = sketch_of(linkage, assemble(linkage, analyse_mobile_structure(linkage)))
+            shown = compute_sketch(linkage, assemble(linkage, analyse_mobile_structure(linkage)))
         except LinkageError:
             return own
-        return None if alike(own, shown) else own
+        return None if same_assembly(own, shown) else own
 
 
 def quantity_reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Places
+from tmm_cli.batch import DriverSamples
 from tmm_cli.language import N_, Phrase
 from tmm_cli.mechanics.numerics import NO_VIOLATION, Real, Vector, find_minima
 from tmm_cli.synthesis.construction import Diagram, DiagramLine
@@ -26,7 +26,7 @@ from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutco
 CURVE = 361  # places of a path or a law that is drawn
 NONE = np.zeros(0)
 
-Read = Callable[[Places, str], Real]
+Read = Callable[[DriverSamples, str], Real]
 
 
 def draw_history(
@@ -69,7 +69,7 @@ def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, D
     """Of the n-th quantity, for shares x of the ranges."""
     two = x[None]
 
-    def read(places: Places, key: str) -> Real:
+    def read(places: DriverSamples, key: str) -> Real:
         found: Real = candidates.run(two, places)[f"{n}.{key}"][0]
         return found
 
@@ -90,7 +90,7 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     else:
         low, high = min(candidates.ends[0], low), max(candidates.ends[1], high)
     q = np.linspace(low, high, CURVE)
-    run, there = read(Places(NONE, q), "run"), read(Places(NONE, at), "run")
+    run, there = read(DriverSamples(NONE, q), "run"), read(DriverSamples(NONE, at), "run")
     if quantity.relative:
         run, there = run - there[0], there - there[0]
     if swings:
@@ -120,15 +120,17 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
 def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
     wanted = np.array(quantity.wanted)
 
-    def spots(places: Places) -> Vector:
+    def spots(places: DriverSamples) -> Vector:
         return read(places, "px") + 1j * read(places, "py")
 
-    path = spots(Places(np.linspace(0, 1, CURVE), NONE))
+    path = spots(DriverSamples(np.linspace(0, 1, CURVE), NONE))
     if quantity.places:
-        there = spots(Places(NONE, np.array(quantity.places)))
+        there = spots(DriverSamples(NONE, np.array(quantity.places)))
     else:
         there = spots(
-            Places(_closest_shares(lambda shares: spots(Places(shares, NONE)), wanted, candidates.closed), NONE)
+            DriverSamples(
+                _closest_shares(lambda shares: spots(DriverSamples(shares, NONE)), wanted, candidates.closed), NONE
+            )
         )
     rows: tuple[tuple[float, ...], ...] = tuple(
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import MOST, SAME, Chosen, Range, Variant, two
+from tmm_cli.batch import MOST_VALUES, STEP_TOLERANCE, Chosen, Range, Variant, bounds_text
 from tmm_cli.language import _
 from tmm_cli.mechanics.linkage import Driver
 from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, LENGTH, Dimension
@@ -63,15 +63,15 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
     low, high = (si(value, key) for key, value in ends.items())
     if not low < high:
         raise ProblemError(
-            _("the lower bound comes first"), path=at, found=two(*ends.values()), allowed=_("[low, high]")
+            _("the lower bound comes first"), path=at, found=bounds_text(*ends.values()), allowed=_("[low, high]")
         )
     if not isinstance(own, Chosen):
         return Parameter(name, low, high, kind)
     step = float(sense.positive(own.step, dimension, (*at, "step")))
-    count = (high - low) / step + SAME
-    if not 1 <= count < MOST:
+    count = (high - low) / step + STEP_TOLERANCE
+    if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST - 1),
+            _("1 to {most} steps must lie between the bounds").format(most=MOST_VALUES - 1),
             path=(*at, "step"),
             found=quote(own.step),
             allowed=_("another step; or bounds without steps, [low, high]"),
@@ -158,7 +158,7 @@ def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
         raise ProblemError(
             _("the lower end comes first, the other one at most a turn after it"),
             path=("over",),
-            found=two(*over),
+            found=bounds_text(*over),
             allowed="[from, to]",
         )
     return low, high

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.batch import Places
+from tmm_cli.batch import DriverSamples
 from tmm_cli.mechanics.numerics import WINDOW, Real
 from tmm_cli.synthesis.optimal.candidates import Candidates, quantity_reader
 from tmm_cli.synthesis.optimal.evolution import EvolutionResult
@@ -168,14 +168,14 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
             def curve(name: str, shares: Real, n: int = n) -> Real:
-                return candidates.program(two, Places(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
+                return candidates.program(two, DriverSamples(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
 
             if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                 values[n] = np.nan
             else:
                 values[n] = quantity.closest(values[n], curve, scan[candidates.along(n, candidates.scan)], over)
         if candidates.single:
-            there = candidates.run(x[None], Places(scan, candidates.with_sketch(np.zeros(0))))
+            there = candidates.run(x[None], DriverSamples(scan, candidates.with_sketch(np.zeros(0))))
             values[1] = -1.0 if candidates.turned_over(there, candidates.scan)[0] else values[1]
     return values
 
@@ -207,7 +207,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
     narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
     """
     scan = candidates.over(candidates.scan)
-    found = candidates.run(x[None], Places(scan, np.zeros(0)))
+    found = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
     half = max(narrow / candidates.count, ABOUT / candidates.scan)
     step = 2 * half / (WINDOW - 1)
     blocks, parts = [], []

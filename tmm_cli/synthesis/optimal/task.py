@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Make, numbers as numbers_of
+from tmm_cli.batch import Make, numeric_leaves as numbers_of
 from tmm_cli.language import _
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.errors import LinkageError

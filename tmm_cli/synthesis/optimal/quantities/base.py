@@ -14,8 +14,8 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.batch import reactions_of
-from tmm_cli.mechanics.analysis import Results, at_positions
+from tmm_cli.batch import solve_forces
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
@@ -140,7 +140,7 @@ class MechanismQuantity(ABC):
     def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
         """What is written down for it at places of an analysed mechanism."""
         motion = motion_at(results, q)
-        plan = reactions_of(motion, results.structure, results.strokes) if self.forces else None
+        plan = solve_forces(motion, results.structure, results.strokes) if self.forces else None
         return self.outputs(motion, plan)
 
 
@@ -196,7 +196,7 @@ class PeakQuantity(MechanismQuantity):
 
 def motion_at(results: Results, q: Real) -> Motion:
     """Of an analysed mechanism at other places of its driver."""
-    return at_positions(results, np.atleast_1d(q))
+    return motion_at_positions(results, np.atleast_1d(q))
 
 
 def highest_over_range(curve: Callable[[Real], Real], results: Results, ends: DriverEnds) -> float:
