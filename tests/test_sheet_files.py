@@ -155,7 +155,7 @@ def test_the_command_writes_a_file_a_sheet_and_format(tmp_path):
 def test_an_unknown_format_and_a_missing_library_are_said_in_a_line(tmp_path, monkeypatch):
     done = tmm("sheets", SHAPER, "--as", "dwg", "-o", tmp_path)
     assert done.returncode == 2 and "dwg" in done.stderr and "dxf" in done.stderr
-    monkeypatch.setattr("tmm_cli.drawing.layout.files.find_spec", lambda name: None)
+    monkeypatch.setattr("tmm_cli.drawing.layout.arrangement.find_spec", lambda name: None)
     done = tmm("sheets", SHAPER, "--as", "dxf", "-o", tmp_path)
     assert done.returncode == 2 and "pip install 'tmm-cli[cad]'" in done.stderr
     assert not list(tmp_path.iterdir())

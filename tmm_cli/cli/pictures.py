@@ -11,7 +11,13 @@ from tmm_cli.cli.drawing import run_on_all_cores
 from tmm_cli.cli.talk import say
 from tmm_cli.drawing import run as draw
 from tmm_cli.drawing.formats import NamedDrawings, drawing_files
-from tmm_cli.drawing.sheets import assemblies, centres, group_table, hodographs, synthesis
+from tmm_cli.drawing.sheets import (
+    draw_assemblies,
+    draw_centres,
+    draw_group_table,
+    draw_reaction_hodographs,
+    draw_synthesis,
+)
 from tmm_cli.mechanics.analysis import Results
 
 
@@ -25,9 +31,9 @@ def _draw_sheets(made: Callable[..., NamedDrawings], *given: Any) -> Pictures:
 
 PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names
     "whole": _draw_run,
-    "hodographs": partial(_draw_sheets, hodographs.draw_reaction_hodographs),
-    "centres": partial(_draw_sheets, centres.draw_centres),
-    "assemblies": partial(_draw_sheets, assemblies.draw_assemblies),
-    "synthesis": partial(_draw_sheets, synthesis.draw_synthesis),
-    "group-table": partial(_draw_sheets, group_table.draw_group_table),
+    "hodographs": partial(_draw_sheets, draw_reaction_hodographs),
+    "centres": partial(_draw_sheets, draw_centres),
+    "assemblies": partial(_draw_sheets, draw_assemblies),
+    "synthesis": partial(_draw_sheets, draw_synthesis),
+    "group-table": partial(_draw_sheets, draw_group_table),
 }

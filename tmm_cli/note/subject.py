@@ -14,21 +14,22 @@ from tmm_cli.drawing.formats import NamedDrawings
 from tmm_cli.drawing.paper import Drawing, PictureSpace, drawing_within
 from tmm_cli.drawing.sheets import (
     Position,
-    centres,
     draw_all_groups,
     draw_all_positions,
+    draw_centres,
     draw_diagrams,
+    draw_energy_mass,
     draw_force_plans,
     draw_group_loads,
+    draw_law_curves,
     draw_lever,
     draw_motion_plans,
     draw_position,
     draw_problem_synthesis,
     draw_scheme,
+    draw_shaking_hodograph,
     draw_single_run,
     driver_caption,
-    hodographs,
-    law_of_motion,
 )
 from tmm_cli.language import _, language, numeral, signed, spelt, typeset
 from tmm_cli.mechanics.analysis import Results, detailed_positions
@@ -52,11 +53,11 @@ OF_MECHANISM: Mapping[str, tuple[Callable[[Results], NamedDrawings], float]] = {
     "synthesis": (draw_problem_synthesis, 110),
     "positions": (draw_all_positions, 130),
     "diagrams": (draw_diagrams, 170),
-    "law": (law_of_motion.draw_law_curves, 225),
-    "energy-mass": (law_of_motion.draw_energy_mass, 190),
+    "law": (draw_law_curves, 225),
+    "energy-mass": (draw_energy_mass, 190),
     "run": (draw_single_run, 225),
-    "centres": (centres.draw_centres, 130),
-    "shaking": (hodographs.draw_shaking_hodograph, 110),
+    "centres": (draw_centres, 130),
+    "shaking": (draw_shaking_hodograph, 110),
 }
 OF_POSITION: Mapping[str, tuple[Callable[[Position], NamedDrawings], float]] = {
     "position": (draw_position, 120),

@@ -28,14 +28,9 @@ from tmm_cli.drawing.paper import (
 )
 
 HINT_TABLES = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
-ARGUMENTS_ARE_WORDS, HAS_SCALE, MORE_COMPONENTS, HAS_TWO_SCALES, HAS_MATRIX = (
-    0x01,
-    0x08,
-    0x20,
-    0x40,
-    0x80,
-)  # of a part of a composite letter
-HEAD_BYTES, MAXP_BYTES = 54, 32  # bytes
+ARGUMENTS_ARE_WORDS, HAS_SCALE, MORE_COMPONENTS = 0x01, 0x08, 0x20  # flags of a component of a composite glyph
+HAS_TWO_SCALES, HAS_MATRIX = 0x40, 0x80
+HEAD_BYTES, MAXP_BYTES = 54, 32  # lengths of these tables
 CHECKSUM_BASE = 0xB1B0AFBA  # what the sum of a font is subtracted from
 
 
@@ -115,10 +110,8 @@ def _checksum(data: bytes | bytearray) -> int:
 CIRCLE_HANDLE = 0.5522847498  # of the radius: how long the handles of a quarter of a circle are
 ROUND_LINES = "1 J 1 j\n"  # ends and corners of lines
 SYMBOLIC_FLAG, ITALIC_FLAG = 4, 64
-CAPITAL_HEIGHT, STEM_WIDTH = (
-    729,
-    100,
-)  # thousandths of the size: height of capital letters, and about the width of a stroke
+CAPITAL_HEIGHT = 729  # thousandths of the font size
+STEM_WIDTH = 100  # thousandths of the font size: about the width of a stroke
 Slant = tuple[bool, bool]  # bold, italic
 
 

@@ -1,13 +1,15 @@
 """Large sheets to hand in: drawings and tables packed into a frame with its title block."""
 
-from .contents import CONTENTS as CONTENTS, choose_positions as choose_positions
-from .files import large_sheet_files as large_sheet_files, parse_formats as parse_formats, refuse_plans as refuse_plans
-from .large import (
+from .arrangement import (
     PAPERS as PAPERS,
     drawing_field as drawing_field,
     frame_pictures as frame_pictures,
+    large_sheet_files as large_sheet_files,
     large_sheets as large_sheets,
+    parse_formats as parse_formats,
+    refuse_plans as refuse_plans,
 )
+from .contents import CONTENTS as CONTENTS, choose_positions as choose_positions
 from .packing import (
     TITLE_BLOCK_SIZES as TITLE_BLOCK_SIZES,
     PackingField as PackingField,

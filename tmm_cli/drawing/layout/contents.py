@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from tmm_cli.drawing.formats import NamedDrawings
-from tmm_cli.drawing.layout.values import (
+from tmm_cli.drawing.layout.value_tables import (
     draw_balance_table,
     draw_forces_table,
     draw_law_tables,

@@ -61,27 +61,13 @@ from .dimensions import (
     ruler_reach as ruler_reach,
     spread_intervals as spread_intervals,
 )
-from .fonts import (
-    BASELINE_SHARE as BASELINE_SHARE,
-    FONT_FAMILY as FONT_FAMILY,
-    FONT_UNITS as FONT_UNITS,
-    baseline as baseline,
-    font_file as font_file,
-    glyph_outline as glyph_outline,
-    letter_advance as letter_advance,
-    load_font as load_font,
-    missing_characters as missing_characters,
-    replace_missing as replace_missing,
-    text_corners as text_corners,
-    text_width as text_width,
-)
-from .ground import SAMPLE_STEP as SAMPLE_STEP, OccupiedArea as OccupiedArea
 from .labels import (
     Label as Label,
     gather_coincident as gather_coincident,
     place_labels as place_labels,
     text_extent as text_extent,
 )
+from .occupied_area import SAMPLE_STEP as SAMPLE_STEP, OccupiedArea as OccupiedArea
 from .picture import (
     LEAST_PAPER as LEAST_PAPER,
     PictureSpace as PictureSpace,
@@ -96,6 +82,7 @@ from .picture import (
     writes_equations as writes_equations,
 )
 from .record import (
+    ARROWHEAD_HALF_WIDTH as ARROWHEAD_HALF_WIDTH,
     DASHES as DASHES,
     POINT as POINT,
     AreaMark as AreaMark,
@@ -106,13 +93,6 @@ from .record import (
     Mark as Mark,
     Style as Style,
     TextMark as TextMark,
-)
-from .script import (
-    Words as Words,
-    placed_pieces as placed_pieces,
-    plain_text as plain_text,
-    script_width as script_width,
-    wrap_symbols as wrap_symbols,
 )
 from .sheet import (
     GREY_COLOUR as GREY_COLOUR,
@@ -131,4 +111,26 @@ from .sheet import (
     scale_words as scale_words,
     with_unit as with_unit,
 )
-from .writing import DARK_COLOUR as DARK_COLOUR, cell_text as cell_text, cut_text as cut_text, wrap_text as wrap_text
+from .texts import (
+    BASELINE_SHARE as BASELINE_SHARE,
+    DARK_COLOUR as DARK_COLOUR,
+    FONT_FAMILY as FONT_FAMILY,
+    FONT_UNITS as FONT_UNITS,
+    Words as Words,
+    baseline as baseline,
+    cell_text as cell_text,
+    cut_text as cut_text,
+    font_file as font_file,
+    glyph_outline as glyph_outline,
+    letter_advance as letter_advance,
+    load_font as load_font,
+    missing_characters as missing_characters,
+    placed_pieces as placed_pieces,
+    plain_text as plain_text,
+    replace_missing as replace_missing,
+    script_width as script_width,
+    text_corners as text_corners,
+    text_width as text_width,
+    wrap_symbols as wrap_symbols,
+    wrap_text as wrap_text,
+)

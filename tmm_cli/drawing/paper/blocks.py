@@ -11,13 +11,15 @@ import numpy as np
 
 from tmm_cli.drawing.paper.picture import longest_for, on_large_sheet
 from tmm_cli.drawing.paper.record import POINT
-from tmm_cli.drawing.paper.script import Words, script_width
+from tmm_cli.drawing.paper.texts import Words, script_width
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, ROUND_SCALES, drawing_area, extent, round_scale
 
 NOTE_SIZE, CELL_SIZE = 9.0, 8.0  # points
-NOTE_LINE, TABLE_ROW = 5.0, 4.3  # mm from a note, and from a row of a table, to the next
-BLOCK_EDGE, COLUMN_GAP, PART_GAP = 2.0, 3.0, 6.0  # mm: inside the frame, between columns, between parts side by side
+NOTE_LINE, TABLE_ROW = 5.0, 4.3  # mm: heights of a line of notes and of a row of a table
+BLOCK_EDGE = 2.0  # mm between the frame of a block and its text
+COLUMN_GAP = 3.0  # mm between columns
+PART_GAP = 6.0  # mm between parts of a table side by side
 BLOCK_CLEARANCE = 4.0  # mm about a block that are free
 EDGE_STEPS = 12  # places along an edge that are tried for a block
 MOST_PARTS = 4  # of one table side by side, at most

@@ -11,11 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper.fonts import text_width as width_of
 from tmm_cli.drawing.paper.record import POINT, Align, Style
-from tmm_cli.drawing.paper.script import Words, script_width as width_of_words, split_symbols
 from tmm_cli.drawing.paper.sheet import THIN_COLOUR, DrawingSheet
-from tmm_cli.drawing.paper.writing import DARK_COLOUR
+from tmm_cli.drawing.paper.texts import (
+    DARK_COLOUR,
+    Words,
+    script_width as width_of_words,
+    split_symbols,
+    text_width as width_of,
+)
 from tmm_cli.language import numeral
 
 ROUND_SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten

@@ -12,15 +12,13 @@ import numpy as np
 from tmm_cli.drawing.paper.boxes import box_about, boxes_about, distance_to_segment, text_squares
 from tmm_cli.drawing.paper.labels import gather_coincident as in_place, text_extent
 from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAME_COLOUR, THIN_COLOUR, DrawingSheet
-from tmm_cli.drawing.paper.writing import DARK_COLOUR
+from tmm_cli.drawing.paper.texts import DARK_COLOUR
 from tmm_cli.mechanics.numerics import Real, Vector, cross, dot
 
 LINE_OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
-EXTENSION_OVERHANG, DIMENSION_ARROWHEAD, DIMENSION_TEXT = (
-    1.8,
-    3.0,
-    9.0,
-)  # mm: extension line over the dimension line, length of an arrow head; points
+EXTENSION_OVERHANG = 1.8  # mm of an extension line beyond the dimension line
+ARROWHEAD_ROOM = 3.0  # mm of a dimension line that are reserved for an arrowhead
+DIMENSION_TEXT = 9.0  # points
 LEAST_LENGTH = 0.4  # mm: smaller sizes are not drawn
 LARGEST_RADIUS = 45.0  # mm: largest radius of the arc of an angle
 INNER_HEADS = 4.2  # heads that fit between the extension lines, with a shaft between them
@@ -54,9 +52,9 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     u = span / length
     crowd = sheet.ground.crowd
     width, height = text_extent(text, DIMENSION_TEXT)
-    tail = 2 * DIMENSION_ARROWHEAD + 3 + width
-    fits = length > 2 * DIMENSION_ARROWHEAD + 1 and length > width + 3
-    inner = length > INNER_HEADS * DIMENSION_ARROWHEAD
+    tail = 2 * ARROWHEAD_ROOM + 3 + width
+    fits = length > 2 * ARROWHEAD_ROOM + 1 and length > width + 3
+    inner = length > INNER_HEADS * ARROWHEAD_ROOM
     others = ("after", "before") + ("beside",) * (abs(u.real) < UPRIGHT_BELOW) + ("wider",) * inner
     stands = tuple(TEXT_SHARES) if fits else others
 
@@ -68,7 +66,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         if stand == "beside":
             return first, last, middle + np.sign(side.real) * (width / 2 + 1.0 + height / 2 * abs(u.real)), 1 + 0j
         if stand in ("after", "before"):
-            reach = 2 * DIMENSION_ARROWHEAD + 1.5 + width / 2
+            reach = 2 * ARROWHEAD_ROOM + 1.5 + width / 2
             middle = last + u * reach if stand == "after" else first - u * reach
         return first, last, middle + (height / 2 + 0.7) * text_side(u), u
 
@@ -77,7 +75,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
 
     def cost(side: complex, offset: float, stand: str) -> float:
         first, last, middle, v = lines(side, offset, stand)
-        outer = 0.0 if inner else 2 * DIMENSION_ARROWHEAD
+        outer = 0.0 if inner else 2 * ARROWHEAD_ROOM
         low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
         found = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.ground.rivals)
@@ -101,7 +99,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     if not inner:
         sheet.line([first, last], DARK_COLOUR, 0.6, z=4.5)
     backs = (
-        (last, first) if inner else (first - 2 * DIMENSION_ARROWHEAD * u, last + 2 * DIMENSION_ARROWHEAD * u)
+        (last, first) if inner else (first - 2 * ARROWHEAD_ROOM * u, last + 2 * ARROWHEAD_ROOM * u)
     )  # of short ones heads from outside
     for back, tip in zip(backs, (first, last), strict=True):
         sheet.arrow(back, tip, DARK_COLOUR, 0.6, 4.5)

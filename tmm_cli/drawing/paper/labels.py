@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_cli.drawing.paper import script
 from tmm_cli.drawing.paper.boxes import (
     Boxes,
     box_distances,
@@ -21,9 +20,9 @@ from tmm_cli.drawing.paper.boxes import (
     nearest_in_boxes,
     segments_cross,
 )
-from tmm_cli.drawing.paper.ground import LINE_PRICE, OccupiedArea, overlap_price
-from tmm_cli.drawing.paper.raster import PriceRaster
+from tmm_cli.drawing.paper.occupied_area import LINE_PRICE, OccupiedArea, PriceRaster, overlap_price
 from tmm_cli.drawing.paper.record import POINT
+from tmm_cli.drawing.paper.texts import Words, script_width
 
 ANCHOR_DISTANCES = (
     1.2,
@@ -58,15 +57,11 @@ MOST_DISTANCES = 1_000_000  # between candidate places and other anchors that ar
 LEADERS_KEPT = 24  # places with leaders, the cheapest ones, that are looked at more closely
 LEADER_FROM = 4.0  # mm from which a line leads from a place to its label
 LEADER_GAP = 0.5  # mm by which it ends before the label
-DISTANCE_PRICE, LEADER_PRICE, OFF_MIDDLE_PRICE = (
-    0.35,
-    2.0,
-    3.0,
-)  # prices: of a mm from the anchor, of a leader, of leaving a line's middle
-AMBIGUITY_PRICE, CROSSING_PRICE = (
-    6.0,
-    0.2,
-)  # of standing nearer to what has another name, of a line that a leader crosses
+DISTANCE_PRICE = 0.35  # of each mm between a label and its anchor
+LEADER_PRICE = 2.0  # of a leader
+OFF_MIDDLE_PRICE = 3.0  # of a label away from the middle of its line
+AMBIGUITY_PRICE = 6.0  # of a label closer to another named place than to its own
+CROSSING_PRICE = 0.2  # of each line that a leader crosses
 PLACEMENT_ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
 ACCEPTED_COST = 6.0
 SAME_PLACE = 0.5  # mm: nearer places are one
@@ -78,7 +73,7 @@ Item = TypeVar("Item")
 class Label:
     """A text asked for at an anchor (mm on paper), `size` points high; line: it stands beside it, wherever along it."""
 
-    text: script.Words
+    text: Words
     anchor: complex
     size: float
     colour: str
@@ -284,7 +279,7 @@ def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[comp
     return found
 
 
-def text_extent(text: script.Words, size: float) -> tuple[float, float]:
+def text_extent(text: Words, size: float) -> tuple[float, float]:
     """Width and height of a text on paper, mm, with a little air at its sides; size: points."""
     high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
-    return script.script_width(text, size * POINT) + 0.6, high * size * POINT
+    return script_width(text, size * POINT) + 0.6, high * size * POINT

@@ -11,13 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from tmm_cli.drawing.paper.fonts import text_corners
 from tmm_cli.drawing.paper.record import AreaMark, CircleMark, Drawing, LineMark, Mark, TextMark
-from tmm_cli.drawing.paper.writing import DARK_COLOUR, LINE_SPACING, wrap_text
+from tmm_cli.drawing.paper.texts import DARK_COLOUR, LINE_SPACING, text_corners, wrap_text
 from tmm_cli.mechanics.numerics import Vector
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, STRIP, extent, round_scale, sheet_scale
 
-HEADING_SIZE, REMARK_SIZE = 4.2, 3.2  # mm: sizes of the letters of a heading and of what is noted below it
+HEADING_SIZE, REMARK_SIZE = 4.2, 3.2  # mm: letters of a heading and of the remarks below it
 LEAST_HEADING_WIDTH = 70.0  # mm: a heading is not broken into shorter lines
 POINT_SPACING = 1.5  # mm between places that stand for a line
 LEAST_PAPER = 170.0  # mm: longest side of a paper that is asked for; what is on it cannot be smaller

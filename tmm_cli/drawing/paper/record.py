@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 POINT = 25.4 / 72  # mm
+ARROWHEAD_LENGTH, ARROWHEAD_HALF_WIDTH = 3.4, 1.0  # mm
 
 Layer = Literal["frame", "links", "supports", "construction", "vectors", "dimensions", "text"]
 Style = Literal["-", "--", ":", "-."]

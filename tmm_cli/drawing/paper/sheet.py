@@ -8,12 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.drawing.paper import script
 from tmm_cli.drawing.paper.blocks import NoteBlock, PaperLayout, TableRow, free_block_position, least_covering_block
 from tmm_cli.drawing.paper.boxes import box_about, stretches_outside, text_squares, widen
-from tmm_cli.drawing.paper.fonts import ALIGN_SHARE
-from tmm_cli.drawing.paper.ground import TEXT_AIR, OccupiedArea
 from tmm_cli.drawing.paper.labels import Label, place_labels, text_extent as label_extent
+from tmm_cli.drawing.paper.occupied_area import TEXT_AIR, OccupiedArea
 from tmm_cli.drawing.paper.picture import (
     bounding_corners,
     choose_paper,
@@ -24,6 +22,7 @@ from tmm_cli.drawing.paper.picture import (
     render_picture,
 )
 from tmm_cli.drawing.paper.record import (
+    ARROWHEAD_LENGTH,
     POINT,
     Align,
     AreaMark,
@@ -35,7 +34,7 @@ from tmm_cli.drawing.paper.record import (
     Style,
     TextMark,
 )
-from tmm_cli.drawing.paper.writing import DARK_COLOUR, fit_one_line
+from tmm_cli.drawing.paper.texts import ALIGN_SHARE, DARK_COLOUR, Words, fit_one_line, placed_pieces, script_width
 from tmm_cli.language import numeral, spelt
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.numerics import unit
@@ -43,13 +42,11 @@ from tmm_cli.mechanics.plans import MARGIN, PAD, STRIP, drawing_area, extent
 from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.problem import UnitSystem, typeset_unit
 
-THIN_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR, GREY_COLOUR = (
-    "#8a8a8a",
-    "#b3261e",
-    "#1f4e9c",
-    "#1d7a3a",
-    "#c4c4c4",
-)
+THIN_COLOUR = "#8a8a8a"
+LOAD_COLOUR = "#b3261e"
+INERTIA_COLOUR = "#1f4e9c"
+REACTION_COLOUR = "#1d7a3a"
+GREY_COLOUR = "#c4c4c4"
 NAME_COLOUR = "#7a3d99"  # of links, lines and angles
 VECTOR_COLOURS = {
     "absolute": DARK_COLOUR,
@@ -138,7 +135,7 @@ class DrawingSheet:
     def text(
         self,
         at: complex,
-        text: script.Words,
+        text: Words,
         size: float,
         *,
         colour: str = DARK_COLOUR,
@@ -150,8 +147,8 @@ class DrawingSheet:
         """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         one = isinstance(text, str)
-        start = complex(at) if one else at - ALIGN_SHARE[ha] * script.script_width(text, size * POINT) * along
-        for off, letters, own in script.placed_pieces(text, size * POINT):
+        start = complex(at) if one else at - ALIGN_SHARE[ha] * script_width(text, size * POINT) * along
+        for off, letters, own in placed_pieces(text, size * POINT):
             line = "".join(letter if letter.isprintable() else " " for letter in letters)
             if line.strip():
                 align: Align = ha if one else "left"
@@ -162,7 +159,7 @@ class DrawingSheet:
         self.ground.boxes += [box_about(place, high, high) for place in places] or [box_about(middle, wide, high)]
 
     def label(
-        self, text: script.Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
+        self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
     ) -> None:
         """A text beside a place (mm); where exactly is decided when all is drawn."""
         if np.isfinite(anchor):
@@ -221,14 +218,14 @@ class DrawingSheet:
             self.circle(end, 0.5, colour, colour, 0.3, z)
             return
         along = (end - start) / length
-        head = min(3.4, 0.6 * length)
+        head = min(ARROWHEAD_LENGTH, 0.6 * length)
         neck = end - head * along
         side = 1j * along * head * 0.27
         with self.on_layer("vectors" if self.layer == "construction" else self.layer):
             self.line([start, neck + 0.3 * head * along], colour, width, z=z)
             self.area([end, neck + side, neck - side], colour, "none", z=z)
 
-    def note(self, text: script.Words) -> None:
+    def note(self, text: Words) -> None:
         """A line of the corner box: scale factors and remarks."""
         self.block.notes.append(text)
 

@@ -38,7 +38,8 @@ from tmm_cli.mechanics.structure import Pair, Structure
 from tmm_cli.reports import place
 
 ASSEMBLIES_PER_SHEET = 12  # assemblies on one
-ASSEMBLY_PAD, CELL_GAP = 10.0, 4.0  # mm: room about a group for its symbols and names, between two cells
+ASSEMBLY_PAD = 10.0  # mm about a group for its symbols and names
+CELL_GAP = 4.0  # mm
 CAPTION_HEIGHT = 6.0  # mm of the words below a group
 LEAST_CELL = 5.0  # mm: in a smaller cell nothing is drawn
 LEAST_SYMBOLS = 0.7  # size of symbols: smaller ones cannot be read

@@ -1,9 +1,10 @@
-"""Diagrams over the cycle, each quantity at a round scale over the driver's turn and the numbers of positions."""
+"""Diagrams over the cycle: quantities at round scales against the driver coordinate, with the numbers of positions."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,16 +33,175 @@ from tmm_cli.drawing.paper import (
     scale_words,
     with_unit,
 )
-from tmm_cli.drawing.sheets import over_cycle
-from tmm_cli.drawing.sheets.over_cycle import QuantityPlot
-from tmm_cli.language import _, numeral
+from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics import quantities
 from tmm_cli.mechanics.analysis import Results, results_at
-from tmm_cli.mechanics.forces import find_table_jumps
-from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.forces import balance_symbol, find_table_jumps, reaction_symbol
+from tmm_cli.mechanics.kinematics import Motion, driven_links, driving_pair_names, pressure_angle
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics import NO_FORCE, Real
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    MASS,
+    MOMENT,
+    NUMBER,
+    Dimension,
+)
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 from tmm_cli.problem import UnitSystem, typeset_unit
+from tmm_cli.reports import output_motion
+
+MOST_CURVES = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
+
+
+@dataclass(frozen=True)
+class SampledCurve:
+    """How a quantity goes (SI): at places close together, and at the computed positions. limit: what is allowed."""
+
+    name: str
+    values: Any
+    points: Any
+    limit: bool = False
+
+
+@dataclass(frozen=True)
+class QuantityPlot:
+    """Courses of one kind, which share a panel. symbol: of its scale, where their dimension does not say it."""
+
+    words: str
+    dimension: Dimension
+    courses: Sequence[SampledCurve]
+    symbol: str = ""
+
+
+def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPlot]:
+    """Motion of an output; an angle is followed through full turns."""
+    assert results.motion is not None
+    near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
+    found = []
+    turning = {ANGULAR_SPEED: _("ω of {link}"), ANGULAR_ACCELERATION: _("ε of {link}")}
+    curves, given = output_motion(results, motion, link), output_motion(results, results.motion, link)
+    for (name, values, dimension), (__, points, ___) in zip(curves, given, strict=True):
+        if dimension in turning:
+            name = turning[dimension].format(link=link)
+        if dimension == ANGLE:
+            values = np.unwrap(values)
+            points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
+        found.append(QuantityPlot(translated(name), dimension, [SampledCurve("", values, points)]))
+    return found
+
+
+def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
+    """What balances the drivers: moments in one panel, forces in another."""
+    if whole.reactions is None or results.reactions is None:
+        return []
+    several = len(whole.reactions.balances) > 1
+    found: dict[bool, list[SampledCurve]] = {True: [], False: []}
+    for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
+        turns = curve.moment is not None if several else curve.kind == "moment"
+        name = balance_symbol(curve.driver.link, several, turns=turns).name if several else ""
+        values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
+        found[turns].append(SampledCurve(name, values, dots))
+    moments = _("balancing moments") if several else _("balancing moment")
+    forces = _("balancing forces") if several else _("balancing force")
+    return [
+        QuantityPlot(words, dimension, courses[first : first + MOST_CURVES])
+        for words, dimension, courses in ((moments, MOMENT, found[True]), (forces, FORCE, found[False]))
+        for first in range(0, len(courses), MOST_CURVES)
+    ]
+
+
+def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
+    """Sizes of all reactions, a few in a panel."""
+    if whole.reactions is None or results.reactions is None:
+        return []
+    here = {r.pair.name: r for r in results.reactions.all}
+    found = []
+    for words, on_frame in ((_("reactions of the frame"), True), (_("between moving links"), False)):
+        courses = [
+            SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
+            for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
+            if (FRAME in (r.on, r.by)) == on_frame
+        ]
+        found += [
+            QuantityPlot(words, FORCE, courses[i : i + MOST_CURVES], "R") for i in range(0, len(courses), MOST_CURVES)
+        ]
+    return found
+
+
+def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
+    """Reduced inertia and moment, kinetic energy, powers; nothing where nothing weighs and nothing acts."""
+    curve, given = whole.energy, results.energy
+    if curve is None or given is None:
+        return []
+    crank = results.linkage.driver.kind == "turn"
+    powers = {
+        _("drivers"): "drivers",
+        _("weights"): "weights",
+        _("loads"): "loads",
+        _("friction"): "friction",
+        _("rate of T"): "rate",
+    }
+    found = []
+    for words, dimension, parts, symbol in (
+        (_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, {"": "inertia"}, ""),
+        (_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, {"": "moment"}, ""),
+        (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}, "T"),
+        (_("power, W"), NUMBER, powers, "P"),
+    ):
+        courses = [SampledCurve(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
+        courses = [course for course in courses if np.any(np.nan_to_num(course.values) != 0)]
+        if courses:
+            found.append(QuantityPlot(words, dimension, courses, symbol))
+    return found
+
+
+def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
+    """Force and moment on the frame before and after balancing."""
+    found = results.balancing
+    if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
+        return []
+    ways = [(_("without counterweights"), found.before), (_("with counterweights"), found.after)]
+    told = [(*way, curve) for way, curve in zip(ways, found.at(results.mechanism, q), strict=True)]
+    told = told[::-1] if found.cycle.counterweights else told[:1]  # dashed is without, as in the hodograph
+    nothing = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
+
+    def size(force: Any) -> Any:
+        return np.where(np.abs(force) > nothing, np.abs(force), 0 * np.abs(force))
+
+    forces = [SampledCurve(name, size(curve.force), size(here.force)) for name, here, curve in told]
+    moments = [SampledCurve(name, curve.moment, here.moment) for name, here, curve in told]
+    about = _("shaking moment about {pivot}").format(pivot=found.pivot or _("the origin"))
+    return [QuantityPlot(_("shaking force"), FORCE, forces), QuantityPlot(about, MOMENT, moments)]
+
+
+def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
+    """Pressure angles of all driven links, those that slide and those that turn apart: different ones are allowed."""
+    with np.errstate(all="ignore"):
+        curves = {
+            (kernel.group.title, lead[0], driving_pair_names(lead)): pressure_angle(motion, kernel, at, lead)
+            for kernel, at in zip(motion.kernels, motion.placements, strict=True)
+            for lead in driven_links(kernel.group)
+        }
+    found = []
+    for slides in (True, False):
+        here = [p for p in results.pressure if p.slides == slides]
+        text = _("link {link} in pair {pair}")
+        courses = [
+            SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
+        ]
+        words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
+        for first in range(0, len(courses), MOST_CURVES):
+            allowed = np.full(np.shape(motion.q), here[0].allowed)
+            limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
+            found.append(QuantityPlot(words, ANGLE, [*courses[first : first + MOST_CURVES], limit], "θ"))
+    return found
+
 
 MOST_POINTS = 1440  # of a curve over a cycle
 MOST_DOTS = 90  # computed positions that are marked on a curve; more of them would hide it
@@ -49,14 +209,10 @@ MOST_PANELS = 5  # of a sheet
 BORDER_OFFSET = 1e-6  # rad: so far before and after the border of a stroke a curve is computed
 LEAST_JUMP = 1e-3  # of all a curve runs through: what it does there in one step is a jump
 CONSTANT_BELOW = 1e-9  # of its largest value: what runs through less stays the same
-LEAST_SUDDEN_JUMP, JUMP_STEEPNESS = (
-    0.01,
-    6.0,
-)  # the same away from the borders: of all it runs through, and of its rates before and after
-MOST_WRITTEN_CURVES, MOST_WRITTEN_JUMPS = (
-    2,
-    24,
-)  # curves in a panel, and jumps of a curve, up to which the values of jumps are written
+LEAST_SUDDEN_JUMP = 0.01  # of the range of a curve: a jump away from the borders
+JUMP_STEEPNESS = 6.0  # times the slopes just before and after it
+MOST_WRITTEN_CURVES = 2  # in a panel: with more the values of jumps are not written
+MOST_WRITTEN_JUMPS = 24  # of a curve: with more their values are not written
 CURVE_COLOURS = (
     DARK_COLOUR,
     LOAD_COLOUR,
@@ -91,7 +247,7 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     assert motion is not None
     outputs = results.mechanism.outputs
     stems = [f"diagrams-link-{x}" if x in results.linkage.links else f"diagrams-{x}" for x in outputs]
-    of_outputs = {stem: over_cycle.output_plots(results, motion, x) for stem, x in zip(stems, outputs, strict=True)}
+    of_outputs = {stem: output_plots(results, motion, x) for stem, x in zip(stems, outputs, strict=True)}
     first = of_outputs.pop(stems[0]) if stems else []
     cycle = _("Diagrams over the cycle; dots: computed positions")
     reactions = _("Reactions over the cycle; dots: computed positions")
@@ -99,12 +255,12 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
     balancing = _("What shakes the frame over the cycle; dots: computed positions")
     for caption, stem, every in (
-        (cycle, "diagrams", [*first, *over_cycle.balancing_plots(whole, results)]),
+        (cycle, "diagrams", [*first, *balancing_plots(whole, results)]),
         *((cycle, stem, every) for stem, every in of_outputs.items()),
-        (reactions, "reactions", over_cycle.reaction_plots(whole, results)),
-        (energy, "energy", over_cycle.energy_plots(whole, results)),
-        (pressure, "pressure", over_cycle.pressure_plots(results, motion)),
-        (balancing, "shaking", over_cycle.shaking_plots(results, places)),
+        (reactions, "reactions", reaction_plots(whole, results)),
+        (energy, "energy", energy_plots(whole, results)),
+        (pressure, "pressure", pressure_plots(results, motion)),
+        (balancing, "shaking", shaking_plots(results, places)),
     ):
         yield from plot_over_driver(results, file_safe_name(stem), caption, motion.q, borders, every)
 

@@ -16,13 +16,12 @@ from tmm_cli.mechanics.numerics import unit
 from tmm_cli.mechanics.plans import LANDSCAPE
 from tmm_cli.mechanics.structure import ROMAN
 
-COLUMNS, ROWS, CELL_GAP = 4, 3, 4.0  # cells of the sheet; mm between them
-CAPTION_HEIGHT, PAIR_STUB, HINGE_RADIUS, BLOCK_SIZE = (
-    11.0,
-    6.5,
-    1.1,
-    (5.6, 3.0),
-)  # mm: height of words below, lead, hinge, stone
+COLUMNS, ROWS = 4, 3  # of the sheet
+CELL_GAP = 4.0  # mm
+CAPTION_HEIGHT = 11.0  # mm of the caption below a group
+PAIR_STUB = 6.5  # mm: dotted stub at an external pair
+HINGE_RADIUS = 1.1  # mm
+BLOCK_SIZE = (5.6, 3.0)  # mm: length and height of a sliding block
 PLATE_COLOUR = "#e8edf2"
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tmm_cli.drawing.paper import (
+    ARROWHEAD_HALF_WIDTH,
     DARK_COLOUR,
     LOAD_COLOUR,
     REACTION_COLOUR,
@@ -19,8 +20,7 @@ from tmm_cli.drawing.paper import (
     file_safe_name,
     scale_words,
 )
-from tmm_cli.drawing.sheets.diagrams import dense_coordinates, plot_over_driver
-from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
+from tmm_cli.drawing.sheets.diagrams import QuantityPlot, SampledCurve, dense_coordinates, plot_over_driver
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, results_at
 from tmm_cli.mechanics.forces import Reaction, reaction_symbol
@@ -29,7 +29,7 @@ from tmm_cli.mechanics.numerics import NO_FORCE, SAME_DRIVER_POSITION, Vector
 from tmm_cli.mechanics.quantities import FORCE
 
 AXIS_OVERHANG = 8.0  # mm of the axes beyond the curves
-HEAD = 1.0  # mm: half the width of their heads
+AXIS_HEAD_LENGTH = 3.0  # mm
 FIGURE_PAD = 30.0  # mm about the figure
 LEAST_JUMP = 0.5  # mm from a place to the next at the end of a stroke
 MOST_NUMBERED = 24  # positions with numbers, at most
@@ -150,7 +150,8 @@ def _draw_axes(sheet: DrawingSheet, places: Sequence[complex]) -> None:
     ):
         start, end = pole + along * (low - AXIS_OVERHANG), pole + along * (high + AXIS_OVERHANG)
         sheet.line([start, end], THIN_COLOUR, 0.7, z=1.0, faint=True)
-        sheet.area([end, end - (3 + HEAD * 1j) * along, end - (3 - HEAD * 1j) * along], THIN_COLOUR, "none", z=1.0)
+        back, side = AXIS_HEAD_LENGTH * along, ARROWHEAD_HALF_WIDTH * 1j * along
+        sheet.area([end, end - back - side, end - back + side], THIN_COLOUR, "none", z=1.0)
         sheet.label(name, end, 9)
     sheet.circle(pole, 0.7, "white", DARK_COLOUR, 0.8)
 

@@ -18,8 +18,7 @@ from tmm_cli.drawing.paper import (
     scale_words,
     with_unit,
 )
-from tmm_cli.drawing.sheets.diagrams import plot_quantities
-from tmm_cli.drawing.sheets.over_cycle import QuantityPlot, SampledCurve
+from tmm_cli.drawing.sheets.diagrams import QuantityPlot, SampledCurve, plot_quantities
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH

@@ -1,9 +1,10 @@
-"""A position in detail with its loads; what drawings of a mechanism share: symbols with names, thin lines, paths."""
+"""The mechanism in one position: in detail with its loads, at the sketch, as thin lines; paths of its points."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,11 +21,12 @@ from tmm_cli.drawing.paper import (
     choose_scale,
     scale_words,
 )
-from tmm_cli.drawing.sheets.acting import LOAD_LENGTH, ForceArrows
+from tmm_cli.drawing.sheets.force_arrows import LOAD_LENGTH, ForceArrows
 from tmm_cli.drawing.symbols import (
     MEASURED,
     MechanismScene,
     RenderedLinks,
+    draw_driver_arrows,
     draw_higher_pair as draw_wheels,
     draw_mass_centre,
     draw_slider,
@@ -37,7 +39,8 @@ from tmm_cli.language import _, numeral, typeset
 from tmm_cli.mechanics.analysis import Results, detailed_positions, motion_at_positions
 from tmm_cli.mechanics.forces import LoadedPosition
 from tmm_cli.mechanics.kinematics import Motion
-from tmm_cli.mechanics.numerics import Vector, dot
+from tmm_cli.mechanics.linkage import FRAME
+from tmm_cli.mechanics.numerics import Real, Vector, dot
 from tmm_cli.mechanics.plans import links_with_mass
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
@@ -45,6 +48,9 @@ from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 POSITION_MARGIN = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
 SAME_LINE = 0.1  # mm between lines that look like one
 COORDINATE_DECIMALS = 2  # of the place of the driver, in the unit of the file
+COORDINATES_TRIED = 47  # driver coordinates besides the sketch at which the view is tested for hidden pairs
+MOST_PAIRS = 40  # with more pairs some hide others at any coordinate, so only the sketch is drawn
+HIDDEN_WITHIN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
 
 
 @dataclass(frozen=True)
@@ -200,3 +206,60 @@ def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
         sheet.note(note)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     yield here.stem("position"), sheet.finish()
+
+
+def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
+    """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
+
+    None when the linkage cannot be assembled at the sketch.
+    """
+    linkage, structure = results.linkage, results.structure
+    driver_range = results.driver_range
+    if driver_range is None:
+        return None
+    others = COORDINATES_TRIED if len(structure.pairs) <= MOST_PAIRS else 0
+    places = np.linspace(driver_range.start, driver_range.end, others + 2)
+    motion = motion_at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
+    if not bool(motion.placed[0]):
+        return None
+    scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
+    clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
+    best = int(np.argmax(clear))
+    k = best if clear[0] < HIDDEN_WITHIN and clear[best] > 2 * clear[0] else 0
+    return driver_caption(results, float(motion.q[k])), scenes[k]
+
+
+def _clearness(scenes: Sequence[MechanismScene]) -> Real:
+    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
+
+    Pairs that always coincide do not count.
+    """
+    moving, every = scenes[0].structure.links, scenes[0].structure.pairs
+    # a guide on the frame may be drawn anywhere along itself
+    pairs = [p for p in every if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
+    spots = np.array([[s.at(p) for p in pairs] for s in scenes])
+    spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
+    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines], complex)
+    bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
+    start, span = bars[..., 0], bars[..., 1] - bars[..., 0]
+    share = np.clip(dot(span, spots[:, :, None] - start) / np.maximum(np.abs(span) ** 2, 1e-300), 0, 1)
+    others = np.concatenate([np.broadcast_to(spots[:, None], (*spots.shape, len(pairs))), start + share * span], axis=2)
+    gaps = np.abs(others - spots[:, :, None]).reshape(len(scenes), -1)
+    size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
+    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
+    return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
+
+
+def task_picture(results: Results) -> Drawing | None:
+    """None when the linkage cannot be assembled at the sketch."""
+    found = sketch_scene(results)
+    if found is None:
+        return None
+    place, scene = found
+    linkage = results.linkage
+    places = [*frame_pivots(linkage), *(scene.point(name) for name in linkage.moving_points)]
+    places += [scene.place(name, complex(linkage.links[name].centre)) for name in linkage.moving]
+    sheet = DrawingSheet(results.problem.title, place, points_to_scale(scene, places), pad=30)
+    draw_driver_arrows(sheet, scene, draw_measured(sheet, scene), MEASURED, dict.fromkeys(linkage.links, DARK_COLOUR))
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
+    return sheet.finish()

@@ -6,7 +6,6 @@ import math
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -22,7 +21,7 @@ from tmm_cli.drawing.paper import (
     scaleless_layout,
     text_extent,
 )
-from tmm_cli.drawing.sheets.mechanism import driver_caption
+from tmm_cli.drawing.sheets.mechanism import sketch_scene
 from tmm_cli.drawing.symbols import (
     FREE_COLOUR,
     GUIDE_EXTENSION,
@@ -47,26 +46,18 @@ from tmm_cli.drawing.symbols import (
     symbol_scale,
 )
 from tmm_cli.language import _, printed, typeset
-from tmm_cli.mechanics.analysis import Results, motion_at_positions
+from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.linkage import FRAME
-from tmm_cli.mechanics.numerics import Real, dot
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area
 from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
 from tmm_cli.reports import ROLES, counted_mobility, left_out
 
 SCHEME_PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
-SCHEME_BASE_SIZE, SCHEME_SIZE_PER_LINK = (
-    45.0,
-    25.0,
-)  # mm: a scheme is not drawn larger than this and so much more a moving link
+SCHEME_BASE_SIZE = 45.0  # mm: the scheme is drawn no larger than this ...
+SCHEME_SIZE_PER_LINK = 25.0  # mm ... and this for each moving link
 LEGEND_WIDTH = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
 LEGEND_ROW = 5.4  # mm of a line of the legend
 JOINT_RADIUS = 0.9  # mm: pairs of a link in place of a higher pair
-COORDINATES_TRIED, MOST_PAIRS = (
-    47,
-    40,
-)  # of the driver that are looked at, unless there are so many pairs that some hide others anyway
-HIDDEN_WITHIN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
 
 
 @dataclass(frozen=True)
@@ -100,48 +91,6 @@ def link_colours(structure: Structure) -> dict[str, str]:
     """The colour of every link, by solving order; the frame, and what is rigid to it, is dark."""
     of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK_COLOUR)
     return of_frame | {link: part.colour for part in mechanism_parts(structure) for link in part.links}
-
-
-def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
-    """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
-
-    None when the linkage cannot be assembled at the sketch.
-    """
-    linkage, structure = results.linkage, results.structure
-    driver_range = results.driver_range
-    if driver_range is None:
-        return None
-    others = COORDINATES_TRIED if len(structure.pairs) <= MOST_PAIRS else 0
-    places = np.linspace(driver_range.start, driver_range.end, others + 2)
-    motion = motion_at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
-    if not bool(motion.placed[0]):
-        return None
-    scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
-    clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
-    best = int(np.argmax(clear))
-    k = best if clear[0] < HIDDEN_WITHIN and clear[best] > 2 * clear[0] else 0
-    return driver_caption(results, float(motion.q[k])), scenes[k]
-
-
-def _clearness(scenes: Sequence[MechanismScene]) -> Real:
-    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
-
-    Pairs that always coincide do not count.
-    """
-    moving, every = scenes[0].structure.links, scenes[0].structure.pairs
-    # a guide on the frame may be drawn anywhere along itself
-    pairs = [p for p in every if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
-    spots = np.array([[s.at(p) for p in pairs] for s in scenes])
-    spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
-    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines], complex)
-    bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
-    start, span = bars[..., 0], bars[..., 1] - bars[..., 0]
-    share = np.clip(dot(span, spots[:, :, None] - start) / np.maximum(np.abs(span) ** 2, 1e-300), 0, 1)
-    others = np.concatenate([np.broadcast_to(spots[:, None], (*spots.shape, len(pairs))), start + share * span], axis=2)
-    gaps = np.abs(others - spots[:, :, None]).reshape(len(scenes), -1)
-    size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
-    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
-    return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
 
 
 def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
@@ -279,13 +228,12 @@ def count_pair_letters(kind: str) -> str:
     return "".join(f"{kind.count(letter)}{letter}" for letter in dict.fromkeys(kind))
 
 
-GROUP_BASE_SIZE, GROUP_SIZE_PER_LINK = 20.0, 38.0  # mm: a part is not drawn larger than this and so much more a link
-GROUPS_PER_SHEET, GROUPS_PER_ROW = 6, 3  # parts of a mechanism on one sheet and in one row of it
-GROUP_CAPTION_LINE, GROUP_PAD, GROUP_GAP = (
-    4.6,
-    (17.0, 12.5),
-    6.0,
-)  # mm: a line of a caption, room about a group (few, many), between two
+GROUP_BASE_SIZE = 20.0  # mm: a part is drawn no larger than this ...
+GROUP_SIZE_PER_LINK = 38.0  # mm ... and this for each link
+GROUPS_PER_SHEET, GROUPS_PER_ROW = 6, 3
+GROUP_CAPTION_LINE = 4.6  # mm
+GROUP_PAD = (17.0, 12.5)  # mm about a group, in one row of groups and in more
+GROUP_GAP = 6.0  # mm between groups
 GROUP_CAPTION_WIDTH = 110.0  # mm: width of a caption on a large sheet
 STUB_LENGTH = 8.0  # mm of what a lead would be joined to
 

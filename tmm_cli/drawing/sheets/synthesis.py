@@ -1,8 +1,9 @@
-"""The construction of a synthesis as a student would draw it, and the mechanism in its extreme positions."""
+"""Drawings of a synthesis: its construction, its diagrams, and the mechanism in its extreme positions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import cycle
 
@@ -12,38 +13,345 @@ from tmm_cli.drawing.paper import (
     DARK_COLOUR,
     INERTIA_COLOUR,
     LOAD_COLOUR,
+    NAME_COLOUR,
     REACTION_COLOUR,
     THIN_COLOUR,
     ChartCurve,
     CommonAxis,
     Drawing,
     DrawingSheet,
+    Label,
     PlotContent,
+    Style,
     axis_extent,
+    draw_angle,
     draw_chart,
+    draw_dimension,
     filling_axis,
     finite_limits,
+    leave_field,
     round_axis,
     scale_words,
     with_unit,
 )
-from tmm_cli.drawing.sheets.construction import draw_construction
 from tmm_cli.drawing.sheets.mechanism import draw_measured, draw_paths, draw_skeleton, point_paths
 from tmm_cli.drawing.symbols import (
+    GUIDE_EXTENSION,
     MEASURED,
     MechanismScene,
+    Segment,
     cylinder_drivers,
+    draw_box,
+    draw_guide,
     draw_slider,
+    draw_support,
     form_by_points,
     frame_pivots,
     points_to_scale,
+    support_side,
 )
-from tmm_cli.language import _, translated
+from tmm_cli.language import _, numeral, translated
 from tmm_cli.mechanics.analysis import Results, motion_at_positions
-from tmm_cli.mechanics.plans import LANDSCAPE
+from tmm_cli.mechanics.linkage import FRAME, Linkage
+from tmm_cli.mechanics.plans import LANDSCAPE, sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, DIMENSIONS, Dimension
 from tmm_cli.problem import UnitSystem
-from tmm_cli.synthesis import Diagram, DiagramLine, SynthesisOutcome
+from tmm_cli.synthesis import (
+    CHAIN_LETTERS,
+    Arc,
+    Chain,
+    CircleCentre,
+    Diagram,
+    DiagramLine,
+    DimensionLine,
+    GeometricConstruction,
+    LetteredPoint,
+    SynthesisOutcome,
+)
+
+CENTRE_LETTERS = "MNKQSTUVWXYZ"  # letters of centres of circles
+BAR_ENDS = {"l1": "AB", "l2": "BC", "l3": "DC", "l4": "AD"}
+SAME_LENGTH = 1e-6  # relative: a link as long as that of the construction
+
+
+def use_problem_names(
+    drawn: GeometricConstruction, linkage: Linkage | None, names: Mapping[str, str]
+) -> tuple[GeometricConstruction, Mapping[str, str]]:
+    """The construction in the user's letters, and these letters by those of its words."""
+    own = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
+    if linkage is not None:
+        own |= match_joints(linkage, drawn.chain, drawn)
+    taken = set(own.values()) | {spot.name[:1] for spot in drawn.spots if spot.name[:1] not in own}
+    centre = next(letter for letter in CENTRE_LETTERS if letter not in taken)
+    parameters = {name: shown for name, shown in names.items() if shown != name}
+    if set(parameters) & set(BAR_ENDS) and drawn.chain == "four-bar":  # the others are called likewise
+        parameters = {bar: "".join(own[c] for c in ends) for bar, ends in BAR_ENDS.items()} | parameters
+
+    def point(text: str) -> str:
+        letter, number = text[:1], text[1:]
+        shown = own.get(letter, letter)
+        return f"{shown}({number})" if number[:1].isdigit() and shown[-1:].isdigit() else shown + number
+
+    def line(text: str) -> str:
+        return re.sub(r"[A-Za-z]+\d*", lambda found: quantity(found[0]), text)
+
+    def quantity(word: str) -> str:
+        if word in parameters:
+            return parameters[word]
+        return "".join(own[c] for c in word) if all(c in own for c in word) else word
+
+    named = replace(
+        drawn,
+        spots=tuple(replace(s, name=point(s.name)) for s in drawn.spots),
+        segments=tuple(replace(s, name=line(s.name)) for s in drawn.segments),
+        sizes=tuple(replace(s, name=line(s.name)) for s in drawn.sizes),
+        centres=tuple(replace(c, name=centre) for c in drawn.centres),
+        values=tuple((line(name), value, kind) for name, value, kind in drawn.values),
+    )
+    return named, {**own, "M": centre}
+
+
+def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
+    """Names of joints along the chain from the driver; none where the linkage is another one, or drives elsewhere."""
+    driver, letters = linkage.driver, CHAIN_LETTERS.get(chain, "")
+    if not letters or driver.kind != "turn":
+        return {}
+    link, found = driver.link, [driver.joint]
+    for __ in linkage.links:
+        if len(found) == len(letters):
+            break
+        hinged = {h.point: h.links for h in linkage.hinges if link in h.links and h.point not in found}
+        ends = hinged or {p: (FRAME, link) for p in linkage.links[link].points if p not in found}
+        pivots = [p for p in hinged if FRAME in hinged[p]]
+        wanted = pivots or list(ends)
+        across = {s.carrier if s.runner == link else s.runner for s in linkage.slides if link in (s.carrier, s.runner)}
+        if len(wanted) == 1:
+            found += wanted
+            link = link if pivots else next((n for n in ends[wanted[0]] if n != link), FRAME)
+        elif not wanted and len(across) == 1:  # a stone: the chain goes on along its lever
+            (link,) = across
+        else:
+            return {}
+    if len(found) < len(letters):
+        return {}
+    at = {spot.name: spot.at for spot in drawn.spots}
+    crank = linkage.links[driver.link].points
+    own, wished = abs(crank[found[0]] - crank[found[1]]), abs(at[f"{letters[1]}1"] - at[letters[0]])
+    return dict(zip(letters, found, strict=True)) if abs(own - wished) <= SAME_LENGTH * wished else {}
+
+
+# A construction on its sheet: the mechanism as large as can be, what is beyond the edge cut there, sizes, angles.
+
+
+LINE_STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
+    "link": (DARK_COLOUR, 2.2, "-"),
+    "link2": (INERTIA_COLOUR, 2.2, "-"),
+    "thin": (THIN_COLOUR, 0.8, "-"),
+    "dashed": (THIN_COLOUR, 0.7, "--"),
+    "axis": (THIN_COLOUR, 0.7, "-."),
+    "bold": (LOAD_COLOUR, 1.5, "-"),
+}
+CONSTRUCTION_PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
+MOST_REDUCTION = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
+ARC_STEP = 1.0  # mm between places along an arc
+NAME_CLEARANCE = 12.0  # mm about a place on a curve that should be free for its name
+EDGE_TOLERANCE = 1e-6  # mm from the edge of the field: a line is cut there
+CUT_ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
+BOX_SIZES = {"slider": MEASURED.box, "stone": MEASURED.stone}
+
+
+def draw_construction(
+    title: str,
+    drawn: GeometricConstruction,
+    units: UnitSystem,
+    linkage: Linkage | None = None,
+    names: Mapping[str, str] | None = None,
+) -> DrawingSheet:
+    """One sheet; joints are called as in the linkage, parameters by their names in the file."""
+    drawn, letters = use_problem_names(drawn, linkage, names or {})
+    sheet = DrawingSheet(title, translated(drawn.title).format(**letters), points_on_sheet(drawn), pad=CONSTRUCTION_PAD)
+    sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
+    rods = [(sheet.on(s.start), sheet.on(s.end)) for s in drawn.segments if s.style.startswith("link")]
+    for spot in drawn.spots:
+        _draw_spot(sheet, spot, rods)
+    lines: list[Label] = []
+    for s in drawn.segments:
+        start, end = sheet.on(s.start), sheet.on(s.end)
+        sheet.line([start, end], *LINE_STYLES[s.style], z=3 if s.style.startswith("link") else 1.5)
+        if s.name:
+            lines.append(Label(s.name, (start + end) / 2, 10, NAME_COLOUR, "italic", (start, end)))
+    for arc in drawn.arcs:
+        _draw_curve(sheet, _arc_points(sheet, arc), arc.style)
+    named: dict[str, list[Sequence[complex]]] = {}
+    for curve in drawn.curves:
+        pieces = _draw_curve(sheet, [sheet.on(p) for p in curve.places], curve.style)
+        named.setdefault(curve.name, []).extend(pieces)
+    for name, pieces in named.items():
+        _label_curve(sheet, name, pieces)
+    for centre in drawn.centres:
+        _draw_centre(sheet, centre, units)
+    for angle in drawn.angles:
+        vertex, first, last = (sheet.on(p) for p in (angle.vertex, angle.first, angle.last))
+        draw_angle(sheet, vertex, first, last, angle.name, right=angle.right)
+    _write_notes(sheet, drawn, letters, units)
+    sheet.corner()
+    for size in drawn.sizes:
+        _draw_size(sheet, size, units)
+    for spot in drawn.spots:
+        if spot.name:
+            sheet.label(spot.name, sheet.on(spot.at), 11)
+    sheet.labels += lines
+    sheet.ground.lines += [label.line for label in lines if label.line]
+    sheet.labels.sort(key=lambda label: label.size < 11)  # letters of points first
+    return sheet
+
+
+def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
+    """Places (m) on the sheet: the mechanism, and wishes that do not make it too small."""
+    points = drawn.places()
+    most = MOST_REDUCTION * sheet_scale(points, CONSTRUCTION_PAD)[1]
+    for wish in drawn.wishes:
+        if sheet_scale([*points, *wish], CONSTRUCTION_PAD)[1] <= most * (1 + 1e-9):
+            points += wish
+    return points
+
+
+def pieces_inside(places: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
+    """The pieces of a polyline that lie in a field, from edge to edge where they leave it."""
+    z = np.asarray(places, dtype=complex)
+    within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
+    found = []
+    for part in np.split(np.arange(len(z)), np.flatnonzero(within[1:] != within[:-1]) + 1):
+        if len(part) and within[part[0]]:
+            first, last = part[0], part[-1]
+            before = [leave_field(z[first], z[first - 1], low, high)] if first > 0 and np.isfinite(z[first - 1]) else []
+            after = (
+                [leave_field(z[last], z[last + 1], low, high)] if last + 1 < len(z) and np.isfinite(z[last + 1]) else []
+            )
+            found.append([complex(p) for p in (*before, *z[part], *after)])
+    return found
+
+
+def _draw_curve(sheet: DrawingSheet, places: Sequence[complex], style: str) -> list[Sequence[complex]]:
+    """A curve, cut at the edge with arrows where it goes on beyond it; the pieces that are drawn."""
+    colour, width, line = LINE_STYLES[style]
+    pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(places, *sheet.field) if len(piece) > 1]
+    low, high = sheet.field
+    for piece in pieces:
+        sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
+        sheet.ground.path(piece)
+        for way in (piece, piece[::-1]):
+            tip = way[0]
+            if (
+                min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag)
+                > EDGE_TOLERANCE
+            ):
+                continue
+            tail = next((z for z in way if abs(z - tip) > CUT_ARROW), None)
+            if tail is not None:
+                sheet.arrow(tip + CUT_ARROW * (tail - tip) / abs(tail - tip), tip, colour, 0.5, 2.1)
+    return pieces
+
+
+def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[complex]]) -> None:
+    """The name of a curve where it is alone, written once."""
+    places: list[complex] = []
+    for piece in pieces:
+        run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
+        places += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
+    if name and places:
+        crowd = sheet.ground.crowd
+        free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < NAME_CLEARANCE)), -abs(z)))
+        sheet.label(name, free, 10, NAME_COLOUR, "italic")
+
+
+def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
+    """Places of an arc (mm), close together also where its circle is huge: only what is near the sheet is taken."""
+    centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
+    middle, reach = (sheet.ground.low + sheet.ground.high) / 2, abs(sheet.ground.high - sheet.ground.low) / 2
+    start, end = arc.start, arc.end
+    if abs(middle - centre) > 1.01 * reach:  # the sheet is seen from the centre under a small angle
+        half = float(np.arcsin(reach / abs(middle - centre)))
+        towards = float(np.angle(middle - centre))
+        towards += 2 * np.pi * np.round(((start + end) / 2 - towards) / (2 * np.pi))
+        turns = [towards + 2 * np.pi * n for n in (-1, 0, 1)]
+        windows = [(max(start, t - half), min(end, t + half)) for t in turns]
+        start, end = max(windows, key=lambda window: window[1] - window[0])
+    if not end > start:
+        return []
+    count = int(np.clip((end - start) * radius / ARC_STEP, 60, 4000))
+    return [complex(centre + radius * z) for z in np.exp(1j * np.linspace(start, end, count))]
+
+
+def _draw_centre(sheet: DrawingSheet, centre: CircleCentre, units: UnitSystem) -> None:
+    """The centre with lines to it; where it is off the sheet, arrows towards it with its distance."""
+    at, (low, high) = sheet.on(centre.at), sheet.field
+    legs = [sheet.on(leg) for leg in centre.legs]
+    if pieces_inside([at], low, high):
+        for leg in legs:
+            sheet.line([leg, at], THIN_COLOUR, 0.7, "--", 1.5)
+        sheet.circle(at, 0.6, face=DARK_COLOUR)
+        sheet.ground.rivals.append(at)
+        sheet.label(centre.name, at, 11)
+        sheet.labels.append(Label("R", (legs[0] + at) / 2, 10, NAME_COLOUR, "italic", (legs[0], at)))
+        return
+    text = _("to {centre}, {radius}").format(
+        centre=centre.name, radius=_equation_text("R", centre.radius, "length", units)
+    )
+    tips = [leave_field(leg, at, low + 3 * (1 + 1j), high - 3 * (1 + 1j)) for leg in legs]
+    for leg, tip in zip(legs, tips, strict=True):
+        sheet.line([leg, tip], THIN_COLOUR, 0.7, "--", 1.5)
+        if abs(tip - leg) > 6:
+            sheet.arrow(tip - 5 * (tip - leg) / abs(tip - leg), tip, DARK_COLOUR, 0.8)
+    leg, tip = max(zip(legs, tips, strict=True), key=lambda pair: abs(pair[1] - pair[0]))
+    ahead = leg + 0.55 * (tip - leg), tip
+    sheet.labels.append(Label(text, (ahead[0] + ahead[1]) / 2, 9, DARK_COLOUR, line=ahead))
+
+
+def _draw_spot(sheet: DrawingSheet, spot: LetteredPoint, rods: Sequence[Segment]) -> None:
+    at = sheet.on(spot.at)
+    if spot.mark in BOX_SIZES:
+        along = spot.along / abs(spot.along)
+        draw_box(sheet, at, along, DARK_COLOUR, BOX_SIZES[spot.mark], MEASURED)
+        if spot.mark == "slider":
+            draw_guide(sheet, at, along, MEASURED, MEASURED.box[0] / 2 + GUIDE_EXTENSION, rods)
+    if spot.mark == "support":
+        draw_support(sheet, at, support_side(sheet, at, rods), rods=rods)
+    if spot.mark == "dot":
+        sheet.circle(at, 0.6, face=DARK_COLOUR)
+    elif spot.mark != "none":
+        sheet.circle(at, MEASURED.hinge)
+
+
+def _draw_size(sheet: DrawingSheet, size: DimensionLine, units: UnitSystem) -> None:
+    """A dimension line; its value has no unit."""
+    way = size.end - size.start
+    length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
+    text = _equation_text(size.name, length, "length", units, symbol=False)
+    draw_dimension(sheet, sheet.on(size.start), sheet.on(size.end), text, size.along)
+
+
+def _equation_text(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
+    """H = 120 mm."""
+    measure = DIMENSIONS[kind].dimension
+    number = float(units.from_si(value, measure))
+    text = numeral(number, ".0f" if "e+" in f"{number:.4g}" else ".4g")
+    unit = units.spelt(measure) if symbol else ""
+    return f"{name} = {text} {unit}".rstrip()
+
+
+def _write_notes(
+    sheet: DrawingSheet, drawn: GeometricConstruction, letters: Mapping[str, str], units: UnitSystem
+) -> None:
+    sheet.note(scale_words("l", sheet.mu, "m/mm"))
+    values = [_equation_text(*row, units) for row in drawn.values]
+    for k in range(0, len(values), 3):
+        sheet.note(", ".join(values[k : k + 3]))
+    if drawn.sizes:
+        sheet.note(_("sizes in {unit}").format(unit=units.spelt(DIMENSIONS["length"].dimension)))
+    for key in drawn.notes:
+        sheet.note(translated(key).format(**letters))
+
 
 STROKE_MARKS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
 

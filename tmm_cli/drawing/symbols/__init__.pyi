@@ -7,13 +7,21 @@ from .actuators import (
     cylinder_drivers as cylinder_drivers,
     draw_springs as draw_springs,
 )
-from .forms import (
+from .higher_pair_symbols import draw_higher_pair as draw_higher_pair
+from .higher_pairs import (
+    CIRCLE_ANGLES as CIRCLE_ANGLES,
+    contact_point as contact_point,
+    higher_pair_outline as higher_pair_outline,
+    outline_extent as outline_extent,
+    replacement_link as replacement_link,
+)
+from .link_forms import (
     LinkForm as LinkForm,
     Segment as Segment,
     form_by_pairs as form_by_pairs,
     form_by_points as form_by_points,
 )
-from .parts import (
+from .link_symbols import (
     FREE_COLOUR as FREE_COLOUR,
     MEASURED as MEASURED,
     MOVING as MOVING,
@@ -52,12 +60,4 @@ from .scene import (
     frame_pivots as frame_pivots,
     points_to_scale as points_to_scale,
     scale_to_fit as scale_to_fit,
-)
-from .wheel_symbols import draw_higher_pair as draw_higher_pair
-from .wheels import (
-    CIRCLE_ANGLES as CIRCLE_ANGLES,
-    contact_point as contact_point,
-    higher_pair_outline as higher_pair_outline,
-    outline_extent as outline_extent,
-    replacement_link as replacement_link,
 )

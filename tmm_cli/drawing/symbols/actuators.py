@@ -13,8 +13,11 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Slide, Spring
 from tmm_cli.mechanics.numerics import cross, dot, unit
 
-BARREL_HALF_WIDTH, LEAST_BARREL = 2.3, 8.0  # mm: half the width of a cylinder, its least length
-COIL_PITCH, COIL_HALF_WIDTH, SPRING_END = 3.0, 2.2, 4.0  # mm: a coil of a spring, half its width, its straight ends
+BARREL_HALF_WIDTH = 2.3  # mm
+LEAST_BARREL = 8.0  # mm: least length of a cylinder
+COIL_PITCH = 3.0  # mm between coils of a spring
+COIL_HALF_WIDTH = 2.2  # mm
+SPRING_END = 4.0  # mm: straight end of a spring
 TORSION_SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
 SPRING_COLOUR = "#5f3b8a"
 SPRING_BODY = "{}|spring"  # the body that a spring is, which is stretched

@@ -12,8 +12,10 @@ import numpy as np
 
 from tmm_cli.drawing.paper import DARK_COLOUR, THIN_COLOUR, DrawingSheet, gather_coincident, leave_field
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinder_drivers, draw_springs, driver_symbol
-from tmm_cli.drawing.symbols.forms import LinkForm, Segment, form_by_pairs, form_by_points
-from tmm_cli.drawing.symbols.parts import (
+from tmm_cli.drawing.symbols.higher_pair_symbols import CHAIN_STYLE, draw_higher_pair as draw_wheels, draw_rigid_marks
+from tmm_cli.drawing.symbols.higher_pairs import CamOutline, contact_point
+from tmm_cli.drawing.symbols.link_forms import LinkForm, Segment, form_by_pairs, form_by_points
+from tmm_cli.drawing.symbols.link_symbols import (
     STRUCTURAL,
     SymbolStyle,
     draw_body,
@@ -25,10 +27,7 @@ from tmm_cli.drawing.symbols.parts import (
     draw_support,
     support_side,
 )
-from tmm_cli.drawing.symbols.rigid import draw_rigid_marks
 from tmm_cli.drawing.symbols.scene import GUIDE_EXTENSION, ON_LINE, MechanismScene, spread_boxes
-from tmm_cli.drawing.symbols.wheel_symbols import CHAIN_STYLE, draw_higher_pair as draw_wheels
-from tmm_cli.drawing.symbols.wheels import CamOutline, contact_point
 from tmm_cli.language import _, printed
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import Pair

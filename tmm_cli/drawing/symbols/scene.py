@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tmm_cli.drawing.paper import DrawingSheet
-from tmm_cli.drawing.symbols.wheels import (
+from tmm_cli.drawing.symbols.higher_pairs import (
     HigherPairOutline,
     contact_point,
     higher_pair_outline,
@@ -22,10 +22,8 @@ from tmm_cli.mechanics.structure import Pair, Structure
 
 ON_LINE = 0.3  # mm: what still lies on a line
 GUIDE_EXTENSION = 6.0  # mm: how far a guide goes on beyond its stone
-LEAST_BOX_GAP, BOX_SHIFT = (
-    12.0,
-    19.0,
-)  # mm: boxes nearer to one another would cover them; how far one is drawn away then
+LEAST_BOX_GAP = 12.0  # mm: boxes closer than this would overlap
+BOX_SHIFT = 19.0  # mm by which a box that would overlap is moved along its guide
 
 
 FRAME_POSE = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of the frame

@@ -46,8 +46,9 @@ from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import terminal_cells, walk
 
 LETTER_SIZE = 3.2  # mm: letters of a table as it comes
-OUTER_LINE, INNER_LINE = 0.5, 0.2  # mm: lines
-TEXT_AIR, ROW_HEIGHT = 1.4, 1.7  # of the size: room beside a text, height of a row
+OUTER_LINE, INNER_LINE = 0.5, 0.2  # mm: widths
+TEXT_AIR = 1.4  # of the letter size: free width of a cell
+ROW_HEIGHT = 1.7  # of the letter size
 MOST_ROWS = 28  # rows, beyond which a table goes on beside itself
 PART_GAP = 3.0  # of the size, between two parts
 WIDEST_TEXT = 24.0  # of the size: a longer text is cut

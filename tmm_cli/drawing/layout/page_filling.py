@@ -38,10 +38,8 @@ EVEN_ENOUGH = 0.68  # of every page: then pieces are shared out in no further wa
 MOST_GROWTH = 3.0  # of its usual size: nothing is made larger
 SIZES_TRIED = 60  # that are tried from the largest to the least
 MOST_PAGES = 40  # of one sheet at most
-PARTITIONS_TRIED, MOST_PARTITIONS = (
-    8,
-    2000,
-)  # ways to share out pieces among pages that are tried; where there are more, none is
+PARTITIONS_TRIED = 8  # ways to divide the pieces among pages that are compared
+MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
 
 @dataclass(frozen=True)

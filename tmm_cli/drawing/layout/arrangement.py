@@ -1,4 +1,4 @@
-"""The large sheets of a project: drawings made as large as fits, put beside one another, framed."""
+"""Large sheets of a project: drawings made as large as fits, arranged on framed pages, written as files."""
 
 from __future__ import annotations
 
@@ -6,10 +6,18 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib.util import find_spec
 from itertools import accumulate, islice, product, repeat
 
-from tmm_cli.drawing.formats import JobRunner, run_in_process
-from tmm_cli.drawing.layout.contents import CONTENTS, SUBJECTS, DrawingSource, SheetChoice, reading_order
+from tmm_cli.drawing.formats import FORMATS, WITH_PAGES, JobRunner, missing_character_notes, run_in_process
+from tmm_cli.drawing.layout.contents import (
+    CONTENTS,
+    SUBJECTS,
+    DrawingSource,
+    SheetChoice,
+    choose_positions,
+    reading_order,
+)
 from tmm_cli.drawing.layout.packing import (
     TITLE_BLOCK_SIZES,
     PackingField,
@@ -22,7 +30,7 @@ from tmm_cli.drawing.layout.packing import (
     spread_boxes,
     title_block,
 )
-from tmm_cli.drawing.layout.pieces import (
+from tmm_cli.drawing.layout.page_filling import (
     DRAWING_GAP,
     FLAT_HEIGHTS,
     FULL_ENOUGH,
@@ -44,19 +52,19 @@ from tmm_cli.drawing.layout.pieces import (
 )
 from tmm_cli.drawing.paper import LEAST_PAPER, Drawing, PictureSpace, SheetPicture, drawing_within
 from tmm_cli.language import _
-from tmm_cli.problem import ProblemError
+from tmm_cli.mechanics.analysis import Results
+from tmm_cli.problem import ProblemError, parse_names
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
 FRAME_GAP = 6.0  # mm between the frame and what is drawn
 LETTER_LIMITS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
-FULL_SIZE_POSITIONS, SMALLEST_SHARE = (
-    1.5,
-    0.45,
-)  # positions beyond which drawings of each are smaller, and how much smaller at most
+FULL_SIZE_POSITIONS = 1.5  # with more positions the drawings of each position become smaller
+SMALLEST_SHARE = 0.45  # of the usual size: the least they become
 NOTABLE_GROWTH = 1.1  # times larger: it is drawn again
 SHRINK_SHARE = 0.75  # of its room: so much smaller something is tried where it became larger than thought
 SHRINK_TRIES = 5  # of that
-GROWTH_ROUNDS, MOST_ROUNDS = 3, 8  # of making larger what there proves to be room for; where a page stays thin
+GROWTH_ROUNDS = 3  # of enlarging what proves to have room
+MOST_ROUNDS = 8  # while a page stays thin
 
 
 @dataclass(frozen=True)
@@ -306,3 +314,53 @@ def frame_pictures(
     marks = [mark for at, one in placed for mark in one.moved(at).marks]
     block = title_block(titles, complex(high.real, low.imag))
     return LargeSheet(paper, (*marks, sheet_frame(paper), *block), tuple(placed))
+
+
+MOST_PLANS = 24  # positions of which plans are drawn
+
+
+def parse_formats(text: str) -> list[str]:
+    """Formats from their names with commas. Raises ProblemError."""
+    wanted = parse_names(text, FORMATS, "--as", _("there is no such format of drawings"))
+    if "dxf" in wanted and find_spec("ezdxf") is None:
+        raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
+    return wanted
+
+
+def refuse_plans(count: int) -> None:
+    """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
+    if count > MOST_PLANS:
+        raise ProblemError(
+            _("plans of so many positions fill no sheet that is read"),
+            found=str(count),
+            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST_PLANS),
+        )
+
+
+def large_sheet_files(
+    results: Results,
+    paper: str,
+    formats: Sequence[str],
+    say: Callable[[str], None],
+    way: JobRunner = run_in_process,
+    *,
+    every: bool,
+) -> Iterator[tuple[str, bytes]]:
+    """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
+
+    way: who draws and who writes. every: whether motion plans are drawn of all positions.
+    """
+    choice = choose_positions(results, every=every)
+    refuse_plans(len(choice.plans))
+    if choice.moves and not choice.loaded:
+        say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
+    sheets = dict(large_sheets(choice, paper, way))
+    jobs: list[tuple[str, Callable[[], bytes]]] = []
+    for name in formats:
+        if name in WITH_PAGES:
+            jobs.append((f"sheets.{name}", partial(WITH_PAGES[name], *sheets.values())))
+        else:
+            jobs += [(f"{stem}.{name}", partial(FORMATS[name], sheet)) for stem, sheet in sheets.items()]
+    yield from zip((file for file, __ in jobs), way([job for __, job in jobs]), strict=True)
+    for note in missing_character_notes(text for sheet in sheets.values() for text in sheet.texts()):
+        say(note)

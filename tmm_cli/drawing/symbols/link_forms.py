@@ -13,17 +13,15 @@ import numpy as np
 
 from tmm_cli.drawing.paper import DrawingSheet, convex_hull, leave_field
 from tmm_cli.drawing.symbols.actuators import Cylinder, cylinder_drivers
+from tmm_cli.drawing.symbols.higher_pairs import follower_segments as follower_bars, higher_pair_outline as shape_of
 from tmm_cli.drawing.symbols.scene import GUIDE_EXTENSION, ON_LINE, MechanismScene, drop_coincident
-from tmm_cli.drawing.symbols.wheels import follower_segments as follower_bars, higher_pair_outline as shape_of
 from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import cross, dot
 
 Segment = tuple[complex, complex]
 GUIDE_REACH = 5.0 + GUIDE_EXTENSION  # mm from the middle of a stone to the end of the bar that guides it
-BLOCK_HALF_LENGTH, GUIDE_OVERHANG = (
-    3.75,
-    7.0,
-)  # mm, to scale: half a stone; how far such a bar goes on beyond the way of its middle
+BLOCK_HALF_LENGTH = 3.75  # mm: half the length of a sliding block
+GUIDE_OVERHANG = 7.0  # mm by which a guide extends beyond the travel of the middle of its block
 
 
 @dataclass

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.drawing.paper import DARK_COLOUR, DrawingSheet, Style, Words, draw_hatching
-from tmm_cli.drawing.symbols.forms import LinkForm, Segment
+from tmm_cli.drawing.symbols.link_forms import LinkForm, Segment
 from tmm_cli.drawing.symbols.scene import ON_LINE, MechanismScene, drop_coincident
 from tmm_cli.mechanics.numerics import Vector, cross, dot, unit
 
@@ -187,14 +187,13 @@ def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: M
             sheet.label(link, form.middle, 11, hue[link], "italic")
 
 
-HATCH_DEPTH, ROD_CLEARANCE, OPENING_CLEARANCE = (
-    1.7,
-    0.6,
-    1.1,
-)  # mm: depth of hatching, how far rods keep off it, room beside them in an opening
+HATCH_DEPTH = 1.7  # mm
+ROD_CLEARANCE = 0.6  # mm between rods and hatching
+OPENING_CLEARANCE = 1.1  # mm on either side of a rod in an opening of the hatching
 TRIANGLE_CLEARANCE = 0.2  # mm: how far rods keep off a support's triangle
 GROUND_HALF_WIDTHS = 2.2  # half widths of a support's triangle: its hatched ground
-LEAST_RAIL, ROD_STEP = 2.0, 0.4  # mm: the shortest piece of a rail, between places along a rod
+LEAST_RAIL = 2.0  # mm: shorter pieces of a rail are left out
+ROD_STEP = 0.4  # mm between sample points of a rod
 
 
 def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look: SymbolStyle = MEASURED) -> complex:

@@ -13,13 +13,13 @@ from tmm_cli.mechanics.numerics import Vector, cross, dot
 
 ARM_COLOUR = "#00757d"
 LOAD_LENGTH = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
-SAME_DIRECTION, EXTRA_LENGTH = 0.05, 9.0  # forces in nearly one direction; mm by which the next of them is longer
-SHAFT_REACH, RIGHT_ANGLE_LEG = 1.3, 1.8  # mm: what a shaft covers; leg of the mark of a right angle
-LEAST_MARKED_ARM, ON_BAR_WITHIN, COVERED_SHARE = (
-    5.0,
-    0.6,
-    0.6,
-)  # mm: arms that are longer have a mark; what lies on a bar, for so much of it
+SAME_DIRECTION = 0.05  # rad, about: forces in one direction
+EXTRA_LENGTH = 9.0  # mm by which each further force in one direction is longer
+SHAFT_REACH = 1.3  # mm on either side of a shaft that count as covered
+RIGHT_ANGLE_LEG = 1.8  # mm
+LEAST_MARKED_ARM = 5.0  # mm: a shorter arm has no right-angle mark
+ON_BAR_WITHIN = 0.6  # mm between an arm and the points of a bar on which it lies
+COVERED_SHARE = 0.6  # of an arm that lies on bars: beyond it the arm is drawn beside them
 LEAST_DRAWN_ARM = 1.5  # mm: a shorter arm is only in the table
 COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tmm_cli.drawing.symbols.scene import MechanismScene
 
 
-ROLLER_ARM, ROLLER_RADIUS = 0.8, 0.1  # of the distance of axes: arm and radius of a roller
+ROLLER_ARM, ROLLER_RADIUS = 0.8, 0.1  # of the distance of the axes
 PROFILE_STEPS = 361
 CIRCLE_ANGLES = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
 LARGE_GEAR = (

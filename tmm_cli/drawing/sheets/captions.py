@@ -28,9 +28,12 @@ from tmm_cli.drawing.paper import (
 from tmm_cli.drawing.sheets.mechanism import Position
 from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT, drawing_area, extent, round_scale
 
-CAPTION_TEXT, CAPTION_LINE, CAPTION_ROW = 8.0, 4.6, 4.2  # points of letters; mm of a line, of a row
-COLUMN_SPACE, TABLE_GAP, CAPTION_GAP = 2.6, 5.0, 3.0  # mm between columns, between tables, above all of it
-DRAWING_PAD, LEAST_DRAWING = 11.0, 12.0  # mm about the drawing, for labels; what is smaller is not made smaller still
+CAPTION_TEXT = 8.0  # points
+CAPTION_LINE, CAPTION_ROW = 4.6, 4.2  # mm: heights of a line and of a row of a table
+COLUMN_SPACE, TABLE_GAP = 2.6, 5.0  # mm between columns, and between tables
+CAPTION_GAP = 3.0  # mm between the drawing and its caption
+DRAWING_PAD = 11.0  # mm about the drawing, for labels
+LEAST_DRAWING = 12.0  # mm: a smaller drawing is not reduced further
 LABEL_ROOM = 8.0  # mm that labels may take beyond that
 MOST_CAPTION_SHARE = 0.5  # of a sheet: more than this is written on another one
 CAPTION_WIDTHS = (

@@ -1,4 +1,4 @@
-"""What is drawn already, and is in the way of labels."""
+"""The area of a drawing with the lines and texts on it, and what it costs to cover them with a label."""
 
 from __future__ import annotations
 
@@ -11,18 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_cli.drawing.paper.boxes import Box, Boxes, lengths_inside, shared_areas, widen
+from tmm_cli.drawing.paper.record import ARROWHEAD_HALF_WIDTH
 
 SAMPLE_STEP = 1.2  # mm between the points that stand for a line
 LONGEST_LINE = 5000.0  # mm: longer lines are no part of a sheet
 CIRCLE_CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a small circle
 TEXT_AIR = 0.35  # mm about a text that are free
-LINE_PRICE, LINE_PRICE_PER_MM, FAINT_PRICE_PER_MM = (
-    14.0,
-    2.0,
-    0.3,
-)  # price of covering lines, of each mm of them, of each mm of faint ones
-TEXT_PRICE, TEXT_PRICE_PER_MM2 = 40.0, 2.0  # of a text, and of each mm² of it
-ARROWHEAD_HALF_WIDTH = 1.0  # mm: half the width of the head of an arrow
+LINE_PRICE = 14.0  # of covering any line
+LINE_PRICE_PER_MM, FAINT_PRICE_PER_MM = 2.0, 0.3  # of each covered mm of a solid and of a faint line
+TEXT_PRICE, TEXT_PRICE_PER_MM2 = 40.0, 2.0  # of covering any text, and of each covered mm²
 OUTSIDE_PRICE = 200.0  # of a place beyond the edge
 
 
@@ -148,3 +145,59 @@ def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     areas = shared_areas(widen(boxes, TEXT_AIR), others)
     found: NDArray[Any] = (TEXT_PRICE * (areas > 0) + TEXT_PRICE_PER_MM2 * areas).sum(axis=1)
     return found
+
+
+SQUARE_SIDE = 0.5  # mm: side of a square of the raster
+MOST_SQUARES = 2000  # on the diagonal of a field
+RASTER_STEP = 0.4  # mm between the points that are counted on a line
+RASTER_AIR = 0.35  # mm about a text that are free, besides what the squares at its edge take
+SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint lines, on solid lines, squares in texts
+
+
+class PriceRaster:
+    """Sums of what is drawn in all boxes that begin at the lower left corner of a field."""
+
+    def __init__(self, ground: OccupiedArea) -> None:
+        self.low, self.high = ground.low, ground.high
+        size = self.high - self.low
+        self.cell = max(SQUARE_SIDE, abs(size) / MOST_SQUARES)
+        across, up = (max(1, int(np.ceil(length / self.cell))) for length in (size.real, size.imag))
+        self.shape = across, up
+        count = np.zeros(across * up, np.int64)
+        for pieces, weight in ((ground.faint, 1), (ground.solid, SOLID_UNIT)):
+            x, y = self._squares(pieces.points(RASTER_STEP))
+            inside = (x >= 0) & (x < across) & (y >= 0) & (y < up)
+            count += weight * np.bincount(x[inside] * up + y[inside], minlength=across * up)
+        squares = count.reshape(across, up)
+        for left, right, low, high in self._edges(np.reshape(np.array(ground.boxes), (-1, 4))).tolist():
+            squares[left:right, low:high] += TEXT_UNIT
+        self.sums = np.zeros((across + 1, up + 1), np.int64)
+        np.cumsum(np.cumsum(squares, axis=1, out=squares), axis=0, out=self.sums[1:, 1:])
+
+    def _squares(self, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        off = (places - self.low) / self.cell
+        return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
+
+    def _edges(self, boxes: Boxes) -> NDArray[Any]:
+        """Numbers of the first square and of the one after the last, across and up."""
+        x, y = self.low.real, self.low.imag
+        off = (boxes - np.array([x, x, y, y])) / self.cell
+        off[:, ::2], off[:, 1::2] = np.floor(off[:, ::2]), np.ceil(off[:, 1::2])
+        across, up = self.shape
+        found: NDArray[Any] = np.clip(off, 0, np.array([across, across, up, up])).astype(int)
+        return found
+
+    def price(self, boxes: Boxes) -> NDArray[Any]:
+        """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
+        left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
+        sums = self.sums
+        found = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]
+        lines, texts, faint = found % TEXT_UNIT // SOLID_UNIT, found // TEXT_UNIT, found % SOLID_UNIT
+        price: NDArray[Any] = LINE_PRICE * (lines > 0) + RASTER_STEP * (
+            LINE_PRICE_PER_MM * lines + FAINT_PRICE_PER_MM * faint
+        )
+        price += TEXT_PRICE * (texts > 0) + TEXT_PRICE_PER_MM2 * self.cell**2 * texts
+        left, right, low, high = boxes.T
+        beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)
+        price += OUTSIDE_PRICE * beyond
+        return price

@@ -1,0 +1,281 @@
+"""Texts on paper: widths and outlines of letters, symbols with indices, lines broken to fit a width or a cell."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Iterator
+from functools import cache, lru_cache
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.ft2font import FT2Font
+from numpy.typing import NDArray
+
+from tmm_cli.drawing.paper.record import Align, TextMark
+from tmm_cli.language import signed, typeset
+from tmm_cli.mechanics.forces import Symbol
+
+FONT_FAMILY = "DejaVu Sans"
+ALIGN_SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # of the width, from the left end to where a text is put
+BASELINE_SHARE = 0.265  # of the size: from the base line to the middle of the letters' height
+MISSING_GLYPH = "\u25a1"  # stands for what the font lacks
+FONT_UNITS = 1000  # the size at which advances are read
+
+
+def font_file(bold: bool = False, italic: bool = False) -> Path:
+    """The file of the font of a weight and slant."""
+    ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
+    return Path(mpl.get_data_path(), "fonts", "ttf", f"DejaVuSans-{ending}.ttf" if ending else "DejaVuSans.ttf")
+
+
+@cache
+def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
+    """The font of a weight and slant, read whole: forked processes would share the place in an open file."""
+    found = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
+    found.set_size(FONT_UNITS, 72)
+    return found
+
+
+@cache
+def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
+    """Of size 1: its advance, the places of its outline (x + iy, from its foot on), and matplotlib's codes of them."""
+    glyph = load_font(bold, italic).load_char(ord(replace_missing(letter)))
+    places, codes = load_font(bold, italic).get_path()
+    return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (places[:, 0] + 1j * places[:, 1]) / FONT_UNITS, codes
+
+
+def letter_advance(letter: str, bold: bool = False, italic: bool = False) -> float:
+    """How far on the next letter stands, of its size."""
+    return _letter(letter, bold, italic)[0]
+
+
+@lru_cache(10_000)
+def _unit_width(text: str, bold: bool, italic: bool) -> float:
+    return sum(letter_advance(letter, bold, italic) for letter in text)
+
+
+def text_width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
+    """Width of a line of text, in the unit of its size."""
+    return size * _unit_width(text, bold, italic)
+
+
+@lru_cache(1000)
+def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Of a line of text of size 1: places from the left end of its base line on, and matplotlib's codes of them."""
+    along, places, codes = 0.0, [], []
+    for letter in text:
+        advance, own, its_codes = _letter(letter, bold, italic)
+        places.append(own + along)
+        codes.append(its_codes)
+        along += advance
+    return np.concatenate(places), np.concatenate(codes)
+
+
+def text_start(mark: TextMark) -> complex:
+    """The left end of a text, at half the height of its letters, mm."""
+    left = ALIGN_SHARE[mark.align] * text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
+    return mark.at - left * cmath.rect(1, math.radians(mark.turn))
+
+
+def baseline(mark: TextMark) -> tuple[complex, complex]:
+    """The left end of the base line of a text, mm, and the way along it."""
+    along = cmath.rect(1, math.radians(mark.turn))
+    return text_start(mark) - 1j * BASELINE_SHARE * mark.size * along, along
+
+
+def text_corners(mark: TextMark) -> tuple[complex, complex, complex, complex]:
+    """Corners of the box of a text, from the lower left one on, mm."""
+    along = cmath.rect(1, math.radians(mark.turn))
+    low = text_start(mark) - 0.5j * mark.size * along
+    end = low + text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
+    up = 1j * mark.size * along
+    return low, end, end + up, low + up
+
+
+@cache
+def _font_letters() -> frozenset[int]:
+    return frozenset(load_font().get_charmap())
+
+
+def replace_missing(text: str) -> str:
+    """The text with boxes in the place of characters that the font lacks."""
+    known = _font_letters()
+    return "".join(letter if ord(letter) in known else MISSING_GLYPH for letter in text)
+
+
+def missing_characters(text: str) -> set[str]:
+    """Characters for which the font has no letter: boxes stand for them."""
+    known = _font_letters()
+    return {letter for letter in text if ord(letter) not in known}
+
+
+Words = str | Symbol | tuple[str | Symbol, ...]
+
+INDEX_SIZE = 0.68  # size of indices
+INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # how far their middle is off that of the letter
+
+
+def split_symbols(words: Words) -> tuple[str | Symbol, ...]:
+    """Texts and symbols, one after another, with printed signs."""
+    several = words if isinstance(words, tuple) else (words,)
+    return tuple(signed(typeset(part)) if isinstance(part, str) else part for part in several)
+
+
+def plain_text(words: Words) -> str:
+    """In one line: a^n_BA."""
+    return "".join(
+        part
+        if isinstance(part, str)
+        else part.letter + (f"^{part.above}" if part.above else "") + (f"_{part.below}" if part.below else "")
+        for part in split_symbols(words)
+    )
+
+
+def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
+    """Pieces of a text of this size: how far each is off the left end of the whole, its letters, and their size."""
+    at = 0.0
+    for part in split_symbols(words):
+        if isinstance(part, str):
+            yield complex(at), part, size
+        else:
+            yield complex(at), part.letter, size
+            foot, small = at + text_width(part.letter, size), INDEX_SIZE * size
+            for text, off in ((part.below, INDEX_BELOW), (part.above, INDEX_ABOVE)):
+                if text:
+                    yield complex(foot, off * size), text, small
+        at += script_width(part, size)
+
+
+@lru_cache(10_000)
+def script_width(words: Words, size: float) -> float:
+    """Width of a text, in the unit of its size."""
+    return sum(
+        text_width(part, size)
+        if isinstance(part, str)
+        else text_width(part.letter, size)
+        + INDEX_SIZE * max(text_width(part.below, size), text_width(part.above, size))
+        for part in split_symbols(words)
+    )
+
+
+@lru_cache(1000)
+def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> tuple[Words, ...]:
+    """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`.
+
+    The last word, which may be a unit, is not parted from the one before it.
+    """
+    lines: list[Words] = []
+    line: list[str | Symbol] = []
+    wide = 0.0
+    *tokens, before, last = ((), (), *_split_at_spaces(words))
+    for token in (*tokens, (*before, *last)):
+        own = script_width(token, size)
+        if line and wide + own > most:
+            lines.append(_join_texts(line))
+            line, wide = [hanging], script_width(hanging, size)
+        line += token
+        wide += own
+    return (*lines, _join_texts(line))
+
+
+def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
+    """The same with texts that follow one another in one."""
+    found: list[str | Symbol] = []
+    for part in line:
+        if found and isinstance(part, str) and isinstance(found[-1], str):
+            found[-1] += part
+        else:
+            found.append(part)
+    return tuple(found)
+
+
+def _split_at_spaces(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
+    """What stands between two spaces, each with the space before it."""
+    token: list[str | Symbol] = []
+    for part in split_symbols(words):
+        first, *others = part.split(" ") if isinstance(part, str) else [part]
+        token.append(first)
+        for other in others:
+            yield tuple(token)
+            token = [f" {other}"]
+    yield tuple(token)
+
+
+DARK_COLOUR = "#1a1a1a"
+ELLIPSIS = "…"
+LEAST_TEXT_SHARE = 0.75  # of its size: a text is made that much smaller before it is cut
+CELL_GAP = 0.8  # mm between a text and the lines of its cell
+NARROWING = 0.01  # of the size: by how much a room in which the longest line has no place is narrower than that
+LINE_SPACING = 1.25  # of the size: from line to line
+
+
+def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
+    """As much of a text as the room (mm) has place for."""
+    text = text[: max(int(8 * room / size), 1)]  # no letter of a line is narrower on average; measuring takes time
+    if text_width(text, size, bold=bold) <= room:
+        return text
+    low, high = 0, len(text)
+    while high - low > 1:
+        middle = (low + high) // 2
+        fits = text_width(text[:middle].rstrip() + ELLIPSIS, size, bold=bold) <= room
+        low, high = (middle, high) if fits else (low, middle)
+    return text[:low].rstrip() + ELLIPSIS
+
+
+def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
+    """A text in lines that fit the room (mm), at most so many and about equally long; the last one is cut."""
+    found = narrower = _fill_lines(text, size, room, most, bold)
+    while 1 < len(narrower) == len(found) and " ".join(narrower) == " ".join(found):
+        found = narrower
+        room = max(text_width(line, size, bold=bold) for line in found) - NARROWING * size
+        narrower = _fill_lines(text, size, room, most, bold)
+    return found
+
+
+def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> list[str]:
+    """Lines each as long as there is room for."""
+    lines: list[str] = []
+    left = text.split()
+    while left and len(lines) < most - 1:
+        count = 1
+        while count < len(left) and text_width(" ".join(left[: count + 1]), size, bold=bold) <= room:
+            count += 1
+        lines.append(cut_text(" ".join(left[:count]), size, room, bold=bold))
+        left = left[count:]
+    return [*lines, cut_text(" ".join(left), size, room, bold=bold)] if left else lines
+
+
+def cell_text(
+    text: str, low: complex, high: complex, size: float, align: Align = "center", *, lines: int = 1, bold: bool = False
+) -> list[TextMark]:
+    """A text in the middle of a cell with these corners (mm), smaller or cut where it is too long for it."""
+    room = (high - low).real - 2 * CELL_GAP
+    smaller = next(
+        (s for s in (size, 0.87 * size, LEAST_TEXT_SHARE * size) if _fits_cell(text, s, room, lines, bold)),
+        LEAST_TEXT_SHARE * size,
+    )
+    found = wrap_text(text, smaller, room, lines, bold=bold)
+    x = low.real + CELL_GAP + ALIGN_SHARE[align] * room
+    top = (low + high).imag / 2 + LINE_SPACING * smaller * (len(found) - 1) / 2
+    places = [complex(x, top - LINE_SPACING * smaller * k) for k in range(len(found))]
+    return [TextMark(at, line, smaller, DARK_COLOUR, align, bold) for at, line in zip(places, found, strict=True)]
+
+
+def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
+    """A text on one line of this room (mm) and its size, smaller or cut where it is too long for it."""
+    words = " ".join(text.split())
+    smaller = (
+        max(min(1.0, room / max(text_width(words[: int(8 * room / size)], size, bold=bold), room)), LEAST_TEXT_SHARE)
+        * size
+    )
+    return cut_text(words, smaller, room, bold=bold), smaller
+
+
+def _fits_cell(text: str, size: float, room: float, lines: int, bold: bool) -> bool:
+    words = " ".join(text.split())[: int(8 * room * lines / size) + 1]
+    found = wrap_text(words, size, room, lines, bold=bold)
+    return " ".join(found) == words

@@ -1,0 +1,416 @@
+"""x"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_cli.drawing.paper import (
+    DARK_COLOUR,
+    INERTIA_COLOUR,
+    LOAD_COLOUR,
+    NAME_COLOUR,
+    PLAIN_TEXT,
+    TEXT_ROW,
+    THIN_COLOUR,
+    TICK_STEPS,
+    ChartCurve,
+    CommonAxis,
+    Drawing,
+    DrawingSheet,
+    OccupiedArea,
+    Panel,
+    PlotContent,
+    Words,
+    axis_extent,
+    draw_chart,
+    round_axis,
+    round_up,
+    scale_words,
+    with_unit,
+)
+from tmm_cli.drawing.sheets.diagrams import BORDER_OFFSET, QuantityPlot, SampledCurve, plot_over_driver, plot_quantities
+from tmm_cli.language import _, numeral, spelt, symbol
+from tmm_cli.mechanics.analysis import Results, motion_at_positions
+from tmm_cli.mechanics.forces import CourseSymbol, Symbol, collect_loads, reduced_inertias, reduced_moment
+from tmm_cli.mechanics.numerics import Real
+from tmm_cli.mechanics.plans import LANDSCAPE, PORTRAIT
+from tmm_cli.mechanics.quantities import (
+    ACCELERATION,
+    ANGULAR_ACCELERATION,
+    ANGULAR_SPEED,
+    FORCE,
+    INERTIA,
+    INERTIA as MOMENT_OF_INERTIA,
+    LENGTH,
+    MOMENT,
+    NUMBER,
+    SPEED,
+)
+from tmm_cli.problem import UnitSystem, typeset_unit
+
+if TYPE_CHECKING:
+    from tmm_cli.mechanics.dynamics import SingleRun, SteadyRunning, SteadySolution, Tangent
+
+
+LEAST_STRETCH = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
+MOST_CURVES = 6  # loads, or links, that have a curve each; the smallest of more are summed up
+
+
+def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Of a file that asks for it: what acts, what comes of it, and the energy-mass diagram."""
+    yield from draw_law_curves(results)
+    yield from draw_energy_mass(results)
+
+
+def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """What acts, and what comes of it, over the cycle."""
+    running = results.steady
+    if running is None or results.motion is None:
+        return
+    way, borders = _dense_travel(running)
+    q, here = running.start + running.sense * way, running.way(results.motion.q)
+    moments = _("Reduced moments, works and energies; what drives is positive; dots: computed positions")
+    yield from plot_over_driver(results, "law-moments", moments, q, borders, _load_plots(results, running, way, here))
+    motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
+    yield from plot_over_driver(results, "law-motion", motion, q, borders, _motion_plots(results, running, way, here))
+
+
+def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """The energy-mass diagram."""
+    if results.steady is not None and results.motion is not None:
+        yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
+
+
+def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
+    """Ways close together, and after which of them a panel of the functions ends: there they may jump."""
+    lows, highs = visible_stretches(running.steady.law.energy.edges)
+    inner = np.linspace(0, 1, max(4, 720 // len(lows)))
+    low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
+    places = low + (high - low) * inner
+    return places.ravel(), (len(inner) * np.arange(1, len(lows)) - 1).tolist()
+
+
+def visible_stretches(edges: Real) -> tuple[Real, Real]:
+    """The starts and the ends of the panels between these edges that are wide enough to be seen on paper.
+
+    Narrow panels side by side are one stretch; together narrower than a line is wide, they are left out: a jump.
+    """
+    least = LEAST_STRETCH * (edges[-1] - edges[0])
+    wide = np.diff(edges) >= least
+    kept = edges[np.append(True, wide) | np.append(wide, True)]
+    seen = np.diff(kept) >= least
+    return kept[:-1][seen], kept[1:][seen]
+
+
+def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
+    """Moments of the loads and their sum; that of what drives; works; energies."""
+    steady = running.steady
+    law, machine = steady.law, steady.machine
+    loads = _curves_with_sum(
+        _reduced_load_moments(results, running, way), _reduced_load_moments(results, running, here), _("sum")
+    )
+
+    def works(x: Real) -> tuple[Real, Real, Real]:
+        return machine.work(x), steady.work(x) - machine.work(x), steady.work(x)
+
+    def energies(x: Real) -> tuple[Real, Real]:
+        square = law.speed(x) ** 2 / 2
+        return machine.inertia(x) * square, law.flywheel * (square - law.speed(0 * x) ** 2 / 2)
+
+    driver = _("constant moment") if steady.task.motor is None else _("motor")
+    driving = [_sample_curve(_("loads"), machine.moment, way, here), _sample_curve(driver, law.driving, way, here)]
+    return [
+        QuantityPlot(_("reduced moments of the loads"), MOMENT, loads),
+        QuantityPlot(_("moments"), MOMENT, driving),
+        QuantityPlot(_("works, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, way, here), "A"),
+        QuantityPlot(
+            _("kinetic energy, J"),
+            NUMBER,
+            _sample_curves((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1],
+            "T",
+        ),
+    ]
+
+
+def _motion_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
+    """Inertia of each link and the sum, and its slope; speed, acceleration, time."""
+    steady = running.steady
+    law = steady.law
+    parts = _curves_with_sum(
+        _reduced_link_inertias(results, running, way), _reduced_link_inertias(results, running, here), _("sum")
+    )
+    mean = SampledCurve(
+        _("mean of the largest and the least"),
+        np.full(np.shape(way), np.mean(steady.speeds)),
+        np.full(np.shape(here), np.nan),
+        limit=True,
+    )
+    return [
+        QuantityPlot(_("reduced inertia of the links"), INERTIA, parts),
+        QuantityPlot("dJ/dφ", INERTIA, [_sample_curve("", steady.machine.slope, way, here)], "J′"),
+        QuantityPlot(_("angular velocity ω"), ANGULAR_SPEED, [_sample_curve(_("ω"), law.speed, way, here), mean]),
+        QuantityPlot(
+            _("angular acceleration ε"), ANGULAR_ACCELERATION, [_sample_curve("", law.acceleration, way, here)]
+        ),
+        QuantityPlot(_("time t, s"), NUMBER, [_sample_curve("", law.time, way, here)], "t"),
+    ]
+
+
+def _sample_curve(name: str, of: Any, way: Real, here: Real) -> SampledCurve:
+    return SampledCurve(name, of(way), of(here))
+
+
+def _sample_curves(names: Sequence[str], of: Any, way: Real, here: Real) -> list[SampledCurve]:
+    return [SampledCurve(name, *both) for name, *both in zip(names, of(way), of(here), strict=True)]
+
+
+def _reduced_load_moments(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
+    """Reduced moments by names of loads, along the sense of the driver."""
+    motion = motion_at_positions(results, running.start + running.sense * way)
+    found: dict[str, Real] = {}
+    for load in collect_loads(motion, results.strokes):
+        if load.kind != "inertia":
+            text = _("weight of link {link}") if load.kind == "weight" else _("load {name}")
+            name = text.format(link=load.link, name=load.name.rstrip("'"))
+            found[name] = found.get(name, 0.0) + running.sense * reduced_moment(motion, load)
+    return found
+
+
+def _reduced_link_inertias(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
+    motion = motion_at_positions(results, running.start + running.sense * way)
+    text = _("link {link}")
+    return {text.format(link=link): own + 0.0 * way for link, (own, __) in reduced_inertias(motion).items()}
+
+
+def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
+    """A course of each part that is not nothing, the small ones of many as one, after the sum of all."""
+    sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
+    largest = max(sizes.values(), default=0.0)
+    courses = [SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
+    every = _total_curve(courses, total)
+    if len(courses) > MOST_CURVES:
+        kept = sorted(courses, key=lambda one: -sizes[one.name])[: MOST_CURVES - 1]
+        rest = [one for one in courses if one not in kept]
+        courses = [*(one for one in courses if one in kept), _total_curve(rest, _("others"))]
+    return [every, *courses] if len(courses) > 1 else [replace(every, name=one.name) for one in courses] or [every]
+
+
+def _total_curve(courses: Sequence[SampledCurve], name: str) -> SampledCurve:
+    still = SampledCurve(name, np.zeros(1), np.zeros(1))
+    return SampledCurve(
+        name, sum((c.values for c in courses), still.values), sum((c.points for c in courses), still.points)
+    )
+
+
+FAR_RATIO = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet
+LEAST_WIDTH_SHARE = 0.1  # of the largest inertia: the diagram is taken for so wide at least
+AXIS_OVERHANG = 0.08  # of the axis, beyond the curve
+TANGENT_OVERHANG = 0.3  # of the axis, beyond the point of contact
+ARC_RADII = (26.0, 16.0)  # mm: radii of the angles
+ANGLE_LINE = 6.0  # mm of the line beyond an arc from which an angle is counted
+MOST_NUMBERED = 24  # positions at most that have their numbers
+TANGENT_COLOURS = (LOAD_COLOUR, INERTIA_COLOUR)
+TANGENT_ANGLES = (Symbol("ψ", "max"), Symbol("ψ", "min"))
+SEGMENT_ENDS = ("a", "b")
+
+
+@dataclass(frozen=True)
+class DrawnTangent:
+    """A tangent as it is drawn, mm and rad: where it begins on the axis of energy, where it touches, its angle."""
+
+    start: complex
+    touching: complex
+    angle: float
+
+    @classmethod
+    def of(cls, panel: Panel, tangent: Tangent, factor: float) -> DrawnTangent:
+        begins = complex(panel.at(panel.x.low, tangent.offset + tangent.slope * factor * panel.x.low))
+        touching = complex(panel.at(tangent.inertia / factor, tangent.energy))
+        return cls(begins, touching, math.atan(tangent.slope * factor * panel.x.mu / panel.y.mu))
+
+
+def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Drawing:
+    """Work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
+    assert results.motion is not None
+    steady, units = running.steady, results.problem.units
+    factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
+    title = _("Energy-mass diagram with tangents of the largest and the least speed; dots: computed positions")
+    sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
+    told = sheet.ground.low + 0.5 * TEXT_ROW * 1j
+    sheet.ground = OccupiedArea(sheet.ground.low + 2.4 * TEXT_ROW * 1j, sheet.ground.high)
+
+    def diagram(x: Real, colour: str = DARK_COLOUR, *, dots: bool = False) -> ChartCurve:
+        return ChartCurve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
+
+    whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
+    start, longest = axis_extent(sheet)
+    axis = round_axis(*_axis_ends(whole.xs, _massless_width(steady) / factor), start, longest)
+    words = with_unit(_("reduced inertia of the links J"), MOMENT_OF_INERTIA, units)
+    below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
+    names = _("tangent of the largest speed"), _("tangent of the least speed")
+    lines = [
+        _tangent_curve(tangent, factor, (axis.low, axis.high), name, colour)
+        for tangent, name, colour in zip(steady.tangents, names, TANGENT_COLOURS, strict=True)
+    ]
+    work = PlotContent(
+        _("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
+    )
+    panel = draw_chart(sheet, [work], CommonAxis(axis, below))[0]
+    for curve in (whole, *lines):
+        sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
+    every = max(1, round(round_up(len(here.xs) / MOST_NUMBERED, TICK_STEPS)))
+    for place, number in list(zip(panel.at(here.xs, here.ys).tolist(), results.numbers, strict=True))[::every]:
+        sheet.label(str(number), place, 8, DARK_COLOUR)
+    drawn = [DrawnTangent.of(panel, tangent, factor) for tangent in steady.tangents]
+    for one, name, end, radius, colour in zip(
+        drawn, TANGENT_ANGLES, SEGMENT_ENDS, ARC_RADII, TANGENT_COLOURS, strict=True
+    ):
+        _draw_tangent_angle(sheet, one, name, radius, colour)
+        sheet.circle(one.start, 0.6, NAME_COLOUR, NAME_COLOUR, 0.4, 5)
+        sheet.label(end, one.start, 9, NAME_COLOUR, "italic")
+    with sheet.on_layer("dimensions"):
+        sheet.line([one.start for one in drawn], NAME_COLOUR, 2.0, z=4.2)
+    sheet.text(told + TEXT_ROW * 1j, _measured_text(drawn), PLAIN_TEXT)
+    if steady.law.flywheel:
+        sheet.text(told, _flywheel_text(steady.law.flywheel, axis.low, units), PLAIN_TEXT)
+    return sheet.finish()
+
+
+def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
+    """Of the axis: it begins at zero unless that is far off. massless: its end where all links are without inertia."""
+    low, high = float(np.min(inertia)), float(np.max(inertia))
+    if high <= 0.0:
+        return 0.0, massless
+    wide = max(high - low, LEAST_WIDTH_SHARE * high)
+    step = round_up(wide / 4)
+    begins = step * math.floor((low - wide) / step) if low > FAR_RATIO * wide else 0.0
+    return begins, high + AXIS_OVERHANG * (high - begins)
+
+
+def _massless_width(steady: SteadySolution) -> float:
+    """The inertia (kg*m^2) over which a tangent rises as much as the work changes in the cycle; 1 where it does not."""
+    fastest, slowest = steady.tangents
+    rise = abs(fastest.offset - slowest.offset)
+    return rise / fastest.slope if rise > 0.0 else 1.0
+
+
+def _tangent_curve(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> ChartCurve:
+    """From the axis of energy on."""
+    low, high = ends
+    xs = np.array([low, min(tangent.inertia / factor + TANGENT_OVERHANG * (high - low), high)])
+    return ChartCurve(xs, tangent.offset + tangent.slope * factor * xs, name, colour, "--", 1.0)
+
+
+def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol, radius: float, colour: str) -> None:
+    """Of a tangent with the axis of inertia, where it begins; and where it touches."""
+    sheet.line([tangent.start, tangent.start + radius + ANGLE_LINE], THIN_COLOUR, 0.6, z=1.4, faint=True)
+    arc = tangent.start + radius * np.exp(1j * np.linspace(0, tangent.angle, 30))
+    sheet.line(arc.tolist(), colour, 0.7, z=2.6)
+    sheet.label(name, complex(arc[15]), 9, NAME_COLOUR)
+    sheet.circle(tangent.touching, 0.9, "white", colour, 0.9, 4.5)
+
+
+def _measured_text(drawn: list[DrawnTangent]) -> Words:
+    """What one would measure on the sheet."""
+    told: list[str | Symbol] = []
+    for one, name in zip(drawn, TANGENT_ANGLES, strict=True):
+        told += [name, f" = {numeral(math.degrees(one.angle), '.4g')}°;   "]
+    a, b = (one.start for one in drawn)
+    return (*told, f"ab = {numeral(abs(a - b), '.4g')} {spelt('mm')}")
+
+
+def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
+    """How its inertia follows from that. begins: the inertia at which the axis does, in the unit of the file."""
+    tan, largest, least = symbol("tan"), *TANGENT_ANGLES
+    found = units.from_si(inertia, MOMENT_OF_INERTIA)
+    return (
+        CourseSymbol("J_f"),
+        " = ab·",
+        Symbol("μ", "J"),
+        f"/({tan} ",
+        largest,
+        f" − {tan} ",
+        least,
+        ")",
+        f" − {numeral(begins, '.4g')}" if begins else "",
+        f" = {numeral(found, '.4g')} {typeset_unit(units.spelt(MOMENT_OF_INERTIA))}",
+    )
+
+
+MOST_SAMPLES = 480  # of all pieces of a run together
+SAMPLES_PER_PIECE = 40  # least number, where there are few pieces
+LEAST_SAMPLES = 4  # in a piece, where there are very many
+
+
+def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
+    """Of a file that asks for one."""
+    single = results.single
+    if single is None or results.motion is None:
+        return
+    crank, units = results.linkage.driver.kind == "turn", results.problem.units
+    factor = np.pi / 180 if crank else units.factor(LENGTH)
+    count = len(single.run.steps)
+    pieces = single.run.closely(
+        max(LEAST_SAMPLES, min(SAMPLES_PER_PIECE, 4 * MOST_SAMPLES // count), MOST_SAMPLES // count)
+    )
+    times, states = (np.concatenate(part, axis=-1) for part in zip(*pieces, strict=True))
+    ends = (np.cumsum([len(own) for own, __ in pieces])[:-1] - 1).tolist()
+    here = single.way(results.motion.q)
+    time, speed = single.run.at(here)
+    sheet = DrawingSheet(
+        results.problem.title, _("Single run over the way of the driver; dots: computed positions"), paper=PORTRAIT
+    )
+    start, most = axis_extent(sheet)
+    axis = round_axis(0.0, float(single.run.way[-1]) / factor, start, most, degrees=crank)
+    if crank:
+        told = _("turn of the crank from the beginning of the run, deg")
+        words = f"{told};  ", *scale_words("φ", axis.mu, "deg/mm")
+    else:
+        told = with_unit(_("way of the driver from the beginning of the run"), LENGTH, units)
+        words = f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm")
+    reached = np.isfinite(time)
+    numbers = [(float(x) / factor, str(n)) for x, n, there in zip(here, results.numbers, reached, strict=True) if there]
+    every = _run_plots(single, (times, states), (time, here, speed), crank=crank)
+    plots = [plot_quantities(one, units, states[0] / factor, here / factor, ends) for one in every]
+    draw_chart(sheet, plots, CommonAxis(axis, words, sorted(numbers)))
+    yield "single-run", sheet.finish()
+
+
+def _run_plots(
+    single: SingleRun, curve: tuple[Real, Any], points: tuple[Real, Real, Real], *, crank: bool
+) -> list[QuantityPlot]:
+    """Over the times and states of the curve; at the times, ways and speeds of the points."""
+    times, (way, speed, driven, loaded, braked) = curve
+    time, here, there = points
+    changes, at_points = single.acceleration(times, way, speed), single.acceleration(time, here, there)
+    none = np.full(np.shape(here), np.nan)
+    moments = [
+        SampledCurve(_("what drives"), single.driving(way, speed, changes), single.driving(here, there, at_points)),
+        SampledCurve(
+            _("loads"), single.machine.moment(way), np.where(np.isfinite(time), single.machine.moment(here), none)
+        ),
+    ]
+    works = [SampledCurve(_("what drives"), driven, none), SampledCurve(_("loads"), loaded, none)]
+    if single.task.brake:
+        works.append(SampledCurve(_("brake"), braked, none))
+    works.append(SampledCurve(_("kinetic energy"), single.energy(way, speed), single.energy(here, there)))
+    return [
+        QuantityPlot(_("moments") if crank else _("forces"), MOMENT if crank else FORCE, moments),
+        QuantityPlot(_("works and kinetic energy, J"), NUMBER, works, "A"),
+        QuantityPlot(
+            _("angular velocity ω") if crank else _("speed v"),
+            ANGULAR_SPEED if crank else SPEED,
+            [SampledCurve("", speed, there)],
+        ),
+        QuantityPlot(
+            _("angular acceleration ε") if crank else _("acceleration a"),
+            ANGULAR_ACCELERATION if crank else ACCELERATION,
+            [SampledCurve("", changes, at_points)],
+        ),
+        QuantityPlot(_("time t, s"), NUMBER, [SampledCurve("", times, time)], "t"),
+    ]
