@@ -31,7 +31,7 @@ def test_candidates_on_the_tape_are_those_one_by_one(kind):
     name, edits, vary, objective = TASKS[kind]
     text = text_of(name, *edits, (r"points: \{", block(vary, objective, "")))
     candidates = Candidates(read_task(read_text(text, "x.yaml")))
-    assert candidates.taped
+    assert candidates.traced
     forces = any(quantity.forces for quantity in candidates.quantities)
     one = SequentialVariants(candidates.task.make, candidates.first, candidates.outputs, forces=forces)
     numbers = candidates.numbers(np.random.default_rng(5).random((5, len(candidates.low))))

@@ -79,7 +79,7 @@ def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Sy
     if "links" not in tree.data:
         found = solve_alone(tree)
         say(f"{found[0]}: {bare_units(found[3])}")
-        for doubt in bare_speeds(tree.data, ValueReader(TaskFile(tree).early, found[3])):
+        for doubt in bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, found[3])):
             warn(f"{found[0]}: {doubt}")
         return (*found, None)
     problem = build_synthesised(tree)

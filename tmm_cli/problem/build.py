@@ -251,7 +251,7 @@ def build_any_problem(tree: Tree) -> Problem | TaskProblem:
 
 def early_parameters(tree: Tree) -> dict[str, PhysicalValue]:
     """The parameters of a file with a task that do not rest on what the task is to find. Raises ProblemError."""
-    early: dict[str, PhysicalValue] = import_module(TASK_READER).TaskFile(tree).early
+    early: dict[str, PhysicalValue] = import_module(TASK_READER).TaskFile(tree).independent
     return early
 
 

@@ -165,7 +165,7 @@ def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
     """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
     file, name = TaskFile(tree), tree.name
     with locate_errors_in(tree):
-        return name, file.shape.title or name, file.synthesised(), file.units
+        return name, file.shape.title or name, file.solved(), file.units
 
 
 def read_task(tree: Tree) -> Any:
@@ -188,20 +188,20 @@ class TaskFile:
         self.searches: bool = getattr(block_module(self.block.task), "SEARCH", False)
         with locate_errors_in(tree):
             self.units = build_unit_system(self.shape.units, extended=extended)
-            self.kinds = self._kinds()
-            self.names = self._names()
-            raw, found = self.shape.parameters, self.stand_ins()
-            resting = self._resting(set(found))
-            self.late = {name: raw[name] for name in raw if name in resting}
-            self.early = build_parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
-            self._not_on_what_is_found()
+            self.kinds = self._find_kinds()
+            self.names = self._find_names()
+            raw, found = self.shape.parameters, self.placeholders()
+            resting = self._dependent_parameters(set(found))
+            self.dependent = {name: raw[name] for name in raw if name in resting}
+            self.independent = build_parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
+            self._check_independence()
 
-    def _kinds(self) -> dict[str, str]:
+    def _find_kinds(self) -> dict[str, str]:
         """Names and kinds of what the task finds; they may depend on what is asked."""
         own = getattr(block_module(self.block.task), "parameters", None)
         return dict(solver_module(self.block.task).PARAMETERS if own is None else own(self.block))
 
-    def _names(self) -> dict[str, str]:
+    def _find_names(self) -> dict[str, str]:
         """Standard names of what is found, and those that the file gives them."""
         raw, own, task = self.shape.parameters, self.block.names, self.block.task
         for name, other in own.items():
@@ -233,7 +233,7 @@ class TaskFile:
                 )
         return names
 
-    def stand_ins(self) -> Parameters:
+    def placeholders(self) -> Parameters:
         """Values in place of those to be found, no two in a simple ratio. A search does not tell its kinds before."""
         return {
             name: PhysicalValue(
@@ -242,7 +242,7 @@ class TaskFile:
             for k, (own, name) in enumerate(self.names.items())
         }
 
-    def _resting(self, found: set[str]) -> set[str]:
+    def _dependent_parameters(self, found: set[str]) -> set[str]:
         """Parameters given by hand that rest on what is found, at first hand or through others."""
         raw = self.shape.parameters
         known = dict.fromkeys([*raw, *found], PhysicalValue(0.0))
@@ -256,9 +256,9 @@ class TaskFile:
             late |= more
         return late
 
-    def _not_on_what_is_found(self) -> None:
+    def _check_independence(self) -> None:
         """What is asked cannot rest on what is found; a search may ask for something of the linkage with it."""
-        known = dict.fromkeys([*self.late, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
+        known = dict.fromkeys([*self.dependent, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
         for path, text in _iterate_texts(self.block):
             used = Parser(plain_text(text[:200]), known, self.units).names()
             if path[0] not in ("task", "names") and used:
@@ -276,18 +276,18 @@ class TaskFile:
         try:
             with prefix_errors("synthesis"):
                 if not self.searches:
-                    return read(self.block, BoundedReader(self.early, self.units))
+                    return read(self.block, BoundedReader(self.independent, self.units))
                 if "links" not in self.tree.data:
                     raise ProblemError(
                         _("there is no linkage whose parameters could vary"), allowed=_("links and a driver")
                     )
-                return read(self.block, ValueReader(self.early, self.units), self.tried)
+                return read(self.block, ValueReader(self.independent, self.units), self.try_values)
         except Infeasible as error:
             raise self._refusal(error) from None
         except TriedFileError as error:
             raise error.error from None
 
-    def tried(self, found: Parameters, units: UnitSystem) -> Problem:
+    def try_values(self, found: Parameters, units: UnitSystem) -> Problem:
         """The linkage with other values of what is to be found, for a search. Raises OfTheFile."""
         try:
             return self.with_values(found, units)
@@ -297,11 +297,11 @@ class TaskFile:
     def with_values(self, found: Parameters, units: UnitSystem) -> Problem:
         """The linkage with these values of what is to be found."""
         assert isinstance(self.shape, schema.File)
-        known = self.early | found
-        everything = known | build_parameters(self.late, units, known)
+        known = self.independent | found
+        everything = known | build_parameters(self.dependent, units, known)
         return build_from_shape(self.shape, self.tree, ValueReader(everything, units))
 
-    def synthesised(self) -> Synthesised:
+    def solved(self) -> Synthesised:
         """What the task finds. Raises ProblemError."""
         task = self.task
         try:
@@ -309,7 +309,7 @@ class TaskFile:
                 outcome = refuse_nonfinite(solver_module(self.block.task).solve(task))
         except Infeasible as error:
             searched = error.nearest is None and error.search and not self.searches
-            raise self._refusal(error, self.nearest(error.path) if searched else None) from None
+            raise self._refusal(error, self.find_nearest(error.path) if searched else None) from None
         except TriedFileError as error:
             raise error.error from None
         return Synthesised(self.block.task, outcome, self.names)
@@ -317,18 +317,18 @@ class TaskFile:
     def _refusal(self, error: Infeasible, searched: str | None = None) -> ProblemError:
         return refusal_error(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
-    def nearest(self, at_fault: Path) -> str:
+    def find_nearest(self, at_fault: Path) -> str:
         """The nearest feasible value of one of the numbers at this path, the last of them first, in words."""
         read, refuse, own = (
             block_module(self.block.task).read,
             solver_module(self.block.task).refuse,
-            BoundedReader(self.early, self.units),
+            BoundedReader(self.independent, self.units),
         )
         read(self.block, own)
 
         def solved(path: Path, value: float) -> bool:
             try:
-                refuse(read(self.block, BoundedReader(self.early, self.units, {path: value})))
+                refuse(read(self.block, BoundedReader(self.independent, self.units, {path: value})))
             except (ProblemError, Infeasible):
                 return False
             return True
@@ -349,7 +349,7 @@ class TaskFile:
 def _solved_problem(file: TaskFile) -> Problem:
     """The problem with what its task finds."""
     with locate_errors_in(file.tree):
-        return _with_solution(file, file.synthesised())
+        return _with_solution(file, file.solved())
 
 
 def _with_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
@@ -373,7 +373,7 @@ def _extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
 def _draft_problem(file: TaskFile) -> Problem | None:
     """Links and pairs with other numbers for what is to be found; None where the file refuses these."""
     try:
-        return file.with_values(file.stand_ins(), file.units)
+        return file.with_values(file.placeholders(), file.units)
     except ProblemError:
         return None
 

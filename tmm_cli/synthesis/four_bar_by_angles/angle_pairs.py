@@ -51,25 +51,25 @@ class GeneratedFunction:
         rows = np.asarray(self.table, dtype=float)
         return np.interp(np.asarray(x, dtype=float), rows[:, 0], rows[:, 1])
 
-    def wanted(self, phi: Any) -> Any:
+    def required_output(self, phi: Any) -> Any:
         """The output angle for an input angle."""
         start, end = self.value(np.asarray(self.x[0])), self.value(np.asarray(self.x[1]))
         x = self.x[0] + (phi - self.phi[0]) / (self.phi[1] - self.phi[0]) * (self.x[1] - self.x[0])
         return self.psi[0] + (self.value(x) - start) / (end - start) * (self.psi[1] - self.psi[0])
 
-    def corners(self) -> Any:
+    def table_angles(self) -> Any:
         """Input angles of the rows of the table within the range; there it may have corners."""
         x = np.asarray([row[0] for row in self.table], dtype=float)
         share = (x - float(self.x[0])) / (float(self.x[1]) - float(self.x[0]))
         share = share[(share > 0) & (share < 1)]
         return float(self.phi[0]) + share * (float(self.phi[1]) - float(self.phi[0]))
 
-    def precision(self, count: int) -> tuple[Any, Any]:
+    def precision_points(self, count: int) -> tuple[Any, Any]:
         """Angles at the precision points: Chebyshev's spacing, x = middle - half range cos((2j - 1) pi/(2 n))."""
         turns = np.arange(1, 2 * count, 2) / np.longdouble(2 * count)
         share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(float)
         phi = self.phi[0] + share * (self.phi[1] - self.phi[0])
-        return phi, self.wanted(phi)
+        return phi, self.required_output(phi)
 
 
 # Keys of lengths and zero angles.
@@ -318,7 +318,7 @@ def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
     function = None
     if shape.pairs is None:
         function = _read_function(shape, values)
-        phi, psi = function.precision(shape.points or 3)
+        phi, psi = function.precision_points(shape.points or 3)
         pairs = list(zip(phi.tolist(), psi.tolist(), strict=True))
     else:
         if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:

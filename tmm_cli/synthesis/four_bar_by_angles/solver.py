@@ -45,7 +45,7 @@ NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
 def _scan_angles(function: GeneratedFunction) -> Any:
     """Input angles (rad) that are looked at: even, and where the table has rows."""
     even = np.linspace(min(function.phi), max(function.phi), ERRORS)
-    return np.unique(np.concatenate((even, function.corners())))
+    return np.unique(np.concatenate((even, function.table_angles())))
 
 
 def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> tuple[Any, float]:
@@ -99,7 +99,7 @@ def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Dia
     side = assembly_of(one, task)
 
     def error(phi: Any) -> Any:
-        wanted = function.wanted(phi)
+        wanted = function.required_output(phi)
         return output_angles(one, phi, wanted, side) - wanted
 
     places, largest = error_extremes(error, function)
@@ -335,7 +335,7 @@ def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: A
     function = task.function
 
     def error(phi: Any) -> Any:
-        wanted = function.wanted(phi)
+        wanted = function.required_output(phi)
         return _measured_outputs(one, results, phi, wanted) - wanted
 
     return error_extremes(error, function)[1]

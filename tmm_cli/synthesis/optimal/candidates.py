@@ -63,10 +63,10 @@ class Candidates:
         self.variant = task.make(self.first)
         self.linkage = self.variant.linkage
         self.groups = analyse_mobile_structure(self.linkage).solved
-        self._program()
-        self._places()
+        self._build_program()
+        self._set_positions()
 
-    def _program(self) -> None:
+    def _build_program(self) -> None:
         """What gives all quantities of candidates at places of the driver."""
         self.program: TracedVariants | SequentialVariants = make_variants(
             self.task.make,
@@ -75,12 +75,12 @@ class Candidates:
             forces=any(quantity.forces for quantity in self.quantities),
             one_sense=has_one_sense(self.task, self.first),
         )
-        self.taped = isinstance(self.program, TracedVariants)
+        self.traced = isinstance(self.program, TracedVariants)
         self.coarse = self.program.without(CLOSELY)
         kinds = [getattr(kernel, "assemblies", 0) for kernel in self.program.kernels]
         self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
 
-    def _places(self) -> None:
+    def _set_positions(self) -> None:
         """Where the driver goes, and at which of its places candidates are looked at in the search."""
         ranges = self.program.driver_range(np.array([self.first]))
         self.closed, self.cycle = ranges.closed, float(ranges.span[0, 0])
@@ -96,13 +96,13 @@ class Candidates:
                 self.closed and not (self.jumps and quantity.forces),
                 self.cycle,
                 rough,
-                self.taped,
+                self.traced,
             )
             for quantity in self.quantities
         )
         own = self.own_places(self.count + self.jumps)
-        self.exact = [places or self.along(n, self.count) for n, places in enumerate(own)]
-        self.places = DriverSamples(self.over(self.count), self.with_sketch(np.zeros(0)), asked=True)
+        self.exact = [places or self.shares_of(n, self.count) for n, places in enumerate(own)]
+        self.places = DriverSamples(self.shares_over(self.count), self.with_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -113,12 +113,12 @@ class Candidates:
 
     @property
     def population(self) -> int:
-        each, most = (POPULATION, LEAST_POPULATION) if self.taped else (FEW, 2 * FEW)
+        each, most = (POPULATION, LEAST_POPULATION) if self.traced else (FEW, 2 * FEW)
         return max(FEWEST, self.task.population or max(most, each * len(self.low)))
 
     @property
     def generations(self) -> int:
-        if not self.taped:
+        if not self.traced:
             return self.task.generations or FEW_GENERATIONS * (1 + len(self.low))
         return self.task.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
 
@@ -131,12 +131,12 @@ class Candidates:
         found: Real = (numbers - self.low) / (self.high - self.low)
         return found
 
-    def over(self, count: int) -> Real:
+    def shares_over(self, count: int) -> Real:
         """Shares of the driver range: of a closed one without its end, but after it where forces are others there."""
         shares = np.arange(count) / (count if self.closed else count - 1)
         return np.append(shares, 1.0) if self.jumps else shares
 
-    def along(self, n: int, count: int) -> slice:
+    def shares_of(self, n: int, count: int) -> slice:
         """Which of these shares count for a quantity."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
@@ -174,10 +174,12 @@ class Candidates:
             lost = self.constraints[0].missed(values[1])
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
             violation = np.where(np.isfinite(violation), violation, NONE)
-            wanted = self.wanted(values[0])
+            wanted = self.objective_value(values[0])
             return np.where(np.isnan(wanted), np.inf, wanted), violation
 
-    def coarsely(self, x: Real) -> tuple[Mapping[str, Real], list[tuple[MechanismQuantity, Read, QuantityRange]]]:
+    def evaluate_coarsely(
+        self, x: Real
+    ) -> tuple[Mapping[str, Real], list[tuple[MechanismQuantity, Read, QuantityRange]]]:
         """Outputs at the places of the search, and of every quantity what reads its own of them."""
         found = self.coarse(self.numbers(x), self.places)
         own = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
@@ -185,12 +187,12 @@ class Candidates:
 
     def values(self, x: Real) -> list[Real]:
         """Objective and constrained quantities, coarsely."""
-        found, parts = self.coarsely(x)
+        found, parts = self.evaluate_coarsely(x)
         values = [quantity.coarse(read, over) for quantity, read, over in parts]
-        values[1] = np.where(self.turned_over(found, self.count), -1.0, values[1])
+        values[1] = np.where(self.passes_dead_position(found, self.count), -1.0, values[1])
         return values
 
-    def turned_over(self, found: Mapping[str, Real], count: int) -> Real:
+    def passes_dead_position(self, found: Mapping[str, Real], count: int) -> Real:
         """Which variants pass a dead position that they do not stop at, (variants,), from so many shares."""
         over: Any = False
         for name in self.single:
@@ -198,7 +200,7 @@ class Candidates:
             over = over | (np.min(det, axis=1) * np.max(det, axis=1) <= 0)
         return np.asarray(over)
 
-    def wanted(self, value: Real) -> Real:
+    def objective_value(self, value: Real) -> Real:
         """What is made least: of a margin its opposite, of a target the distance from it."""
         if self.task.target is not None:
             return np.abs(value - self.task.target) / (abs(self.task.target) or 1.0)

@@ -151,8 +151,8 @@ class DiscreteChoices:
         self.chosen = [k for k in range(len(candidates.low)) if k not in task.free]
         self.best: dict[tuple[float, ...], tuple[float, float, Real]] = {}
         self.count = prod(len(task.parameters[k].values) for k in self.chosen)
-        self.few = not self.free and self.count <= (MOST if candidates.taped else MOST_ONE_BY_ONE)
-        if self.few and candidates.taped:
+        self.few = not self.free and self.count <= (MOST if candidates.traced else MOST_ONE_BY_ONE)
+        if self.few and candidates.traced:
             self.candidates = Candidates(replace(task, positions=max(CLOSER, task.positions)))
 
     def __call__(self, x: Real) -> tuple[Real, Real]:
@@ -185,7 +185,7 @@ class DiscreteChoices:
 
     def starts(self) -> list[Real]:
         """Of the choices that are nearest to keep all constraints, and of those with the least objectives beside."""
-        half = (POLISHED if self.candidates.taped else FEW) // 2
+        half = (POLISHED if self.candidates.traced else FEW) // 2
         found = sorted(self.best.values(), key=lambda one: one[:2])
         near = NEAR if self.free else ERROR
         least = sorted((one for one in found[half:] if one[0] < near), key=lambda one: one[1])

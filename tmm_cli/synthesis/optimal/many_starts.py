@@ -257,7 +257,7 @@ def is_applicable(candidates: Candidates) -> bool:
     """Whether the objective is a sum of squares, and all numbers may have all values."""
     task = candidates.task
     squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
-    return squares and task.target is None and candidates.taped and len(task.free) == len(task.parameters)
+    return squares and task.target is None and candidates.traced and len(task.free) == len(task.parameters)
 
 
 def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManyStartsResult:
@@ -349,7 +349,7 @@ def residual_function(candidates: Candidates) -> Evaluate:
     unit = objective.spread * np.sqrt(len(objective.wanted))
 
     def block(x: Real, each: int) -> ResidualRows:
-        (__, read, over), *others = candidates.coarsely(x)[1]
+        (__, read, over), *others = candidates.evaluate_coarsely(x)[1]
         off, least = [objective.residuals(read, over, each) / unit], []
         for constraint, (quantity, read, over) in zip(constraints, others, strict=True):
             value = quantity.coarse(read, over)[:, None]

@@ -164,7 +164,7 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
     with np.errstate(all="ignore"):
         found, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
         values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
-        scan, two = candidates.over(candidates.scan), candidates.numbers(x[None])
+        scan, two = candidates.shares_over(candidates.scan), candidates.numbers(x[None])
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
             def curve(name: str, shares: Real, n: int = n) -> Real:
@@ -173,10 +173,12 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
             if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
                 values[n] = np.nan
             else:
-                values[n] = quantity.closest(values[n], curve, scan[candidates.along(n, candidates.scan)], over)
+                values[n] = quantity.refine_value(
+                    values[n], curve, scan[candidates.shares_of(n, candidates.scan)], over
+                )
         if candidates.single:
             there = candidates.run(x[None], DriverSamples(scan, candidates.with_sketch(np.zeros(0))))
-            values[1] = -1.0 if candidates.turned_over(there, candidates.scan)[0] else values[1]
+            values[1] = -1.0 if candidates.passes_dead_position(there, candidates.scan)[0] else values[1]
     return values
 
 
@@ -190,7 +192,7 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
         found[:, free] = some
         return found
 
-    for narrow in NARROWER if candidates.taped else FEWER:
+    for narrow in NARROWER if candidates.traced else FEWER:
         before, pieces = x, _exact_pieces(candidates, x, narrow)
         top = float(np.max(np.abs(_objective_pieces(candidates, pieces(x)[0])))) or 1.0
         with np.errstate(all="ignore"):
@@ -206,7 +208,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
 
     narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
     """
-    scan = candidates.over(candidates.scan)
+    scan = candidates.shares_over(candidates.scan)
     found = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
     half = max(narrow / candidates.count, ABOUT / candidates.scan)
     step = 2 * half / (WINDOW - 1)
@@ -214,7 +216,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
     at = 0
     for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
         own = []
-        for what, k in quantity.windows(quantity_reader(found, n, candidates.along(n, candidates.scan)), over):
+        for what, k in quantity.windows(quantity_reader(found, n, candidates.shares_of(n, candidates.scan)), over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)

@@ -71,7 +71,7 @@ def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[R
         hopeful = f == first or not f - first > HOPE * abs(first)
         if hopeful and all(np.max(np.abs(x - s)) > APART for s in starts):
             starts.append(x)
-        if len(starts) == (STARTS if candidates.taped else 1):
+        if len(starts) == (STARTS if candidates.traced else 1):
             break
     return starts
 
@@ -89,7 +89,12 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
         missed = float(sum(constraint.missed(value) for constraint, value in both))
         missed += LOST * (candidates.constraints[0].missed(values[1]) > MISS_TOLERANCE)
         found.append(
-            (missed if missed > MISS_TOLERANCE else 0.0, float(candidates.wanted(np.array(values[0]))), x, values)
+            (
+                missed if missed > MISS_TOLERANCE else 0.0,
+                float(candidates.objective_value(np.array(values[0]))),
+                x,
+                values,
+            )
         )
 
     try:

@@ -60,11 +60,11 @@ class LayoutDraft:
 
     scheme: Scheme
     random: Random
-    where: dict[int, dict[str, complex]] = field(default_factory=dict)
-    turn: dict[int, float] = field(default_factory=dict)
+    points: dict[int, dict[str, complex]] = field(default_factory=dict)
+    axis_angle: dict[int, float] = field(default_factory=dict)
     slides: list[tuple[int, int, complex, float, str]] = field(default_factory=list)
-    slotted: list[int] = field(default_factory=list)
-    losses: list[float] = field(default_factory=list)
+    slotted_links: list[int] = field(default_factory=list)
+    penalties: list[float] = field(default_factory=list)
     names: Iterator[str] = field(default_factory=lambda: iter(LETTERS))
 
     @property
@@ -73,121 +73,124 @@ class LayoutDraft:
 
     def pivot(self, crank: int) -> complex:
         """Where a crank stands on the frame."""
-        return next(iter(self.where[crank].values()))
+        return next(iter(self.points[crank].values()))
 
     # --- chance
 
-    def polar(self, shortest: float, longest: float, low: float = 0.0, high: float = 360.0) -> complex:
+    def random_vector(self, shortest: float, longest: float, low: float = 0.0, high: float = 360.0) -> complex:
         """A vector of a length (mm) and direction (deg) between bounds."""
         angle = math.radians(self.random.uniform(low, high))
         return cmath.rect(self.random.uniform(shortest, longest), angle)
 
-    def side(self) -> int:
+    def random_side(self) -> int:
         return self.random.choice((1, -1))
 
     # --- links
 
-    def link(self, link: int, turn: float, **points: complex) -> None:
+    def place_link(self, link: int, turn: float, **points: complex) -> None:
         """A link with axes in the direction `turn`, its origin in its first point."""
-        self.turn[link] = turn
-        self.where[link] = dict(points)
+        self.axis_angle[link] = turn
+        self.points[link] = dict(points)
 
-    def bar(self, link: int, first: str, A: complex, second: str, B: complex) -> None:
+    def place_bar(self, link: int, first: str, A: complex, second: str, B: complex) -> None:
         """A link of two hinges, its axis from the first to the second."""
-        self.link(link, cmath.phase(B - A), **{first: A, second: B})
+        self.place_link(link, cmath.phase(B - A), **{first: A, second: B})
 
-    def hinge(self, link: int) -> complex | None:
+    def new_hinge(self, link: int) -> complex | None:
         """Where a link may get one more hinge; None: anywhere, the frame is everywhere."""
-        points = list(self.where[link].values())
+        points = list(self.points[link].values())
         if link == 0:
             return None
         if link in self.cranks:
             first = len(points) == 1
-            return points[0] + cmath.rect(CRANK, self.turn[link]) * (1 if first else self.polar(1, 1, 70, 290))
+            return points[0] + cmath.rect(CRANK, self.axis_angle[link]) * (
+                1 if first else self.random_vector(1, 1, 70, 290)
+            )
         if len(points) == 1:
-            return points[0] + self.polar(60, 140)
+            return points[0] + self.random_vector(60, 140)
         A, B = self.random.sample(points, 2)
         along = (B - A) / max(abs(B - A), 1.0)
         if self.random.random() < 0.5:
             return B + along * self.random.uniform(50, 140)
-        return (A + B) / 2 + 1j * along * self.side() * self.random.uniform(60, 140)
+        return (A + B) / 2 + 1j * along * self.random_side() * self.random.uniform(60, 140)
 
-    def near(self, link: int) -> complex | None:
+    def centre_of(self, link: int) -> complex | None:
         """The middle of a link's points, None for the frame."""
-        points = list(self.where[link].values())
+        points = list(self.points[link].values())
         return None if link == 0 else sum(points) / len(points)
 
-    def hinges(self, X: int, Y: int, shortest: float, longest: float) -> tuple[complex, complex]:
+    def new_hinges(self, X: int, Y: int, shortest: float, longest: float) -> tuple[complex, complex]:
         """Outer hinges on two links; one on the frame is so far from the other."""
-        A, B = self.hinge(X), self.hinge(Y)
+        A, B = self.new_hinge(X), self.new_hinge(Y)
         if A is None:
             assert B is not None
-            A = B + self.polar(shortest, longest)
+            A = B + self.random_vector(shortest, longest)
         elif B is None:
-            B = A + self.polar(shortest, longest)
+            B = A + self.random_vector(shortest, longest)
         return A, B
 
-    def direction(self, carrier: int, turn: float, spread: float) -> float:
+    def guide_direction(self, carrier: int, turn: float, spread: float) -> float:
         """A guide's direction (rad) about `turn`; on the frame in steps of 15 degrees, elsewhere in whole ones."""
         turn += math.radians(self.random.uniform(-spread, spread))
         step = math.radians(15 if carrier == 0 else 1)
-        return self.turn[carrier] + step * round((turn - self.turn[carrier]) / step)
+        return self.axis_angle[carrier] + step * round((turn - self.axis_angle[carrier]) / step)
 
-    def slide(self, carrier: int, runner: int, through: complex, turn: float, point: str) -> None:
+    def add_slide(self, carrier: int, runner: int, through: complex, turn: float, point: str) -> None:
         self.slides.append((carrier, runner, through, turn, point))
 
-    def lose(self, transmission: float) -> None:
+    def add_transmission_penalty(self, transmission: float) -> None:
         """Count a group by the sine of its transmission angle."""
         if abs(transmission) < 0.5:
             raise UnfitLayout
-        self.losses.append((1 - min(1.0, abs(transmission))) ** 2)
+        self.penalties.append((1 - min(1.0, abs(transmission))) ** 2)
 
-    def spare(self, way: float) -> None:
+    def add_reserve_penalty(self, way: float) -> None:
         """Count a group by how far (mm) it can still give way before it is stretched: a crank's diameter is enough."""
-        self.losses.append((1 - max(0.0, min(1.0, way / (2 * CRANK)))) ** 2)
+        self.penalties.append((1 - max(0.0, min(1.0, way / (2 * CRANK)))) ** 2)
 
-    def name(self, link: int, place: complex) -> str:
+    def name_hinge(self, link: int, place: complex) -> str:
         """A new hinge of a link that is there."""
         name = next(self.names)
-        self.where[link][name] = complex(round(place.real), round(place.imag)) if link == 0 else place
+        self.points[link][name] = complex(round(place.real), round(place.imag)) if link == 0 else place
         return name
 
     # --- dimensions
 
-    def measured(self) -> SchemeLayout:
+    def to_layout(self) -> SchemeLayout:
         """The pose in numbers, if links are neither too long nor their points too close to one another."""
-        places = {name: place for points in self.where.values() for name, place in points.items()}
+        places = {name: place for points in self.points.values() for name, place in points.items()}
         if any(abs(p - q) < NEAREST for p, q in combinations(places.values(), 2)):
             raise UnfitLayout
         spans = [
             max((abs(p - q) for p, q in combinations(points.values(), 2)), default=0.0)
-            for link, points in self.where.items()
+            for link, points in self.points.items()
             if link
         ]
         if max(spans) > LONGEST:
             raise UnfitLayout
         points = {
-            link: {name: self.local(link, place) for name, place in known.items()} for link, known in self.where.items()
+            link: {name: self.to_link_axes(link, place) for name, place in known.items()}
+            for link, known in self.points.items()
         }
         slides = tuple(
             PrismaticLayout(
                 carrier,
                 runner,
-                self.local(carrier, through),
-                _wrap_line_angle(round(math.degrees(turn - self.turn[carrier]))),
+                self.to_link_axes(carrier, through),
+                _wrap_line_angle(round(math.degrees(turn - self.axis_angle[carrier]))),
                 point,
             )
             for carrier, runner, through, turn, point in self.slides
         )
-        moving = {name: round_to_mm(place) for name, place in places.items() if name not in self.where[0]}
-        angles = {link: round(math.degrees(self.turn[link])) for link in self.slotted}
+        moving = {name: round_to_mm(place) for name, place in places.items() if name not in self.points[0]}
+        angles = {link: round(math.degrees(self.axis_angle[link])) for link in self.slotted_links}
         cranks = tuple(CRANK_AT[crank - 1] for crank in self.cranks)
-        return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.losses))
+        return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.penalties))
 
-    def local(self, link: int, place: complex) -> complex:
+    def to_link_axes(self, link: int, place: complex) -> complex:
         """A place in a link's axes, in whole millimetres."""
-        origin = next(iter(self.where[link].values())) if link else 0j
-        return round_to_mm((place - origin) * cmath.rect(1, -self.turn[link]))
+        origin = next(iter(self.points[link].values())) if link else 0j
+        return round_to_mm((place - origin) * cmath.rect(1, -self.axis_angle[link]))
 
 
 def round_to_mm(place: complex) -> complex:
@@ -212,22 +215,22 @@ TRIALS = 250
 def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
     """Poses of a scheme, the best first."""
     random = Random(seed)
-    found = (_GroupPlacer(scheme, random).layout() for _ in range(TRIALS))
+    found = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
     return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
 
 
 class _GroupPlacer(LayoutDraft):
     """A pose of the whole scheme, its groups put down one after another."""
 
-    def layout(self) -> SchemeLayout | None:
-        self.where, self.turn = {0: {}}, {0: 0.0}
+    def place_groups(self) -> SchemeLayout | None:
+        self.points, self.axis_angle = {0: {}}, {0: 0.0}
         pivot = 0j
         for crank in self.cranks:
             name = "O" if crank == 1 else f"O{crank}"
-            pivot = 0j if crank == 1 else round_to_mm(pivot + self.polar(220, 320, -25, 25))
-            self.where[0][name] = pivot
-            self.where[crank] = {name: pivot}
-            self.turn[crank] = math.radians(CRANK_AT[crank - 1])
+            pivot = 0j if crank == 1 else round_to_mm(pivot + self.random_vector(220, 320, -25, 25))
+            self.points[0][name] = pivot
+            self.points[crank] = {name: pivot}
+            self.axis_angle[crank] = math.radians(CRANK_AT[crank - 1])
         build = {
             "RRR": self.rrr,
             "RRP": self.rrp,
@@ -240,124 +243,131 @@ class _GroupPlacer(LayoutDraft):
         try:
             for group in self.scheme.groups:
                 build[group.type.name](group)
-            return self.measured()
+            return self.to_layout()
         except UnfitLayout:
             return None
 
     def rrr(self, group: PlacedGroup) -> None:
         (a, b), (X, Y) = group.links, _supporting_links(group)
-        A, C = self.hinges(X, Y, 200, 380)
+        A, C = self.new_hinges(X, Y, 200, 380)
         base = C - A
-        B = A + base * complex(self.random.uniform(0.2, 0.8), self.side() * self.random.uniform(0.35, 0.9))
-        nA, nB, nC = self.name(X, A), next(self.names), self.name(Y, C)
-        self.bar(a, nA, A, nB, B)
-        self.bar(b, nC, C, nB, B)
-        self.lose(cross(B - A, B - C) / (abs(B - A) * abs(B - C)))
+        B = A + base * complex(self.random.uniform(0.2, 0.8), self.random_side() * self.random.uniform(0.35, 0.9))
+        nA, nB, nC = self.name_hinge(X, A), next(self.names), self.name_hinge(Y, C)
+        self.place_bar(a, nA, A, nB, B)
+        self.place_bar(b, nC, C, nB, B)
+        self.add_transmission_penalty(cross(B - A, B - C) / (abs(B - A) * abs(B - C)))
         legs = abs(B - A), abs(B - C)
-        self.spare(min(sum(legs) - abs(base), abs(base) - abs(legs[0] - legs[1])))
+        self.add_reserve_penalty(min(sum(legs) - abs(base), abs(base) - abs(legs[0] - legs[1])))
 
     def rrp(self, group: PlacedGroup) -> None:
         (a, b), (X, Y) = group.links, _supporting_links(group)
-        A, middle = self.hinge(X), self.near(Y)
+        A, middle = self.new_hinge(X), self.centre_of(Y)
         if middle is not None:
             if A is None:
-                A = middle + self.polar(40, 300)
-            B = A + self.polar(160, 300) if self.random.random() < 0.5 else middle + self.polar(40, 150)
+                A = middle + self.random_vector(40, 300)
+            B = A + self.random_vector(160, 300) if self.random.random() < 0.5 else middle + self.random_vector(40, 150)
         else:
             assert A is not None
-            B = A + self.polar(160, 300)
-        turn = self.direction(Y, cmath.phase(B - A), 30)
-        nA, nB = self.name(X, A), next(self.names)
-        self.bar(a, nA, A, nB, B)
-        self.link(b, self.turn[Y], **{nB: B})
-        self.slide(Y, b, B, turn, nB)
-        self.lose(math.cos(cmath.phase(B - A) - turn))
+            B = A + self.random_vector(160, 300)
+        turn = self.guide_direction(Y, cmath.phase(B - A), 30)
+        nA, nB = self.name_hinge(X, A), next(self.names)
+        self.place_bar(a, nA, A, nB, B)
+        self.place_link(b, self.axis_angle[Y], **{nB: B})
+        self.add_slide(Y, b, B, turn, nB)
+        self.add_transmission_penalty(math.cos(cmath.phase(B - A) - turn))
         # off the guide, or off the guide of a crank that turns about its pivot
         along = cmath.rect(1, turn)
         off = abs(cross(along, A - B))
         if Y in self.cranks:
             off = abs(A - self.pivot(Y)) + abs(cross(along, B - self.pivot(Y)))
-        self.spare(abs(B - A) - off)
+        self.add_reserve_penalty(abs(B - A) - off)
 
     def rpr(self, group: PlacedGroup) -> None:
         (a, b), (X, Y) = group.links, _supporting_links(group)
-        A, B = self.hinges(X, Y, 140, 260)
-        nA, nB = self.name(X, A), self.name(Y, B)
+        A, B = self.new_hinges(X, Y, 140, 260)
+        nA, nB = self.name_hinge(X, A), self.name_hinge(Y, B)
         turn = cmath.phase(A - B)
-        self.link(a, turn, **{nA: A})
-        self.link(b, turn, **{nB: B})
-        self.slide(b, a, B, turn, nA)
-        self.slotted.append(b)
-        self.lose(abs(A - B) / (2 * CRANK))
+        self.place_link(a, turn, **{nA: A})
+        self.place_link(b, turn, **{nB: B})
+        self.add_slide(b, a, B, turn, nA)
+        self.slotted_links.append(b)
+        self.add_transmission_penalty(abs(A - B) / (2 * CRANK))
 
     def prp(self, group: PlacedGroup) -> None:
         (a, b), (X, Y) = group.links, _supporting_links(group)
-        middles = [x for x in (self.near(X), self.near(Y)) if x is not None]
-        C = sum(middles) / len(middles) + self.polar(60, 220)
+        middles = [x for x in (self.centre_of(X), self.centre_of(Y)) if x is not None]
+        C = sum(middles) / len(middles) + self.random_vector(60, 220)
         one, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
         slotted = one in self.cranks
         if slotted:  # a slotted crank has its slot through its pivot
-            C = self.pivot(one) + cmath.rect(self.random.uniform(120, 260), self.turn[one])
-        turns = {one: self.turn[one] if slotted else self.direction(one, 0, 180)}
-        turns[other] = self.direction(other, turns[one] + math.pi / 2, 35)
+            C = self.pivot(one) + cmath.rect(self.random.uniform(120, 260), self.axis_angle[one])
+        turns = {one: self.axis_angle[one] if slotted else self.guide_direction(one, 0, 180)}
+        turns[other] = self.guide_direction(other, turns[one] + math.pi / 2, 35)
         name = next(self.names)
         for link, known in ((a, X), (b, Y)):
-            self.link(link, self.turn[known], **{name: C})
-            self.slide(known, link, C, turns[known], name)
-        self.lose(math.sin(turns[X] - turns[Y]))
+            self.place_link(link, self.axis_angle[known], **{name: C})
+            self.add_slide(known, link, C, turns[known], name)
+        self.add_transmission_penalty(math.sin(turns[X] - turns[Y]))
 
     def rpp(self, group: PlacedGroup) -> None:
         (a, b), (X, Y) = group.links, _supporting_links(group)
-        A, middle = self.hinge(X), self.near(Y)
+        A, middle = self.new_hinge(X), self.centre_of(Y)
         if A is None:
             assert middle is not None
-            A = middle + self.polar(80, 220)
-        along = self.direction(Y, 0, 180)
+            A = middle + self.random_vector(80, 220)
+        along = self.guide_direction(Y, 0, 180)
         across = along + math.pi / 2 + math.radians(self.random.choice((-30, -15, 0, 0, 0, 15, 30)))
         E = A + cmath.rect(self.random.uniform(50, 130), across)
-        nA, nE = self.name(X, A), next(self.names)
-        self.link(a, self.turn[Y], **{nA: A})
-        self.link(b, self.turn[Y], **{nE: E})
-        self.slide(b, a, E, across, nA)
-        self.slide(Y, b, E, along, nE)
-        self.lose(math.sin(across - along))
+        nA, nE = self.name_hinge(X, A), next(self.names)
+        self.place_link(a, self.axis_angle[Y], **{nA: A})
+        self.place_link(b, self.axis_angle[Y], **{nE: E})
+        self.add_slide(b, a, E, across, nA)
+        self.add_slide(Y, b, E, along, nE)
+        self.add_transmission_penalty(math.sin(across - along))
 
     def iii(self, group: PlacedGroup) -> None:
         held = _supporting_links(group)
         ends, names = [], []
         for link in held:
-            end = self.hinge(link)
+            end = self.new_hinge(link)
             ends.append(end)
-            names.append("" if end is None else self.name(link, end))
+            names.append("" if end is None else self.name_hinge(link, end))
         known = [end for end in ends if end is not None]
-        middle = sum(known) / len(known) + self.polar(120, 260)
+        middle = sum(known) / len(known) + self.random_vector(120, 260)
         start = self.random.uniform(0, 360)
-        corners = [middle + self.polar(60, 90, start + 120 * k, start + 120 * k) for k in range(3)]
+        corners = [middle + self.random_vector(60, 90, start + 120 * k, start + 120 * k) for k in range(3)]
         outer = [
-            end if end is not None else corner + self.polar(120, 240) for end, corner in zip(ends, corners, strict=True)
+            end if end is not None else corner + self.random_vector(120, 240)
+            for end, corner in zip(ends, corners, strict=True)
         ]
         ternary, *legs = group.links
         inner = {next(self.names): corner for corner in corners}
-        self.link(ternary, cmath.phase(corners[1] - corners[0]), **inner)
+        self.place_link(ternary, cmath.phase(corners[1] - corners[0]), **inner)
         for leg, A, at, (name, B) in zip(legs, outer, names, inner.items(), strict=True):
-            self.bar(leg, at or self.name(0, A), A, name, B)
+            self.place_bar(leg, at or self.name_hinge(0, A), A, name, B)
         # the ternary link is lost when the lines of its legs meet in one point
         ways = [(corner - A) / abs(corner - A) for corner, A in zip(corners, outer, strict=True)]
         rows = [(w.real, w.imag, cross(c - middle, w) / 75) for w, c in zip(ways, corners, strict=True)]
-        self.lose(_determinant(rows))
+        self.add_transmission_penalty(_determinant(rows))
 
     def iv(self, group: PlacedGroup) -> None:
         one, left, other, right = group.links
         X, Y = _supporting_links(group)
-        P, Q = self.hinges(X, Y, 300, 380)
+        P, Q = self.new_hinges(X, Y, 300, 380)
         along = math.degrees(cmath.phase(Q - P))
-        A, D = P + self.polar(80, 150, along + 30, along + 100), P + self.polar(80, 150, along - 60, along - 10)
-        B, C = Q + self.polar(80, 150, along + 100, along + 150), Q + self.polar(80, 150, along + 190, along + 250)
-        nP, nA, nB, nC, nD, nQ = self.name(X, P), *(next(self.names) for _ in range(4)), self.name(Y, Q)
-        self.link(one, cmath.phase(A - P), **{nP: P, nA: A, nD: D})
-        self.bar(left, nA, A, nB, B)
-        self.link(other, cmath.phase(B - Q), **{nQ: Q, nB: B, nC: C})
-        self.bar(right, nD, D, nC, C)
+        A, D = (
+            P + self.random_vector(80, 150, along + 30, along + 100),
+            P + self.random_vector(80, 150, along - 60, along - 10),
+        )
+        B, C = (
+            Q + self.random_vector(80, 150, along + 100, along + 150),
+            Q + self.random_vector(80, 150, along + 190, along + 250),
+        )
+        nP, nA, nB, nC, nD, nQ = self.name_hinge(X, P), *(next(self.names) for _ in range(4)), self.name_hinge(Y, Q)
+        self.place_link(one, cmath.phase(A - P), **{nP: P, nA: A, nD: D})
+        self.place_bar(left, nA, A, nB, B)
+        self.place_link(other, cmath.phase(B - Q), **{nQ: Q, nB: B, nC: C})
+        self.place_bar(right, nD, D, nC, C)
 
 
 def _supporting_links(group: PlacedGroup) -> list[int]:

@@ -38,7 +38,7 @@ class QuantityRange:
     """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
 
     swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
-    taped: many places cost little.
+    traced: many places cost little.
     """
 
     linkage: Linkage
@@ -46,7 +46,7 @@ class QuantityRange:
     closed: bool = True
     cycle: float = 2 * np.pi
     rough: bool = False
-    taped: bool = True
+    traced: bool = True
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class MechanismQuantity(ABC):
         """What to look at closely, and about which place of a scan of one variant."""
         return []
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+    def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         """The quantity of one candidate where windows may not be exact enough; value: from those."""
         return value
 
@@ -164,24 +164,24 @@ class PeakQuantity(MechanismQuantity):
 
     curves: ClassVar[tuple[str, ...]] = ("y",)
 
-    def levelled(self, y: Any) -> Any:
+    def from_curve(self, y: Any) -> Any:
         """The quantity of a place from its curve, whose opposite it is for `lowest`."""
         return y
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
-        found: Real = self.levelled(sum(np.max(read(name), axis=1) for name in self.curves))
+        found: Real = self.from_curve(sum(np.max(read(name), axis=1) for name in self.curves))
         return -found if self.lowest else found
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         return [("y", k) for k in highest_peaks(read("y")[0], MOST_PEAKS, over.closed)]
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        ys = [self.levelled(read(name)) for name, _, read in parts]
+        ys = [self.from_curve(read(name)) for name, _, read in parts]
         rough = over.rough and self.forces
         found: Real = np.stack([np.max(y, axis=1) if rough else window_peak(y) for y in ys], axis=1)
         return -found if self.lowest else found
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+    def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         if over.rough and self.forces:
             return highest_value(lambda shares: curve("y", shares), scan, closed=over.closed)
         return value

@@ -60,7 +60,7 @@ class Deviation(MechanismQuantity):
         wanted = np.array(self.wanted)
         return float(np.sqrt(np.mean(np.abs(wanted - np.mean(wanted)) ** 2))) or 1.0
 
-    def counted(self, off: Real) -> Real:
+    def aggregate(self, off: Real) -> Real:
         """Root mean square, or the largest, (variants,)."""
         if self.norm == "largest":
             off = np.max(np.abs(off), axis=1, keepdims=True)
@@ -68,17 +68,17 @@ class Deviation(MechanismQuantity):
         return found
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
-        return self.counted(self.deviations(read, over))
+        return self.aggregate(self.deviations(read, over))
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         off = self.deviations(exact, over)
-        return np.hstack([off, -off]) if self.norm == "largest" else self.counted(off)[:, None]
+        return np.hstack([off, -off]) if self.norm == "largest" else self.aggregate(off)[:, None]
 
     def smooth(self, pieces: Real) -> Real:
         return pieces if self.norm == "largest" else pieces**2
 
     def measured(self, results: Results, ends: DriverEnds) -> float:
-        return float(self.counted(self.deviations_on(results, ends)[None, :])[0])
+        return float(self.aggregate(self.deviations_on(results, ends)[None, :])[0])
 
 
 class LawDeviation(Deviation):
@@ -152,7 +152,7 @@ class PathDeviation(Deviation):
             return super().fine(parts, exact, over, step)
         squares = [-((read("px") - w.real) ** 2 + (read("py") - w.imag) ** 2) for w, __, read in parts]
         off = np.sqrt(np.maximum(np.stack([-window_peak(square) for square in squares], axis=1), 0))
-        return off if self.norm == "largest" else self.counted(off)[:, None]
+        return off if self.norm == "largest" else self.aggregate(off)[:, None]
 
     def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
         if self.places:

@@ -80,9 +80,9 @@ class OutputStroke(StrokeQuantity):
         travel: Real = np.max(tops, axis=0) + np.max(lows, axis=0)
         return travel[:, None]
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+    def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         several = over.closed and count_reversals(curve("slope", scan)[None])[0] > FOUR
-        if over.swings or not over.taped or several or np.isnan(value):
+        if over.swings or not over.traced or several or np.isnan(value):
             return value
         top = highest_value(lambda shares: curve("run", shares), scan, closed=over.closed)
         return top + highest_value(lambda shares: -curve("run", shares), scan, closed=over.closed)
@@ -106,7 +106,7 @@ class TimeRatio(StrokeQuantity):
             forward = forward + np.where(slope[:, 0] > 0, 1, -1) * (start + step * locate_zero(slope))
         return time_ratio_of_share(np.mod(forward, 1.0))[:, None]
 
-    def closest(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
+    def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         return time_ratio_of_curve(lambda shares: curve("slope", shares), scan)
 
     def measured(self, results: Results, ends: DriverEnds) -> float:

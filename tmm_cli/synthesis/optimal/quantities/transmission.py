@@ -62,7 +62,7 @@ class LargestPressureAngle(PeakQuantity):
             tangents.append(sine / cosine)
         return {"y": reduce(np.maximum, tangents)}
 
-    def levelled(self, y: Any) -> Any:
+    def from_curve(self, y: Any) -> Any:
         return np.arctan(y)
 
     def measured(self, results: Results, ends: DriverEnds) -> float:
